@@ -67,29 +67,16 @@ struct Clip {
   std::vector<Panel> panels;
 };
 
-/// One solver's cloth laid flat at a few moments, in order of time.
-struct MaterialRow {
-  struct Still {
-    double t = 0;     ///< s
-    double rms = 0;   ///< RMS strain
-    std::string png;  ///< colours of the bar, without light
-  };
-  std::string solver;
-  std::vector<Still> stills;
-};
-
-/// What was rendered of a scene. Videos of one scene start together and last equally long.
+/// What was rendered of a scene.
 struct SceneMedia {
   std::string scene;
-  std::vector<Clip> clips{};
-  double duration = 0;                  ///< s of simulated time that a video covers
-  double speed = 1;                     ///< simulated seconds per second of video
-  Json bar{};                           ///< of the colours, as the model has it; null: none
-  std::vector<MaterialRow> material{};  ///< empty for cloth that is no sheet
-  double aspect = 1;                    ///< width / height of the cloth laid flat
-  std::string summary{};                ///< of a scene that no study ran
-  double frame = 1.0 / 30;              ///< s of simulated time between two frames
-  double poster = 0;                    ///< s of simulated time that the clips' posters show
+  Clip clip{};              ///< without bytes: none
+  double duration = 0;      ///< s of simulated time that a video covers
+  double speed = 1;         ///< simulated seconds per second of video
+  Json bar{};               ///< of the colours, as the model has it; null: none
+  std::string summary{};    ///< of a scene that no study ran
+  double frame = 1.0 / 30;  ///< s of simulated time between two frames
+  double poster = 0;        ///< s of simulated time that the poster shows
   /// Solvers of the comparison that refuse the scene, and why.
   std::vector<std::pair<std::string, std::string>> refused{};
 };

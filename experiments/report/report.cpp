@@ -21,12 +21,17 @@ namespace {
 
 Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
 
-/// "Jakobsen and Bullet", or what the input says.
+/// "Jakobsen and Bullet", "7 cloth solvers on 7 scenes", or what the input says.
 std::string report_title(const ReportInput& input) {
   if (!input.title.empty()) return input.title;
+  constexpr std::size_t kMostNames = 3;
+  const ComparedSolvers compared = compared_solvers_of(input);
+  if (compared.all.size() > kMostNames)
+    return std::to_string(compared.all.size()) + " cloth solvers on " +
+           std::to_string(compared.scenes.size()) +
+           (compared.scenes.size() == 1 ? " scene" : " scenes");
   std::vector<std::string> names;
-  for (const ComparedSolver& solver : compared_solvers_of(input).all)
-    names.push_back(solver_title(solver.name));
+  for (const ComparedSolver& solver : compared.all) names.push_back(solver_title(solver.name));
   return joined(names);
 }
 
@@ -48,20 +53,9 @@ class Builder {
     Json steps = json_of_steps(input_, refs_, charts_, tables_);
     Json limits = json_of_limits(input_, tables_);
     Json method = this->method();
-    Json cases;
-    std::map<std::string, const BenchedCase*> timed;
-    if (input_.bench)
-      for (const SceneBench& scene : input_.bench->scenes)
-        for (const BenchedCase& c : scene.cases) timed[c.record.key] = &c;
-    for (const Record* r : refs_.listed()) {
-      const auto its = timed.find(r->key);
-      Json one = json_of_case(*r, its == timed.end() ? nullptr : its->second, refs_);
-      if (const auto film = film_of_.find(refs_.key(*r)); film != film_of_.end())
-        one["film"] = film->second;
-      cases.push_back(std::move(one));
-    }
+    Json cases = this->cases();
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
-    Json model{{"schema", "taut-report/3"},
+    Json model{{"schema", "taut-report/4"},
                {"meta", meta(cases.size())},
                {"solvers", solvers()},
                {"statuses", statuses()},
@@ -80,13 +74,7 @@ class Builder {
     add_if(model, "differences", std::move(differences));
     model["method"] = std::move(method);
     add_if(model, "missing", missing());
-    if (maps_left_out_ > 0)
-      model["left_out"].push_back(
-          {{"file", "maps"},
-           {"why", std::to_string(maps_left_out_) + " stability maps; a page has at most " +
-                       std::to_string(kMostCells) + " cells of maps: taut plot STUDY"}});
-    for (const auto& [file, why] : input_.left_out)
-      model["left_out"].push_back({{"file", file}, {"why", why}});
+    add_if(model, "left_out", left_out());
     add_if(model, "cases", std::move(cases));
     return model;
   }
@@ -109,6 +97,34 @@ class Builder {
     one["cases"] = refs_.cases().size(), one["planned"] = refs_.cases().size() + planned;
     if (listed < refs_.cases().size()) one["listed"] = listed;
     return one;
+  }
+
+  /// What anything above names, with its cost and its film.
+  Json cases() {
+    Json all;
+    std::map<std::string, const BenchedCase*> timed;
+    if (input_.bench)
+      for (const SceneBench& scene : input_.bench->scenes)
+        for (const BenchedCase& c : scene.cases) timed[c.record.key] = &c;
+    for (const Record* r : refs_.listed()) {
+      const auto its = timed.find(r->key);
+      Json one = json_of_case(*r, its == timed.end() ? nullptr : its->second, refs_);
+      if (const auto film = film_of_.find(refs_.key(*r)); film != film_of_.end())
+        one["film"] = film->second;
+      all.push_back(std::move(one));
+    }
+    return all;
+  }
+
+  Json left_out() const {
+    Json all;
+    if (maps_left_out_ > 0)
+      all.push_back(
+          {{"file", "maps"},
+           {"why", std::to_string(maps_left_out_) + " stability maps; a page has at most " +
+                       std::to_string(kMostCells) + " cells of maps: taut plot STUDY"}});
+    for (const auto& [file, why] : input_.left_out) all.push_back({{"file", file}, {"why", why}});
+    return all;
   }
 
   Json solvers() const {
@@ -185,7 +201,7 @@ class Builder {
       if (media.scene == name) add_media(one, media);
     for (const Chart& chart : scene_charts(input_, name))
       add_by_id(one, "charts", json_of(chart, refs_), charts_);
-    if (!one.contains("films")) add_series(one, name);
+    if (!one.contains("film")) add_series(one, name);
     std::map<std::string, int> names;
     for (const StatusMap& map : scene_maps(input_, name)) {
       if (map.cells.size() > cells_) {
@@ -224,16 +240,13 @@ class Builder {
   }
 
   void add_media(Json& scene, const SceneMedia& media) {
-    for (Json& film : json_of(media, input_, refs_, budget_)) {
-      if (film.contains("material")) {
-        scene["material"] = film["material"];
-        film.erase("material");
-      }
-      for (const Json& panel : film["panels"])
-        if (const std::string key = panel.value("case", ""); !key.empty())
-          film_of_.emplace(key, film["id"].get<std::string>());
-      add_by_id(scene, "films", std::move(film), films_);
-    }
+    if (media.clip.bytes.empty()) return;
+    Json film = json_of(media, input_, refs_, budget_);
+    scene["film"] = film["id"];
+    for (const Json& panel : film["panels"])
+      if (const std::string key = panel.value("case", ""); !key.empty())
+        film_of_.emplace(key, film["id"].get<std::string>());
+    films_.push_back(std::move(film));
   }
 
   /// Values over time of a scene without a film, whose tracks they would be.

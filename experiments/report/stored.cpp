@@ -267,10 +267,10 @@ std::vector<TimeSeries> stored_series(const Records& records, const std::string&
   return all;
 }
 
-ReportInput stored_results(const std::vector<Study>& studies, const Store& store) {
-  ReportInput input;
-  std::set<std::string> seen;
-  // A study's own bench before that of the main job.
+namespace {
+
+/// The first session of a study's own bench, else of that of the main job.
+void add_bench(ReportInput& input, const std::vector<Study>& studies, const Store& store) {
   std::vector<std::string> benched;
   if (studies.size() == 1) benched.push_back(studies.front().name);
   benched.emplace_back("trade");
@@ -289,33 +289,43 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
       input.left_out.emplace_back("the costs of " + name, error.what());
     }
   }
+}
+
+/// The cases of a study, with the values that a bench measured of them.
+void add_study(ReportInput& input, const Study& study, const Store& store,
+               const std::map<std::string, std::map<std::string, double>>& timed) {
+  StudyResult result{study.name, study.question, {}, 0, {}};
+  each_record(study, store, [&](const Case& one, std::optional<Record> record) {
+    ++result.planned;
+    if (std::ranges::find(input.scenes, one.scene->name, &SceneInfo::name) == input.scenes.end())
+      input.scenes.push_back({one.scene->name, one.scene->summary});
+    if (const auto slope = theory_slope(*one.scene)) result.slopes[one.scene->name] = *slope;
+    if (!record) return;
+    const std::size_t place = result.records.size();
+    if (place == kMostCases) std::ranges::for_each(result.records, keep_roles);
+    if (place >= kMostCases) keep_roles(*record);
+    if (const auto at = timed.find(record->key); at != timed.end())
+      record->values.insert(at->second.begin(), at->second.end());
+    result.records.push_back(std::move(*record));
+  });
+  input.studies.push_back(std::move(result));
+}
+
+}  // namespace
+
+ReportInput stored_results(const std::vector<Study>& studies, const Store& store) {
+  ReportInput input;
+  add_bench(input, studies, store);
   for (const Missing& one : store.still_missing())
     input.left_out.emplace_back(store.file().string(), one.sentence());
-  std::map<std::string, std::map<std::string, double>> timed;  // values of the bench, by key
-  if (input.bench)
-    for (const Record& r : input.bench->records()) timed[r.key] = r.values;
+  std::map<std::string, std::map<std::string, double>> timed;  // by key
   if (input.bench) {
+    for (const Record& r : input.bench->records()) timed[r.key] = r.values;
     // What was not timed in turns gives values of cases; nothing is concluded from it.
     std::erase_if(input.bench->scenes, [](const SceneBench& scene) { return !scene.in_turns; });
     if (input.bench->scenes.empty()) input.bench.reset();
   }
-  for (const Study& study : studies) {
-    StudyResult result{study.name, study.question, {}, 0, {}};
-    each_record(study, store, [&](const Case& one, std::optional<Record> record) {
-      ++result.planned;
-      if (seen.insert(one.scene->name).second)
-        input.scenes.push_back({one.scene->name, one.scene->summary});
-      if (const auto slope = theory_slope(*one.scene)) result.slopes[one.scene->name] = *slope;
-      if (!record) return;
-      const std::size_t place = result.records.size();
-      if (place == kMostCases) std::ranges::for_each(result.records, keep_roles);
-      if (place >= kMostCases) keep_roles(*record);
-      if (const auto at = timed.find(record->key); at != timed.end())
-        record->values.insert(at->second.begin(), at->second.end());
-      result.records.push_back(std::move(*record));
-    });
-    input.studies.push_back(std::move(result));
-  }
+  for (const Study& study : studies) add_study(input, study, store, timed);
   complete_quoted(input, store);
   const ComparedSolvers compared = compared_solvers_of(input);
   for (const QuotedScene& quoted : compared.scenes)

@@ -48,7 +48,7 @@ def main(binaries, out):
     scenes = {scene["id"]: scene for scene in model["scenes"]}
     for what, holds in {
         "some cases failed, and costs were measured": any(c["status"] == "extreme" for c in model["cases"]) and "cost" in model,
-        "each scene has its film": all(scenes[name].get("films") for name in ("hang", "ball", "disc", "twist")),
+        "each scene has its film": all(scenes[name].get("film") for name in ("hang", "ball", "disc", "twist")),
         "what no study ran is shown apart": not scenes["disc"]["studied"] and scenes["hang"]["studied"],
         "who refuses a scene says why": any("self-collision" in r["reason"] for r in scenes["twist"].get("refusals", [])),
         "both engines are in it": {s["id"] for s in model["solvers"]} == {"jakobsen", "bullet"},

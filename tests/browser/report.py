@@ -319,6 +319,20 @@ def answer(checks):
         marked = page.run(f"{body}.querySelectorAll('tr:not(.folded) .best').length")
         best = sum(n.get("best", False) and (n["row"] == len(table["rows"]) - 1 or each > 0) for n in table["notes"])
         checks.true(marked == best, f"{name}: the best are marked", [marked, best])
+    names = page.run("answered")
+    for scene in names:
+        page.run(f"(s => {{ s.value = {scene!r}; s.dispatchEvent(new Event('change')); }})(document.querySelector('.answer select'))")
+        page.settle()
+        wrong = []
+        for name, table in tables.items():
+            its = [row for row in table["rows"] if str(row[0]).split(" (")[0] == scene]
+            said = page.run(f"[...document.getElementById('answer-{name}').querySelectorAll('.question td')].map(td => td.innerText)")
+            lacking = its and sum(value is not None for value in its[0][1:]) != sum(map(bool, said))
+            wrong += [[name, said]] if lacking or not its and any(said) else []
+        checks.empty(wrong, f"{scene} chosen: each question has its cells and no others")
+    if len(names) > 1:
+        checks.true(page.run("state.get('scene')") == names[-1], "the choice is in the address")
+        page.run("state.set({scene: ''})")
     link = "document.querySelector('.answer .fold:not(.folded) .to-case')"
     page.run("state.set({open: 'stretch.rms'})")
     page.settle()
@@ -329,6 +343,25 @@ def answer(checks):
     dialog = page.run("document.querySelector('dialog').innerText")
     checks.true(entry["command"] in dialog and entry["key"] in label, "a click opens its case with the command", [label, dialog[:99]])
     page.press("Escape")
+
+
+def charts(checks):
+    """Of each quantity a figure with a panel for each scene, all on the same axes."""
+    page = checks.open()
+    specs = [c for c in page.run("model.charts.map(({id, kind, scene, x, y, zeros}) => ({id, kind, scene, zeros, x: x.metric, y: y.metric}))")
+             if c["kind"] not in ("series", "step")]
+    for quantity in dict.fromkeys(c["y"] for c in specs):
+        page.run(f"state.set({{chart: {quantity!r}}})")
+        page.settle()
+        for x in dict.fromkeys(c["x"] for c in specs if c["y"] == quantity):
+            own = [c for c in specs if (c["x"], c["y"]) == (x, quantity)]
+            panels = page.run("(ids => ids.map(id => document.getElementById(id)).map(p => p && [...p.querySelectorAll('.axis.y .tick')].map(t => "
+                              f"[t.textContent, t.getAttribute('transform')].join(' '))))({json.dumps(['chart-' + c['id'] for c in own])})")
+            drawn = [ticks for c, ticks in zip(own, panels, strict=True) if not c.get("zeros")]
+            checks.true(None not in panels and all(drawn), f"{quantity} over {x}: each scene has its panel", panels)
+            checks.true(len(set(map(tuple, drawn))) <= 1, f"{quantity} over {x}: on the same axis", drawn[:2])
+            same = page.run(f"new Set({json.dumps(['chart-' + c['id'] for c in own])}.map(id => document.getElementById(id).closest('figure'))).size")
+            checks.true(same == 1, f"{quantity} over {x}: in one figure under one key", same)
 
 
 def points(checks):
@@ -402,7 +435,7 @@ def without_script(checks):
     checks.true("JavaScript is off" in text and "taut report --json" in text, "and what is missing is said", text[:300])
 
 
-ALL = {f.__name__: f for f in (drawn, answer, layout, permalinks, table, points, switches, keyboard, films, prints, hostile, without_script)}
+ALL = {f.__name__: f for f in (drawn, answer, charts, layout, permalinks, table, points, switches, keyboard, films, prints, hostile, without_script)}
 
 
 def use(report, out, every, names=()):

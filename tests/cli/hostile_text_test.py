@@ -73,7 +73,7 @@ class HostileText(CommandLine):
         self.assertEqual(page.handlers, [])
         self.assertEqual(text.count("<script"), page.tags.count("script"))
         drawn = [line for line in self.taut("plot", study).out.splitlines()]
-        self.assertEqual(len(drawn), 2 * 2 * len(NAMES))
+        self.assertEqual(len(drawn), 2 * (1 + len(NAMES)), "a figure of all scenes, and a map of each")
         for file in drawn:
             self.assertGreater((self.folder / file).stat().st_size, 0)
             self.assertEqual(os.path.dirname(file).count(".."), 0)

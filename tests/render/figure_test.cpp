@@ -102,14 +102,14 @@ TEST(Figure, PanelsStandSideBySideFourInTwoRows) {
     double unit;
     int header, footer, panel_width, panel_height;
   };
-  for (const Page& page : {Page{1920, 1080, 1, 1, 1, 1, 118, 126, 1920, 836},
-                           Page{1920, 1080, 2, 2, 1, 1, 118, 126, 960, 836},
-                           Page{1920, 1080, 3, 3, 1, 1, 118, 126, 640, 836},
-                           Page{1920, 1080, 4, 2, 2, 1, 96, 126, 960, 381},
-                           Page{960, 1080, 2, 2, 1, 0.5, 59, 63, 480, 958},
-                           Page{960, 1080, 1, 1, 1, 0.8, 94, 101, 960, 885},
-                           Page{1920, 540, 1, 1, 1, 0.5, 59, 63, 1920, 418}}) {
-    const PageLayout is(page.width, page.height, page.panels);
+  for (const Page& page : {Page{1920, 1080, 1, 1, 1, 1, 66, 126, 1920, 888},
+                           Page{1920, 1080, 2, 2, 1, 1, 66, 126, 958, 888},
+                           Page{1920, 1080, 3, 3, 1, 1, 66, 126, 637, 888},
+                           Page{1920, 1080, 4, 2, 2, 1, 66, 126, 958, 409},
+                           Page{960, 1080, 2, 2, 1, 0.5, 33, 63, 479, 984},
+                           Page{960, 1080, 1, 1, 1, 0.8, 53, 101, 960, 926},
+                           Page{1920, 540, 1, 1, 1, 0.5, 33, 63, 1920, 444}}) {
+    const auto is = PageLayout::page(page.width, page.height, page.panels);
     SCOPED_TRACE(page.panels);
     EXPECT_EQ(is.columns, page.columns);
     EXPECT_EQ(is.rows, page.rows);
@@ -151,20 +151,21 @@ TEST(Figure, EveryRunStandsInItsPanelUnderTheDotOfItsColour) {
   }
   for (const std::size_t count : {4u, 3u, 1u}) {
     runs.resize(count);
-    const PageLayout layout(640, 480, static_cast<int>(count));
+    const auto layout = PageLayout::page(640, 480, static_cast<int>(count));
     SceneRendererOptions options = small();
     options.width = layout.panel_width, options.height = layout.panel_height;
     options.view = parse_view("top"), options.range = 0.05;
     const SceneRenderer renderer(scene, runs, options);
-    const Image page = compose(renderer, layout, 0.5);
+    const Image page = compose(renderer, layout, {0.5});
     EXPECT_EQ(std::pair(page.width(), page.height()), std::pair(640, 480));
     for (std::size_t k = 0; k < count; ++k) {
       const int column = count == 4 ? static_cast<int>(k % 2) : static_cast<int>(k),
-                row = count == 4 ? static_cast<int>(k / 2) : 0, left = column * layout.panel_width,
-                top = row * (layout.header + layout.panel_height);
+                row = count == 4 ? static_cast<int>(k / 2) : 0,
+                left = column * (layout.panel_width + layout.gap),
+                top = row * (layout.header + layout.panel_height + layout.gap);
       EXPECT_TRUE(holds(page, renderer.panel(k, 0.5), left, top + layout.header)) << k;
       EXPECT_EQ(page.at(left + static_cast<int>(45 * layout.unit),
-                        top + static_cast<int>(0.42 * layout.header - 9 * layout.unit)),
+                        top + static_cast<int>(0.62 * layout.header - 9 * layout.unit)),
                 runs[k].colour)
           << k;
     }
@@ -178,9 +179,10 @@ TEST(Figure, ASheetHasAColumnForEachRunAndARowForEachMoment) {
   options.width = 200, options.height = 160;
   const SceneRenderer renderer(scene, runs, options);
   const std::vector<double> times{0.25, 0.5, 1};
-  const Image page = compose_sheet(renderer, times);
-  const double unit = 160 / 400.0;
-  const int head = static_cast<int>(64 * unit), foot = static_cast<int>(96 * unit);
+  const auto layout = PageLayout::sheet(200, 160, 2, 3);
+  const Image page = compose(renderer, layout, times);
+  const int head = layout.header, foot = layout.footer;
+  EXPECT_EQ(std::pair(head, foot), std::pair(21, 39)) << "66 and 126 at a panel of 514";
   EXPECT_EQ(std::pair(page.width(), page.height()), std::pair(2 * 206 - 6, head + 3 * 166 + foot));
   for (int column = 0; column < 2; ++column) {
     const auto run = static_cast<std::size_t>(column);
@@ -188,8 +190,25 @@ TEST(Figure, ASheetHasAColumnForEachRunAndARowForEachMoment) {
       EXPECT_TRUE(holds(page, renderer.panel(run, times[static_cast<std::size_t>(row)]),
                         column * 206, head + row * 166))
           << column << ' ' << row;
-    EXPECT_EQ(page.at(column * 206 + static_cast<int>(26 * unit), static_cast<int>(34 * unit)),
+    EXPECT_EQ(page.at(column * 206 + static_cast<int>(45 * layout.unit),
+                      static_cast<int>(0.62 * head - 9 * layout.unit)),
               runs[run].colour);
+  }
+}
+
+TEST(Figure, TheSheetLaidFlatStandsInTheCornerUnlessItWouldHideSomeOfACloth) {
+  const Scene scene = test::level_sheet(9);
+  const std::vector<RecordedRun> runs{test::stretched(scene, 0), test::stretched(scene, 0.01)};
+  const auto layout = PageLayout::bare(400, 160, 2);
+  for (const bool hides : {false, true}) {
+    SceneRendererOptions options = small();
+    options.width = layout.panel_width, options.height = layout.panel_height;
+    options.view = parse_view("top");
+    const double edge = hides ? 1 : 0.4;
+    options.frame = {.left = -edge, .right = edge, .bottom = -edge, .top = edge};
+    const Image picture = compose(SceneRenderer(scene, runs, options), layout, {0.5});
+    for (const int panel : {0, 1})  // a fifth of the height wide, a 28th from the edges: its rim
+      EXPECT_EQ(picture.at(panel * 200 + 196, 20) == rgb(0x4A5361), !hides) << panel;
   }
 }
 

@@ -260,7 +260,7 @@ TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
     if (frame.t > 0.5)
       for (Vec3& x : frame.state.x) x.y() -= 20;
   const std::vector<RecordedRun> runs{test::draped(scene, 7), gone};
-  const PageLayout layout(640, 360, 2);
+  const auto layout = PageLayout::page(640, 360, 2);
   SceneRendererOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
   const SceneRenderer renderer(scene, runs, options);
@@ -271,10 +271,11 @@ TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
   Image empty = renderer.panel(1, 1), marked = empty;
   mark_absence(marked, renderer, 1, 1, layout.unit);
   EXPECT_GT(difference(empty, marked).largest, 100);
-  const Image page = compose(renderer, layout, 1);
-  const int x = layout.panel_width + static_cast<int>(24 * layout.unit),
-            y = layout.header + layout.panel_height - static_cast<int>(40 * layout.unit);
-  EXPECT_EQ(page.at(x + 8, y), marked.at(x + 8 - layout.panel_width, y - layout.header));
+  const Image page = compose(renderer, layout, {1});
+  const auto [left, top] = layout.corner(1, 0);
+  const int x = static_cast<int>(24 * layout.unit) + 8,
+            y = layout.panel_height - static_cast<int>(40 * layout.unit);
+  EXPECT_EQ(page.at(left + x, top + y), marked.at(x, y));
 }
 
 TEST(SceneRenderer, VerticesAreProjectedToWhereTheyAreDrawn) {
@@ -417,11 +418,11 @@ TEST(RecordedRun, AnExplodedPanelIsMarked) {
   run = recorded_run(scene, run.trajectory);
   run.title = "Analytic", run.stop->why = "exploded";
   const std::vector<RecordedRun> runs{run};
-  const PageLayout layout(480, 360, 1);
+  const auto layout = PageLayout::page(480, 360, 1);
   SceneRendererOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
   const SceneRenderer renderer(scene, runs, options);
-  const Image before = compose(renderer, layout, 0.2), after = compose(renderer, layout, 0.9);
+  const Image before = compose(renderer, layout, {0.2}), after = compose(renderer, layout, {0.9});
   const Rgb8 alarm = rgb(0xB3261E);
   EXPECT_EQ(share_of(before, alarm), 0);
   EXPECT_GT(share_of(after, alarm), 0.01);
@@ -440,11 +441,11 @@ void expect_golden(const std::string& name, const Image& picture) {
 TEST(Golden, FigureOfTwoRuns) {
   const Scene scene = test::sheet_over_ball(17);
   const std::vector<RecordedRun> runs{test::draped(scene, 5), test::draped(scene, 8)};
-  const PageLayout layout(640, 360, 2);
+  const auto layout = PageLayout::page(640, 360, 2);
   SceneRendererOptions options = small();
   options.width = layout.panel_width, options.height = layout.panel_height;
   const SceneRenderer renderer(scene, runs, options);
-  expect_golden("figure", compose(renderer, layout, 1));
+  expect_golden("figure", compose(renderer, layout, {1}));
 }
 
 TEST(Golden, SheetOfSpeedsInTheDarkTheme) {
@@ -453,7 +454,8 @@ TEST(Golden, SheetOfSpeedsInTheDarkTheme) {
   SceneRendererOptions options = small(ColourBy::speed);
   options.theme = Theme::dark();
   const SceneRenderer renderer(scene, runs, options);
-  expect_golden("sheet", compose_sheet(renderer, {0, 0.5, 1}));
+  const auto layout = PageLayout::sheet(options.width, options.height, 1, 3);
+  expect_golden("sheet", compose(renderer, layout, {0, 0.5, 1}));
 }
 
 }  // namespace

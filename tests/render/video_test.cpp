@@ -62,12 +62,12 @@ TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
   if (!on_path("ffmpeg")) GTEST_SKIP() << "no ffmpeg";
   const Scene scene = test::sheet_over_ball(17);
   const std::vector<RecordedRun> runs{test::draped(scene, 5), test::draped(scene, 8)};
-  const PageLayout layout(640, 360, 2);
+  const auto layout = PageLayout::page(640, 360, 2);
   SceneRendererOptions look;
   look.width = layout.panel_width, look.height = layout.panel_height;
   look.quality = RenderQuality::draft();
   const SceneRenderer renderer(scene, runs, look);
-  const Image still = compose(renderer, layout, 1);
+  const Image still = compose(renderer, layout, {1});
   VideoWriter video(folder_ / "v.mp4", {640, 360, {32, 1}, 22});
   for (int k = 0; k < 8; ++k) ASSERT_TRUE(video.write(still));
   ASSERT_EQ(video.finish(), "");
@@ -97,8 +97,6 @@ TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
   EXPECT_EQ(media.poster.substr(0, 2), "\xFF\xD8");
   EXPECT_EQ(media.rms_strain.size(), 2u);
   EXPECT_EQ(media.rms_strain[0].size(), media.t.size());
-  ASSERT_EQ(media.material.size(), media.rms_strain.size());
-  EXPECT_EQ(media.material[0].size(), 4u);
   EXPECT_EQ(media.mp4, render_media(scene, runs, quick()).mp4);
   // the cloth moves all the time: each frame is another picture
   std::ofstream(folder_ / "film.mp4", std::ios::binary) << media.mp4;
@@ -252,21 +250,6 @@ TEST_F(Posters, HaveTheRunsFromLeftToRightAndTheirClothLaidFlat) {
       differ += left.at(x, y) != left.at(x + 120, y);
     }
   EXPECT_GT(differ, 100u);
-  EXPECT_EQ(first.aspect, 2);
-  ASSERT_EQ(first.material.size(), 2u);
-  for (std::size_t run = 0; run < 2; ++run) {
-    ASSERT_EQ(first.material[run].size(), 4u);
-    std::size_t m = 0;
-    for (const std::size_t k : {2u, 7u, 14u, 21u}) {  // of 22: an eighth, thirds, the end
-      const Media::Flat& flat = first.material[run][m++];
-      EXPECT_EQ(flat.t, first.t[k]);
-      EXPECT_EQ(flat.rms, first.rms_strain[run][k]);
-      const Image image = decoded(flat.png);
-      EXPECT_EQ(std::pair(image.width(), image.height()), std::pair(56, 28));
-      const double strain = (run == 0 ? 0.02 : -0.01) * flat.t;
-      EXPECT_EQ(image.at(28, 14), first.scale.colour(strain)) << run << ' ' << k;
-    }
-  }
 }
 
 Record ran(const std::string& scene, const std::string& solver, const Status& status = {}) {
@@ -305,8 +288,7 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
   for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(input.media[k + 1].speed, thrown[k].second) << k;
   const report::SceneMedia &first = input.media[0], &other = input.media[1];
   EXPECT_EQ(first.scene, "small");
-  ASSERT_EQ(first.clips.size(), 1u);
-  const report::Clip& clip = first.clips[0];
+  const report::Clip& clip = first.clip;
   ASSERT_EQ(clip.panels.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_EQ(clip.panels[k].key, input.studies[0].records[k].key);
@@ -326,7 +308,6 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
   EXPECT_EQ(first.duration, 15 / 64.0);
   EXPECT_EQ(first.frame, 3 / 64.0);
   EXPECT_EQ(first.speed, 1);
-  EXPECT_EQ(first.aspect, 2);
   ASSERT_EQ(first.bar["stops"].size(), 17u);
   for (const auto& [stop, at] : {std::pair{0, 0.0}, {4, 0.25}, {8, 0.5}, {16, 1.0}}) {
     const Rgb8 c = ColourMap::diverging().at(at);
@@ -339,16 +320,12 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
   EXPECT_EQ(right["at"], 1);
   EXPECT_TRUE(left["text"].get<std::string>().starts_with("\u2212"));
   EXPECT_TRUE(right["text"].get<std::string>().starts_with("+"));
-  ASSERT_EQ(first.material.size(), 2u);
-  EXPECT_EQ(first.material[1].solver, "jakobsen");
-  EXPECT_EQ(first.material[1].stills.size(), 4u);
-  EXPECT_EQ(first.material[1].stills.back().t, first.duration);
   EXPECT_EQ(other.scene, "thrown4");
   EXPECT_TRUE(other.refused.empty());
-  EXPECT_EQ(other.clips.at(0).panels.size(), 3u) << "whoever can";
-  EXPECT_EQ(other.clips[0].panels[0].key, "") << "no study ran it";
+  EXPECT_EQ(other.clip.panels.size(), 3u) << "whoever can";
+  EXPECT_EQ(other.clip.panels[0].key, "") << "no study ran it";
   EXPECT_EQ(other.duration, 1.5) << "three seconds of film";
-  const Image wide = decoded(other.clips[0].bytes);
+  const Image wide = decoded(other.clip.bytes);
   EXPECT_EQ(std::pair(wide.width(), wide.height()), std::pair(702, 320));
   ASSERT_FALSE(input.series.empty());
   for (const report::TimeSeries& series : input.series)
@@ -361,20 +338,30 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
   ASSERT_EQ(again.media.size(), input.media.size());
   for (std::size_t k = 0; k < again.media.size(); ++k) {
     const report::SceneMedia &a = input.media[k], &b = again.media[k];
-    EXPECT_EQ(std::tie(a.scene, a.summary, a.duration, a.speed, a.aspect, a.frame, a.poster, a.bar,
-                       a.refused),
-              std::tie(b.scene, b.summary, b.duration, b.speed, b.aspect, b.frame, b.poster, b.bar,
-                       b.refused));
-    EXPECT_EQ(a.clips[0].bytes, b.clips[0].bytes);
-    EXPECT_EQ(a.clips[0].alt, b.clips[0].alt);
-    EXPECT_EQ(a.clips[0].panels.size(), b.clips[0].panels.size());
-    ASSERT_EQ(a.material.size(), b.material.size());
-    for (std::size_t i = 0; i < a.material.size(); ++i)
-      EXPECT_EQ(a.material[i].stills[3].png, b.material[i].stills[3].png);
+    EXPECT_EQ(
+        std::tie(a.scene, a.summary, a.duration, a.speed, a.frame, a.poster, a.bar, a.refused),
+        std::tie(b.scene, b.summary, b.duration, b.speed, b.frame, b.poster, b.bar, b.refused));
+    EXPECT_EQ(a.clip.bytes, b.clip.bytes);
+    EXPECT_EQ(a.clip.alt, b.clip.alt);
+    EXPECT_EQ(a.clip.panels.size(), b.clip.panels.size());
   }
   ASSERT_EQ(again.series.size(), input.series.size());
   for (std::size_t k = 0; k < again.series.size(); ++k)
     EXPECT_EQ(again.series[k].t, input.series[k].t);
+  // What is damaged is made once more.
+  for (const auto& entry : fs::directory_iterator(scratch.path() / "films"))
+    if (entry.path().string().ends_with("-poster.jpg") ||
+        entry.path().string().ends_with("-poster.png")) {
+      std::ofstream(entry.path()) << "cut";
+      break;
+    }
+  std::vector<std::string> mended;
+  again.media.clear(), again.series.clear();
+  film_scenes(again, others, scratch.path() / "films",
+              [&](const std::string& said) { mended.push_back(said); });
+  EXPECT_EQ(mended.size(), 1u);
+  ASSERT_EQ(again.media.size(), input.media.size());
+  EXPECT_EQ(again.media[0].clip.poster, input.media[0].clip.poster);
   // Another case is another film.
   again.studies[0].records[0] = ran(small, "xpbd:substeps=1,iterations=3");
   std::vector<std::string> made;

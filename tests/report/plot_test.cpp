@@ -27,8 +27,8 @@ class Plots : public ::testing::Test {
   void SetUp() override { fs::remove_all(dir_); }
   void TearDown() override { fs::remove_all(dir_); }
   PlotFiles draw(const PlotSpec& spec, const std::vector<Record>& records,
-                 const std::vector<TimeSeries>& series = {}) {
-    return make_plot(spec, records, series, dir_);
+                 const std::vector<TimeSeries>& series = {}, std::optional<double> slope = {}) {
+    return make_plot(spec, {{"", records, series, slope}}, dir_);
   }
   static std::size_t count(const std::string& text, const std::string& what) {
     std::size_t n = 0;
@@ -77,16 +77,44 @@ TEST_F(Plots, AFailedCaseIsAMarkAndARowNeverAGap) {
   EXPECT_NE(read_text(plot.svg).find("above: exploded"), std::string::npos);
 }
 
-TEST_F(Plots, ALongKeyStandsBesideThePlot) {
-  std::vector<Record> records;
-  for (const char* solver : {"a", "b", "c", "d", "e", "f", "g", "h", "i"})
-    for (Record r : synthetic::iterations("hang"))
-      if (r.solver == "jakobsen") r.solver = solver, records.push_back(r);
-  const std::string few =
-                        read_text(draw({.kind = "convergence"}, synthetic::iterations("hang")).gp),
-                    many = read_text(draw({.kind = "convergence"}, records).gp);
-  EXPECT_NE(few.find("set key tmargin"), std::string::npos);
-  EXPECT_NE(many.find("set key rmargin"), std::string::npos);
+// Nine solvers, of which each would be a row of each panel's key.
+TEST_F(Plots, PanelsShareTheirAxesAndOneKeyThatTakesNoneOfTheirRoom) {
+  std::vector<PlotPanel> panels;
+  std::vector<std::vector<Record>> all;
+  for (const char* scene : {"hang", "ball", "box"}) {
+    std::vector<Record>& records = all.emplace_back();
+    for (const char* solver : {"a", "b", "c", "d", "e", "f", "g", "h", "i"})
+      for (Record r : synthetic::iterations("hang"))
+        if (r.solver == "jakobsen") r.scene = scene, r.solver = solver, records.push_back(r);
+  }
+  for (Record& r : all[1])
+    if (r.status.kind == Status::Kind::ok) r.values["stretch.rms"] *= 100;
+  all[2][3].values["stretch.rms"] = 1e-14;  // as far below the others as rounding
+  for (const std::vector<Record>& records : all) panels.push_back({records.front().scene, records});
+  panels.push_back({"empty", {}});
+  const PlotFiles plot = make_plot({.kind = "convergence", .file = "three"}, panels, dir_);
+  EXPECT_EQ(plot.without,
+            (std::vector<std::string>{"empty: no case has both 'iterations' and 'stretch.rms'"}));
+  const std::string gp = read_text(plot.gp), key = gp.substr(gp.find("# The key"));
+  const auto number = [&](const std::string& after) {
+    return std::stod(gp.substr(gp.find(after) + after.size()));
+  };
+  EXPECT_EQ(count(gp, "set yrange ["), 1U);
+  EXPECT_EQ(count(gp, "set xrange ["), 1U);
+  EXPECT_EQ(count(gp, "\nplot '"), 3U);
+  for (const char* scene : {"hang", "ball", "box"})
+    EXPECT_EQ(count(gp, "set title '" + std::string(scene) + "'\n"), 1U);
+  for (const char* solver : {"A", "I"})
+    EXPECT_EQ(count(key, " title '" + std::string(solver) + "'"), 1U) << "once for all panels";
+  EXPECT_EQ(count(key, "keyentry"), 10U) << "nine, and what is too small";
+  EXPECT_EQ(count(gp, " title '"), 3U + 10U + 1U) << "no panel has a key of its own";
+  EXPECT_EQ(count(key, "below: zero, or less than "), 1U);
+  EXPECT_GT(number("set yrange ["), 1e-10) << "one point does not flatten the others";
+  // The figure is wider by its key: two panels beside each other keep theirs.
+  EXPECT_GE(number("margins char 10, screen ") * number("svg noenhanced size "), 600);
+  const std::string csv = read_text(plot.csv);
+  for (const char* scene : {"hang", "ball", "box"})
+    EXPECT_EQ(count(csv, "," + std::string(scene) + "\n"), all[0].size());
 }
 
 TEST_F(Plots, ExactZerosStayOnTheFloorOfALogarithmicAxis) {
@@ -98,7 +126,8 @@ TEST_F(Plots, ExactZerosStayOnTheFloorOfALogarithmicAxis) {
 /// The commands of a script's plot, one a curve.
 std::vector<std::string> drawn_by(const std::string& script) {
   std::vector<std::string> all;
-  std::string rest = script.substr(script.find("\nplot ") + 6);
+  std::string rest = script.substr(0, script.find("# The key"));
+  rest = rest.substr(rest.find("\nplot ") + 6);
   for (std::size_t at; (at = rest.find(", \\\n  ")) != rest.npos; rest = rest.substr(at + 6))
     all.push_back(rest.substr(0, at));
   all.push_back(rest.substr(0, rest.find('\n')));
@@ -131,21 +160,21 @@ TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) 
                           made("j16", "jakobsen", 16, 0),  made("b1", "bullet", 1, 0.3),
                           made("b4", "bullet", 4, 0.1),    made("b,16", "bullet", 16, 0.05)};
   synthetic::fail(all[4], Status::Kind::exploded, "energy");
-  const PlotFiles plot =
-      draw({.kind = "convergence", .title = "Two", .file = "one", .slope = -1}, all);
+  const PlotFiles plot = draw({.kind = "convergence", .title = "Two", .file = "one"}, all, {}, -1);
   EXPECT_EQ(read_text(plot.csv),
-            "curve,solver,label,x,y,status,reason,failed,setting,case\n"
-            "0,jakobsen,Jakobsen,1,0.08,ok,,no,1 × 1,j1\n"
-            "0,jakobsen,Jakobsen,4,0.02,ok,,no,1 × 4,j4\n"
-            "0,jakobsen,Jakobsen,16,0,ok,,no,1 × 16,j16\n"
-            "1,bullet,Bullet,1,0.3,ok,,no,1 × 1,b1\n"
-            "1,bullet,Bullet,4,,exploded,energy,yes,1 × 4,b4\n"
-            "1,bullet,Bullet,16,0.05,ok,,no,1 × 16,\"b,16\"\n");
+            "curve,solver,label,x,y,status,reason,failed,setting,case,scene\n"
+            "0,jakobsen,Jakobsen,1,0.08,ok,,no,1 × 1,j1,hang\n"
+            "0,jakobsen,Jakobsen,4,0.02,ok,,no,1 × 4,j4,hang\n"
+            "0,jakobsen,Jakobsen,16,0,ok,,no,1 × 16,j16,hang\n"
+            "1,bullet,Bullet,1,0.3,ok,,no,1 × 1,b1,hang\n"
+            "1,bullet,Bullet,4,,exploded,energy,yes,1 × 4,b4,hang\n"
+            "1,bullet,Bullet,16,0.05,ok,,no,1 × 16,\"b,16\",hang\n");
   const std::string gp = read_text(plot.gp);
   EXPECT_TRUE(
       gp.starts_with("# convergence: stretch.rms over iterations\n# Again: gnuplot -e \"set "
-                     "terminal svg noenhanced; set output 'one.svg'\" one.gp\n"));
-  EXPECT_EQ(line_of(gp, "set title"), "set title 'Two'");
+                     "terminal svg noenhanced size "));
+  EXPECT_NE(gp.find("; set output 'one.svg'\" one.gp\n"), std::string::npos);
+  EXPECT_TRUE(line_of(gp, "set multiplot").starts_with("set multiplot layout 1,1 title 'Two' "));
   EXPECT_EQ(line_of(gp, "set xlabel"), "set xlabel 'sweeps per substep'");
   EXPECT_EQ(line_of(gp, "set ylabel"), "set ylabel 'RMS stretch [%]'");
   EXPECT_EQ(line_of(gp, "set logscale x"), "set logscale x");
@@ -161,27 +190,34 @@ TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) 
   const auto drawn = drawn_by(gp);
   ASSERT_EQ(drawn.size(), 5u);
   EXPECT_EQ(drawn[0], rows(0, "no") + "(column(5) > 0 ? column(5)*100 : NaN) with linespoints" +
-                          look("jakobsen") + " title 'Jakobsen'");
+                          look("jakobsen") + " notitle");
   const auto ink = [](const char* solver) {
-    return " lc rgb '" + std::string(solver_style(solver).colour.light) + "' title '";
+    return " lc rgb '" + std::string(solver_style(solver).colour.light) + "' notitle";
   };
   const auto part = [](const std::string& text, const std::string& from, const std::string& to) {
     const auto at = text.find(from) + from.size();
     return text.substr(at, text.find(to, at) - at);
   };
-  EXPECT_EQ(drawn[1].find(rows(0, "no") + "(column(5) == 0 ? "), 0u);
-  EXPECT_NEAR(std::stod(part(drawn[1], "(column(5) == 0 ? ", " :")), 2.0 / 3, 1e-12) << "the floor";
-  EXPECT_TRUE(drawn[1].ends_with(": NaN) with points pt 10 ps 1.2" + ink("jakobsen") +
-                                 "below: exactly zero'"));
+  const std::string zero = "(column(5) >= 0 && !(column(5) > 0) ? ";
+  EXPECT_EQ(drawn[1].find(rows(0, "no") + zero), 0u);
+  EXPECT_NEAR(std::stod(part(drawn[1], zero, " :")), 2.0 / 3, 1e-12) << "the floor";
+  EXPECT_TRUE(drawn[1].ends_with(": NaN) with points pt 10 ps 1.2" + ink("jakobsen")));
   EXPECT_EQ(drawn[2], rows(1, "no") + "(column(5) > 0 ? column(5)*100 : NaN) with linespoints" +
-                          look("bullet") + " title 'Bullet'");
-  EXPECT_EQ(drawn[3], rows(1, "yes") + "(90) with points pt 2 ps 1.2 lw 2" + ink("bullet") +
-                          "above: exploded'");
+                          look("bullet") + " notitle");
+  EXPECT_EQ(drawn[3], rows(1, "yes") + "(90) with points pt 2 ps 1.2 lw 2" + ink("bullet"));
   // 0.6 of the least y x, 0.08, in per cent
   EXPECT_EQ(drawn[4].find("[1:16] "), 0u);
   EXPECT_NEAR(std::stod(drawn[4].substr(7)), 4.8, 1e-12);
   EXPECT_EQ(drawn[4].substr(drawn[4].find('*')),
-            "*(x/1)**-1 with lines dt (4,4) lc rgb '#5B6472' title 'theory: slope -1'");
+            "*(x/1)**-1 with lines dt (4,4) lc rgb '#5B6472' notitle");
+  const std::string grey = " lc rgb '#5B6472' title '";
+  EXPECT_TRUE(
+      gp.ends_with("plot [0:1][0:1] NaN notitle, \\\n  keyentry with linespoints" +
+                   look("jakobsen") + " title 'Jakobsen', \\\n  keyentry with points pt 10 ps 1.2" +
+                   grey + "below: exactly zero', \\\n  keyentry with linespoints" + look("bullet") +
+                   " title 'Bullet', \\\n  keyentry with points pt 2 ps 1.2 lw 2" + grey +
+                   "above: exploded', \\\n  keyentry with lines dt (4,4)" + grey +
+                   "theory: slope -1'\nunset multiplot\n"));
 }
 
 TEST_F(Plots, AxesAreAsTheirUnitsSayAndAFloorAndAFrontAreDrawnInThem) {
@@ -194,8 +230,7 @@ TEST_F(Plots, AxesAreAsTheirUnitsSayAndAFloorAndAFrontAreDrawnInThem) {
     all.push_back(r);
   }
   const std::string gp = read_text(
-      draw({.kind = "convergence", .x = "dt", .y = "reference.rms", .file = "floor", .slope = 2},
-           all)
+      draw({.kind = "convergence", .x = "dt", .y = "reference.rms", .file = "floor"}, all, {}, 2)
           .gp);
   const Unit unit = quantity("reference.rms").unit;
   EXPECT_EQ(line_of(gp, "set xtics"), "set xtics ('2' 2, '4' 4, '8' 8)");
@@ -218,8 +253,8 @@ TEST_F(Plots, AxesAreAsTheirUnitsSayAndAFloorAndAFrontAreDrawnInThem) {
   const std::string range = line_of(linear, "set yrange");
   EXPECT_NEAR(std::stod(range.substr(12)), -0.3, 1e-12);
   EXPECT_NEAR(std::stod(range.substr(range.find(':') + 1)), 0.5 + 0.12 * 0.8, 1e-12);
-  EXPECT_NE(linear.find("$front << EOD\n"), std::string::npos);
-  const std::string front = linear.substr(linear.find("$front << EOD\n") + 14);
+  EXPECT_NE(linear.find("$front1 << EOD\n"), std::string::npos);
+  const std::string front = linear.substr(linear.find("$front1 << EOD\n") + 15);
   EXPECT_TRUE(front.starts_with("125 0.5\n250 -0.09")) << front.substr(0, 40);
 }
 
@@ -240,7 +275,7 @@ TEST_F(Plots, AMapHasItsTicksItsColoursAndItsGlyphsInEachPanel) {
                       "0,jakobsen,Jakobsen,0.01,4,0,1,ok,,c3\n"))
       << csv;
   EXPECT_NE(csv.find("1,bullet,Bullet,0.02,16,1,2,ok,,c8\n"), std::string::npos) << csv;
-  EXPECT_EQ(line_of(gp, "set multiplot"), "set multiplot layout 1,2 title 'Maps'");
+  EXPECT_TRUE(line_of(gp, "set multiplot").starts_with("set multiplot layout 1,2 title 'Maps' "));
   EXPECT_EQ(line_of(gp, "set xlabel"), "set xlabel 'time step [ms]'");
   EXPECT_EQ(line_of(gp, "set ylabel"), "set ylabel 'sweeps per substep'");
   EXPECT_EQ(count(gp, "set xtics ('10' 0, '20' 1)\nset xrange [-0.5:1.5]\n"), 2u);
@@ -253,8 +288,9 @@ TEST_F(Plots, AMapHasItsTicksItsColoursAndItsGlyphsInEachPanel) {
                   " && strcol(8) eq '" + name + "' ? column(6) : NaN):7:";
       EXPECT_EQ(count(gp, "set title '" + std::string(title) + "'"), 1u);
       EXPECT_EQ(count(gp, cells + "(0.45):(0.45) with boxxyerror fs solid 1 noborder lc rgb '" +
-                              std::string(style.colour.light) + "' title '" + name + "'"),
+                              std::string(style.colour.light) + "' notitle"),
                 1u);
+      EXPECT_EQ(count(gp, "' title '" + name + "'"), 1u) << "in the key, once";
       EXPECT_EQ(count(gp, cells + "('" + std::string(style.glyph) + "') with labels tc rgb '" +
                               std::string(style.ink.light) + "' notitle"),
                 1u);
@@ -268,16 +304,16 @@ TEST_F(Plots, SeriesAreDrawnAsTheyAreAndProfilesUpToTheLargestFactor) {
       {"hang", "jakobsen", "C", "stretch.rms", {0, 1}, {0.03, 0.04}, "", 1e-7}};
   const PlotFiles plot = draw({.kind = "series", .file = "t"}, {}, series);
   EXPECT_EQ(read_text(plot.csv),
-            "curve,solver,label,x,y,status,reason,failed,setting,case\n"
-            "0,jakobsen,A,0,0.01,ok,,no,,k\n0,jakobsen,A,0.5,,ok,,no,,k\n"
-            "0,jakobsen,A,1,0.02,ok,,no,,k\n1,jakobsen,C,0,0.03,ok,,no,,\n"
-            "1,jakobsen,C,1,0.04,ok,,no,,\n");
+            "curve,solver,label,x,y,status,reason,failed,setting,case,scene\n"
+            "0,jakobsen,A,0,0.01,ok,,no,,k,hang\n0,jakobsen,A,0.5,,ok,,no,,k,hang\n"
+            "0,jakobsen,A,1,0.02,ok,,no,,k,hang\n1,jakobsen,C,0,0.03,ok,,no,,,hang\n"
+            "1,jakobsen,C,1,0.04,ok,,no,,,hang\n");
   const auto drawn = drawn_by(read_text(plot.gp));
   ASSERT_EQ(drawn.size(), 3u);
   const std::string ink = "lc rgb '" + std::string(solver_style("jakobsen").colour.light) + "' dt ";
   EXPECT_NE(drawn[0].find("(column(5)*100) with lines lw 1.5 " + ink), std::string::npos);
-  EXPECT_TRUE(drawn[0].ends_with(" title 'A'"));
-  EXPECT_TRUE(drawn[1].ends_with(" dt (7,4) title 'C'")) << "another dash of the same solver";
+  EXPECT_TRUE(drawn[1].ends_with(" dt (7,4) notitle")) << "another dash of the same solver";
+  EXPECT_EQ(count(read_text(plot.gp), " dt (7,4) title 'C'"), 1u);
   EXPECT_NEAR(std::stod(drawn[2]), 1e-5, 1e-18) << "the rounding of its file";
 
   StudyBench bench{"trade", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
@@ -314,7 +350,7 @@ TEST_F(Plots, SeriesAreDrawnAsTheyAreAndProfilesUpToTheLargestFactor) {
                           "NaN):(100*column(4)) with steps lw 2 lc rgb '" +
                           std::string(solver_style("bullet").colour.light) + "'"),
             0u);
-  EXPECT_TRUE(steps[1].ends_with(" title 'Bullet'"));
+  EXPECT_EQ(count(gp, " title 'Bullet'"), 1u);
 }
 
 TEST_F(Plots, AllZeroAllFailedAndNan) {
@@ -392,18 +428,16 @@ TEST(Curves, LabelsNameOnlyWhatVariesAndCurvesKeepTheirSolver) {
   EXPECT_EQ(curves[2].label, "Bullet");
 }
 
-TEST(Curves, TwoTimeStepsAreTwoSetsOfCurvesManyAreHeldAtOne) {
-  const auto all = synthetic::time_steps("hang");
-  auto few = all;
+TEST(Curves, TwoTimeStepsAreTwoSetsOfCurves) {
+  auto few = synthetic::time_steps("hang");
   std::erase_if(few, [](const Record& r) { return r.dt != 0.001 && r.dt != 0.002; });
-  const Slice both = hold(few, "dt", 1.0 / 64), one = hold(all, "dt", 1.0 / 64);
-  EXPECT_TRUE(std::isnan(both.value));
-  EXPECT_EQ(one.value, 1.0 / 64);
   std::set<std::string> labels;
-  for (const Curve& c : make_curves(both.records, "iterations", "stretch.rms", "iterations"))
+  for (const Curve& c : make_curves(few, "iterations", "stretch.rms", "iterations"))
     labels.insert(c.label);
   EXPECT_EQ(labels, (std::set<std::string>{"Jakobsen 1.00\u00A0ms", "Jakobsen 2.00\u00A0ms",
                                            "Bullet 1.00\u00A0ms", "Bullet 2.00\u00A0ms"}));
+  const auto all = synthetic::time_steps("hang");
+  const Slice one = hold(all, "dt", 1.0 / 64);
   EXPECT_EQ(make_curves(one.records, "iterations", "stretch.rms", "iterations").size(), 2U);
 }
 

@@ -110,7 +110,7 @@ TEST(Report, NamesFromOutsideStayText) {
 
 TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   const Json model = model_of(example());
-  EXPECT_EQ(model["schema"], "taut-report/3");
+  EXPECT_EQ(model["schema"], "taut-report/4");
   for (const char* part : {"meta", "solvers", "statuses", "metrics", "answer", "scenes", "charts",
                            "maps", "tables", "method", "missing", "cases"})
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;
@@ -136,7 +136,7 @@ void check_references(const Json& model) {
       EXPECT_TRUE(ids.contains(id.get<std::string>())) << id;
   };
   for (const Json& scene : model["scenes"])
-    for (const char* list : {"films", "charts", "maps", "tables"}) named(scene, list);
+    for (const char* list : {"charts", "maps", "tables"}) named(scene, list);
   if (model.contains("cost")) named(model["cost"], "tables");
   const auto known_case = [&](const Json& key) {
     EXPECT_TRUE(cases.contains(key.get<std::string>())) << key;
@@ -231,22 +231,22 @@ TEST(Model, SolversStandInTheOrderOfTheStudy) {
   EXPECT_EQ(solvers[0]["colour"], model_of(example())["solvers"][1]["colour"]);
 }
 
-TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndWhatStaysZeroLast) {
+TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndNothingThatStaysZero) {
   ReportInput input = example();
-  input.media = {{.scene = "ball", .clips = {{.type = "image/png", .bytes = "x", .panels = {}}}}};
+  input.media = {{.scene = "ball", .clip = {.type = "image/png", .bytes = "x", .panels = {}}}};
   input.media[0].duration = 2.5;
   for (const auto& [value, y] : {std::pair{"penetration.max", 1e-10}, {"slip.distance", 0.1}})
     input.series.push_back({"ball", "bullet", "Bullet", value, {0, 1, 2}, {0, y, y}});
   const Json model = model_of(input);
   std::vector<std::string> shown;
   for (const Json& track : model["films"][0]["tracks"]) shown.push_back(track["metric"]);
-  EXPECT_EQ(shown, (std::vector<std::string>{"slip.distance", "stretch.rms", "penetration.max"}));
+  EXPECT_EQ(shown, (std::vector<std::string>{"slip.distance", "stretch.rms"}));
 }
 
 TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {
   ReportInput input = example();
   const Clip clip{.type = "video/mp4", .bytes = std::string(4'000'000, 'x'), .panels = {}};
-  input.media = {{.scene = "ball", .clips = {clip, clip}}};
+  input.media = {{.scene = "ball", .clip = clip}, {.scene = "hang", .clip = clip}};
   const Json films = model_of(input)["films"];
   ASSERT_EQ(films.size(), 2U);
   EXPECT_TRUE(films[0].contains("src"));

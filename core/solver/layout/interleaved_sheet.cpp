@@ -91,55 +91,111 @@ Layout interleaved_layout(const SheetSides& grid) {
   return Layout::interleaved(std::move(slots), sheet);
 }
 
+namespace {
+
+/// What the sweep needs of one direction, but for its shares; `multipliers` of compliant links.
+template <class Real>
+SheetDirection<Real> direction_of(const RegularLinks::Direction& links, int rows,
+                                  Real* multipliers) {
+  return {.left = links.columns < 0 ? links.rows : 0,
+          .right = links.columns < 0 ? 0 : links.rows,
+          .columns = std::abs(links.columns),
+          .rows = rows - links.rows,
+          .rest = static_cast<Real>(std::max(links.rest, kTinyLength)),
+          .equal_share = 0,
+          .multiplier_share = 0,
+          .multipliers = multipliers,
+          .row = nullptr};
+}
+
+/// Shares of each link of a direction: of its left and its right end, and of its multiplier.
+template <class Real>
+class LinkShares {
+ public:
+  LinkShares(const SheetSides& grid, std::span<const double> w, const SheetDirection<Real>& links,
+             double omega, double soft)
+      : grid_(grid), w_(w), links_(links), omega_(omega), soft_(soft) {}
+
+  std::array<Real, 3> operator()(int i, int j) const {
+    const double left = w_[to_index(grid_.index(i, j + links_.left))],
+                 right = w_[to_index(grid_.index(i + links_.columns, j + links_.right))];
+    if (left + right == 0) return {};
+    const double all = left + right + soft_;
+    return {static_cast<Real>(omega_ * (left / all)), static_cast<Real>(omega_ * (right / all)),
+            static_cast<Real>(soft_ / all)};
+  }
+
+  /// Those of row j as they lie in memory, [K][ends][lanes]; links between equal masses vote for
+  /// what most of them have.
+  std::vector<Real> row(int j, int lanes, int vectors,
+                        std::map<std::pair<Real, Real>, int>& votes) const {
+    const int ends = links_.multipliers ? 3 : 2;
+    std::vector<Real> row(to_index(ends * lanes * vectors), Real(0));
+    for (int i = 0; i + links_.columns < grid_.columns; ++i) {
+      const int k = i % vectors, lane = i / vectors;
+      const auto of_link = (*this)(i, j);
+      for (int e = 0; e < ends; ++e)
+        row[to_index((ends * k + e) * lanes + lane)] = of_link[to_index(e)];
+      if (of_link[0] == of_link[1]) ++votes[{of_link[0], of_link[2]}];
+    }
+    return row;
+  }
+
+ private:
+  const SheetSides& grid_;
+  std::span<const double> w_;
+  const SheetDirection<Real>& links_;
+  double omega_, soft_;
+};
+
+/// Whether all links of a row have the direction's equal share, but for those that SheetRow names.
+template <class Real>
+bool all_equal(const std::vector<Real>& shares, const SheetDirection<Real>& of,
+               const SheetSweep<Real>& sweep, int columns) {
+  const int ends = of.multipliers ? 3 : 2;
+  const auto equal = [&](int k) {
+    // Padding alone is at one place for ever, and nobody looks at it.
+    const int real = std::min(sweep.lanes, (columns - k + sweep.vectors - 1) / sweep.vectors);
+    const auto* s = shares.data() + ends * sweep.lanes * k;
+    for (int e = 0; e < ends; ++e, s += sweep.lanes)
+      if (!std::all_of(s, s + real, [&](Real share) {
+            return share == (e < 2 ? of.equal_share : of.multiplier_share);
+          }))
+        return false;
+    return true;
+  };
+  for (int k = 0; k < sweep.vectors - of.columns; ++k)
+    if (!equal(k)) return false;
+  return true;
+}
+
+}  // namespace
+
 template <class Real>
 InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<const double> w,
                                          double omega, const Compliances& compliances)
     : row_count_(links.grid.rows) {
   const SheetSides& grid = links.grid;
   const SheetRows in_memory = rows_of(grid);
-  const int lanes = sweep_.lanes = in_memory.lanes;
-  sweep_.vectors = in_memory.vectors;
+  sweep_.lanes = in_memory.lanes, sweep_.vectors = in_memory.vectors;
   sweep_.stride = in_memory.stride;
   sweep_.directions = static_cast<int>(links.directions.size());
   std::map<std::vector<Real>, std::size_t> known;
   std::vector<std::size_t> table;  // of each row of each direction
   for (std::size_t d = 0; d < links.directions.size(); ++d) {
-    const auto& [columns, rows, family, rest] = links.directions[d];
-    SheetDirection<Real>& to = sweep_.direction[d];
-    const double soft = compliances.over_h2[static_cast<std::size_t>(family)];
+    const RegularLinks::Direction& own = links.directions[d];
+    const double soft = compliances.over_h2[static_cast<std::size_t>(own.family)];
     const bool kept = soft > 0 && compliances.multipliers;
     auto& multipliers = multipliers_.emplace_back();
-    if (kept) multipliers.resize(to_index(grid.rows - rows) * to_index(sweep_.vectors * lanes));
-    to = {.left = columns < 0 ? rows : 0,
-          .right = columns < 0 ? 0 : rows,
-          .columns = std::abs(columns),
-          .rows = grid.rows - rows,
-          .rest = static_cast<Real>(std::max(rest, kTinyLength)),
-          .equal_share = 0,
-          .multiplier_share = 0,
-          .multipliers = kept ? multipliers.data() : nullptr,
-          .row = nullptr};
-    // Equal shares, and their multipliers', by how many links have them.
+    if (kept)
+      multipliers.resize(to_index(grid.rows - own.rows) * to_index(sweep_.vectors * sweep_.lanes));
+    SheetDirection<Real>& to = sweep_.direction[d];
+    to = direction_of<Real>(own, grid.rows, kept ? multipliers.data() : nullptr);
+    const LinkShares<Real> shares(grid, w, to, omega, soft);
     std::map<std::pair<Real, Real>, int> votes;
-    const auto shares = [&](int i, int j) -> std::array<Real, 3> {
-      const double wl = w[to_index(grid.index(i, j + to.left))],
-                   wr = w[to_index(grid.index(i + to.columns, j + to.right))];
-      if (wl + wr == 0) return {};
-      const double all = wl + wr + soft;
-      return {static_cast<Real>(omega * (wl / all)), static_cast<Real>(omega * (wr / all)),
-              static_cast<Real>(soft / all)};
-    };
-    const int ends = kept ? 3 : 2;
     for (int j = 0; j < to.rows; ++j) {
-      std::vector<Real> row(to_index(ends * lanes * sweep_.vectors), Real(0));
-      for (int i = 0; i + to.columns < grid.columns; ++i) {
-        const int k = i % sweep_.vectors, lane = i / sweep_.vectors;
-        const auto of_link = shares(i, j);
-        for (int e = 0; e < ends; ++e)
-          row[to_index((ends * k + e) * lanes + lane)] = of_link[to_index(e)];
-        if (of_link[0] == of_link[1]) ++votes[{of_link[0], of_link[2]}];
-      }
-      const auto [place, is_new] = known.try_emplace(std::move(row), shares_.size());
+      const auto [place, is_new] =
+          known.try_emplace(shares.row(j, sweep_.lanes, sweep_.vectors, votes), shares_.size());
       if (is_new) shares_.push_back(place->first);
       table.push_back(place->second);
     }
@@ -153,23 +209,8 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
   for (std::size_t d = 0; d < links.directions.size(); ++d)
     for (int j = 0; j < sweep_.direction[d].rows; ++j) {
       const std::vector<Real>& shares = shares_[table[next++]];
-      const auto equal = [&](int k) {
-        // Padding alone is at one place for ever, and nobody looks at it.
-        const int real = std::min(lanes, (grid.columns - k + sweep_.vectors - 1) / sweep_.vectors);
-        const SheetDirection<Real>& of = sweep_.direction[d];
-        const int ends = of.multipliers ? 3 : 2;
-        const auto* s = shares.data() + ends * lanes * k;
-        for (int e = 0; e < ends; ++e, s += lanes)
-          if (!std::all_of(s, s + real, [&](Real share) {
-                return share == (e < 2 ? of.equal_share : of.multiplier_share);
-              }))
-            return false;
-        return true;
-      };
-      int k = 0;
-      const int inner = sweep_.vectors - sweep_.direction[d].columns;
-      while (k < inner && equal(k)) ++k;
-      rows_.push_back({shares.data(), k == inner});
+      rows_.push_back(
+          {shares.data(), all_equal(shares, sweep_.direction[d], sweep_, grid.columns)});
     }
   const SheetRow<Real>* row = rows_.data();
   for (std::size_t d = 0; d < links.directions.size(); row += sweep_.direction[d++].rows)

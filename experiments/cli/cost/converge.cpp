@@ -152,7 +152,7 @@ std::string draw(const Answer& answer, const Options& options) {
       .y = report::step_value(options.kind),
       .title = answer.subject,
       .file = slug("converge-" + answer.fact("scene").text() + "-" + options.kind)};
-  return report::make_plot(spec, report::step_records(step, options.kind), {}, options.figures)
+  return report::make_plot(spec, {{"", report::step_records(step, options.kind)}}, options.figures)
       .svg.string();
 }
 

@@ -213,13 +213,13 @@ Image panel(const CaseSpec& spec, const std::string& title, const Store& store) 
   run.title = title;
   run.settings = report::brief_settings(one.choice.canonical());
   run.colour = kInk;
-  const PageLayout layout(800, 720, 1);
+  const auto layout = PageLayout::page(800, 720, 1);
   SceneRendererOptions look;
   look.width = layout.panel_width, look.height = layout.panel_height;
   look.quality = RenderQuality::video();
   look.from = look.to = one.scene->duration();
   const std::vector<RecordedRun> runs{std::move(run)};
-  return compose(SceneRenderer(*one.scene, runs, look), layout, one.scene->duration());
+  return compose(SceneRenderer(*one.scene, runs, look), layout, {one.scene->duration()});
 }
 
 /// The full and the smallest model side by side; "": no time, or no renderer.

@@ -59,7 +59,7 @@ using Files = std::vector<std::string>;
 Files draw_stills(const Options& options, const RunSet& set, const std::vector<double>& times,
                   const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
-  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  const auto layout = PageLayout::page(width, height, static_cast<int>(set.runs.size()));
   SceneRendererOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
   look.frame = FitRegion::beside_inset();
   look.from = times.front(), look.to = times.back();
@@ -71,7 +71,7 @@ Files draw_stills(const Options& options, const RunSet& set, const std::vector<d
     if (times.size() > 1)
       file.replace_filename(out.stem().string() + formatted("-t%.2f", times[k]) +
                             out.extension().string());
-    write_png(file, compose(renderer, layout, times[k]));
+    write_png(file, compose(renderer, layout, {times[k]}));
     countdown(k + 1, times.size());
     files.push_back(file.string());
   }
@@ -84,14 +84,16 @@ Files draw_sheet(const Options& options, const RunSet& set, const std::vector<do
   SceneRendererOptions look = look_of(options, "video", width, height);
   look.from = times.front(), look.to = times.back();
   const SceneRenderer renderer(set.scene, set.runs, look);
-  write_png(out, compose_sheet(renderer, times));
+  const auto layout = PageLayout::sheet(width, height, static_cast<int>(set.runs.size()),
+                                        static_cast<int>(times.size()));
+  write_png(out, compose(renderer, layout, times));
   return {out.string()};
 }
 
 /// Without ffmpeg: a picture of the last frame.
 Files draw_video(const Options& options, const RunSet& set, const fs::path& out) {
   const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
-  const PageLayout layout(width, height, static_cast<int>(set.runs.size()));
+  const auto layout = PageLayout::page(width, height, static_cast<int>(set.runs.size()));
   SceneRendererOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
   look.frame = FitRegion::beside_inset();
   const SceneRenderer renderer(set.scene, set.runs, look);
@@ -100,13 +102,13 @@ Files draw_video(const Options& options, const RunSet& set, const fs::path& out)
   const int frames = set.scene.steps / stride + 1;
   VideoWriter video(out, {width, height, frame_rate(stride * dt), 22});
   const Countdown countdown("frame");
-  for (int k = 0; k < frames && video.write(compose(renderer, layout, k * stride * dt)); ++k)
+  for (int k = 0; k < frames && video.write(compose(renderer, layout, {k * stride * dt})); ++k)
     countdown(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
   const std::string why = video.finish();
   if (why.empty()) return {out.string()};
   std::cerr << printable(out.string()) << ": " << why << "; a picture of its end instead\n";
   fs::path poster = out;
-  write_png(poster.replace_extension(".png"), compose(renderer, layout, set.scene.duration()));
+  write_png(poster.replace_extension(".png"), compose(renderer, layout, {set.scene.duration()}));
   return {poster.string()};
 }
 

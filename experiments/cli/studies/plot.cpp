@@ -21,7 +21,7 @@ using report::PlotSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results, output;
-  std::vector<std::string> solvers;
+  std::vector<std::string> solvers, scenes;
   bool json = false;
 };
 
@@ -34,30 +34,36 @@ std::optional<double> exponent(const std::string& text) {
   return value;
 }
 
+/// A picture, and the exponent of a theory that it names.
+struct Wanted {
+  PlotSpec spec;
+  std::optional<double> slope = {};
+};
+
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
-std::vector<PlotSpec> wanted(const Options& options, const Study& study) {
+std::vector<Wanted> wanted(const Options& options, const Study& study) {
   if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
-    return {{.kind = options.kind.empty() ? "work-precision" : options.kind,
-             .x = options.x,
-             .y = options.y,
-             .title = options.title}};
-  std::vector<PlotSpec> specs;
+    return {{{.kind = options.kind.empty() ? "work-precision" : options.kind,
+              .x = options.x,
+              .y = options.y,
+              .title = options.title}}};
+  std::vector<Wanted> all;
   for (const Plot& plot : study.plots) {
     const auto option = [&](const char* name) {
       const auto at = plot.options.find(name);
       return at == plot.options.end() ? std::string() : at->second;
     };
-    specs.push_back({.kind = plot.kind,
-                     .x = option("x"),
-                     .y = option("y"),
-                     .along = option("along"),
-                     .title = option("title"),
-                     .file = option("file"),
-                     .slope = exponent(option("slope"))});
+    all.push_back({{.kind = plot.kind,
+                    .x = option("x"),
+                    .y = option("y"),
+                    .along = option("along"),
+                    .title = option("title"),
+                    .file = option("file")},
+                   exponent(option("slope"))});
   }
-  if (specs.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
-  return specs;
+  if (all.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
+  return all;
 }
 
 /// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
@@ -75,47 +81,91 @@ std::string hold_other(const PlotSpec& spec, report::Records& records, const std
   return ", " + setting;
 }
 
-/// One figure per scene; a setting that is neither on an axis nor what orders the curves is held at
-/// its commonest.
-report::PlotFiles draw(PlotSpec spec, const report::StudyResult& study, const std::string& scene,
-                       const Store& store, const std::filesystem::path& out) {
-  const report::PlotKind& kind = report::find_plot_kind(spec.kind);
-  if (spec.x.empty()) spec.x = kind.x;
-  if (spec.y.empty()) spec.y = kind.y;
-  report::Records records = study.records;
-  std::erase_if(records, [&](const Record* r) { return r->scene != scene; });
-  if (spec.kind == "scaling") spec.slope = 1;
-  const std::string held = spec.kind == "stability" ? "" : hold_other(spec, records, scene);
-  std::vector<report::TimeSeries> series;
-  if (spec.kind == "series") series = report::stored_series(records, spec.y, store);
+/// Of one scene; a setting that is neither on an axis nor what orders the curves is held at its
+/// commonest.
+report::PlotPanel panel_of(const Wanted& want, const report::StudyResult& study,
+                           const std::string& scene, const Store& store) {
+  const PlotSpec& spec = want.spec;
+  report::PlotPanel panel{scene, study.records, {}, want.slope};
+  std::erase_if(panel.records, [&](const Record* r) { return r->scene != scene; });
+  if (spec.kind == "scaling") panel.slope = 1;
+  if (spec.kind != "stability") panel.title += hold_other(spec, panel.records, scene);
+  if (spec.kind == "series") panel.series = report::stored_series(panel.records, spec.y, store);
   const ValueSpec* value = find_value(spec.y).second;
   if (const auto slope = study.slopes.find(scene);
       slope != study.slopes.end() && spec.kind == "convergence" && spec.x == report::kSweeps &&
-      !spec.slope && value && value->falls_with_sweeps)
-    spec.slope = slope->second;
+      !panel.slope && value && value->falls_with_sweeps)
+    panel.slope = slope->second;
+  return panel;
+}
+
+/// A figure of these scenes; of a single one it bears the name.
+report::PlotFiles draw(Wanted want, const report::StudyResult& study,
+                       const std::vector<std::string>& scenes, const Store& store,
+                       const std::filesystem::path& out) {
+  PlotSpec& spec = want.spec;
+  const report::PlotKind& kind = report::find_plot_kind(spec.kind);
+  if (spec.x.empty()) spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
+  std::vector<report::PlotPanel> panels;
+  for (const std::string& scene : scenes) panels.push_back(panel_of(want, study, scene, store));
   if (spec.title.empty())
     spec.title = report::capitalised(report::quantity(spec.y).title) + " over " +
                  report::quantity(spec.x).title;
-  spec.title += ", " + scene + held;
-  if (const std::string unequal = report::unequal_work(records); !unequal.empty())
+  if (panels.size() == 1) spec.title += ", " + panels.front().title;
+  report::Records drawn;
+  for (const report::PlotPanel& panel : panels)
+    drawn.insert(drawn.end(), panel.records.begin(), panel.records.end());
+  if (const std::string unequal = report::unequal_work(drawn); !unequal.empty())
     spec.title += "; unequal work: " + unequal;
-  spec.file = slug(scene + "-" +
-                   (spec.file.empty() ? spec.kind + "-" + spec.y + "-over-" + spec.x : spec.file));
-  return report::make_plot(spec, records, series, out);
+  if (spec.file.empty()) spec.file = spec.kind + "-" + spec.y + "-over-" + spec.x;
+  spec.file = slug((scenes.size() == 1 ? scenes.front() + "-" : "") + spec.file);
+  return report::make_plot(spec, panels, out);
 }
 
-/// Of all solvers, without names; throws InputError if one is none of the study's.
-void keep_solvers(std::vector<Record>& records, const std::vector<std::string>& names) {
+/// Keeps what was chosen, all if nothing was; throws InputError if the study has no such.
+template <class NameOf>
+void keep(const char* option, std::vector<Record>& records, const std::vector<std::string>& names,
+          NameOf name_of) {
   std::vector<std::string> known;
-  for (const Record& r : records) push_unique(known, r.solver);
+  for (const Record& r : records) push_unique(known, name_of(r));
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
-      throw InputError("--solver: the study has no results of '" + name + "'" +
+      throw InputError(std::string(option) + ": the study has no results of '" + name + "'" +
                        suggestion(name, known));
   if (!names.empty())
     std::erase_if(records, [&](const Record& r) {
-      return std::ranges::find(names, r.solver) == names.end();
+      return std::ranges::find(names, name_of(r)) == names.end();
     });
+}
+
+/// Every figure of a study. Maps have their panels by solver: a figure for each scene.
+std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted,
+                                        const report::ReportInput& input, const Store& store,
+                                        const std::filesystem::path& out) {
+  const report::StudyResult& study = input.studies.front();
+  std::vector<std::string> scenes;
+  for (const Record& r : study.records) push_unique(scenes, r.scene);
+  std::vector<report::PlotFiles> figures;
+  for (Wanted want : wanted) {
+    if (want.spec.kind == "profile") {
+      if (!input.bench) throw InputError("no cost was measured: taut bench " + study.name);
+      if (want.spec.title.empty()) want.spec.title = "How often each solver is near the cheapest";
+      figures.push_back(report::make_profile_plot(want.spec, *input.bench, out));
+      continue;
+    }
+    std::vector<std::vector<std::string>> sets{scenes};
+    if (want.spec.kind == "stability") {
+      sets.clear();
+      for (const std::string& scene : scenes) sets.push_back({scene});
+    }
+    for (const std::vector<std::string>& set : sets) try {
+        figures.push_back(draw(want, study, set, store, out));
+      } catch (const InputError& error) {
+        std::cerr << error.what() << '\n';
+      }
+  }
+  return figures;
 }
 
 int run(const Options& options) {
@@ -127,12 +177,13 @@ int run(const Options& options) {
     throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
                      study.name + "' is in " + options.results +
                      " as this build would run them; taut run makes them");
-  keep_solvers(result.records, options.solvers);
+  keep("--solver", result.records, options.solvers, [](const Record& r) { return r.solver; });
+  keep("--scene", result.records, options.scenes, [](const Record& r) { return r.scene; });
   const std::filesystem::path out =
       options.output.empty() ? std::filesystem::path(options.results) / "figures" /
                                    (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                              : std::filesystem::path(options.output);
-  const std::vector<PlotSpec> specs = wanted(options, study);
+  const std::vector<Wanted> all = wanted(options, study);
   for (const auto& [key, name] : {std::pair("--x: ", options.x), std::pair("--y: ", options.y)})
     if (!name.empty()) try {
         report::check_value_name(name, result.records);
@@ -143,20 +194,9 @@ int run(const Options& options) {
   std::vector<std::string> files;
   bool drawn = true;
   try {
-    for (PlotSpec spec : specs) {
-      if (spec.kind == "profile") {
-        if (!input.bench) throw InputError("no cost was measured: taut bench " + study.name);
-        spec.title = spec.title.empty() ? "How often each solver is near the cheapest" : spec.title;
-        const report::PlotFiles plot = report::make_profile_plot(spec, *input.bench, out);
-        for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
-        continue;
-      }
-      for (const report::SceneInfo& scene : input.scenes) try {
-          const report::PlotFiles plot = draw(spec, result, scene.name, store, out);
-          for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
-        } catch (const InputError& error) {
-          std::cerr << scene.name << ": " << error.what() << '\n';
-        }
+    for (const report::PlotFiles& plot : draw_all(all, input, store, out)) {
+      for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
+      for (const std::string& why : plot.without) std::cerr << why << '\n';
     }
   } catch (const report::PlotError& error) {
     std::cerr << error.what() << '\n';
@@ -177,6 +217,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--x", options.x, "Value on x: dt, iterations, projections or a metric's value");
   app.add_option("--y", options.y, "Value on y, such as stretch.rms");
   app.add_option("--solver", options.solvers, "Only this solver; repeat it for each")
+      ->allow_extra_args(false);
+  app.add_option("--scene", options.scenes, "Only this scene; repeat it for each")
       ->allow_extra_args(false);
   app.add_option("--title", options.title, "Title above the figure");
   add_output(app, options.output,

@@ -104,6 +104,23 @@ int compare_folders(const Options& options) {
   return put_out(input, options);
 }
 
+/// What other verbs found of this build; what cannot be read is said and left out.
+void add_findings(report::ReportInput& input, const Store& store, const std::string& program) {
+  const auto add = [&](const char* verb, auto& to, const auto& stored) {
+    try {
+      to = stored(store, program);
+    } catch (const InputError& error) {
+      input.left_out.emplace_back(verb, error.what());
+      std::cerr << "left out: " << error.what() << '\n';
+    }
+  };
+  add("taut verify", input.truths, report::stored_truths);
+  add("taut check", input.regressions, report::stored_regressions);
+  add("taut converge", input.steps, report::stored_steps);
+  add("taut require", input.required, report::stored_requirements);
+  add("taut frontier --all", input.frontiers, report::stored_frontiers);
+}
+
 int run(Options options) {
   if (!options.studies.empty() && Store::is_at(options.studies[0])) return compare_folders(options);
   const std::string command = command_line(options);
@@ -131,19 +148,7 @@ int run(Options options) {
                       {"toolchain", std::string(toolchain())},
                       {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();
-  const auto add = [&](const char* verb, auto& to, const auto& stored) {
-    try {
-      to = stored(store, program);
-    } catch (const InputError& error) {
-      input.left_out.emplace_back(verb, error.what());
-      std::cerr << "left out: " << error.what() << '\n';
-    }
-  };
-  add("taut verify", input.truths, report::stored_truths);
-  add("taut check", input.regressions, report::stored_regressions);
-  add("taut converge", input.steps, report::stored_steps);
-  add("taut require", input.required, report::stored_requirements);
-  add("taut frontier --all", input.frontiers, report::stored_frontiers);
+  add_findings(input, store, program);
   if (!options.json && !options.no_media) {
     std::set<std::string> scenes(options.films.begin(), options.films.end());
     for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);

@@ -169,20 +169,13 @@ std::string key_of(const Film& film) {
 FilmResult make_film(const Film& film) {
   const RunSet set = record_runs(film.request, [](const std::string&) {});
   const Media media = render_media(set.scene, set.runs, options_of(film, set.runs.size()));
-  FilmResult result{{.clips = {clip_of(set, media)},
+  FilmResult result{{.clip = clip_of(set, media),
                      .duration = media.t.back(),
                      .speed = film.speed,
                      .bar = bar_of(media.scale),
-                     .aspect = media.aspect,
                      .frame = media.t[1] - media.t[0],
                      .poster = media.poster_t},
                     {}};
-  for (std::size_t k = 0; k < media.material.size(); ++k) {
-    report::MaterialRow& row = result.media.material.emplace_back();
-    row.solver = solver_name(set.runs[k].trajectory.solver);
-    for (const Media::Flat& flat : media.material[k])
-      row.stills.push_back({flat.t, flat.rms, flat.png});
-  }
   for (std::size_t k = 0; !film.studied && k < set.runs.size(); ++k)
     std::ranges::move(
         report::shown_series(
@@ -201,7 +194,7 @@ FilmResult kept_or_made(const Film& film, const std::filesystem::path& folder, b
   if (!kept) keep_film(file, kept.emplace(make_film(film)));
   report::SceneMedia& media = kept->media;
   media.scene = film.scene, media.summary = film.summary, media.refused = film.refused;
-  media.clips.front().panels = film.panels;
+  media.clip.panels = film.panels;
   return std::move(*kept);
 }
 

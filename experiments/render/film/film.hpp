@@ -9,7 +9,7 @@
 
 namespace taut {
 
-/// Adds videos, posters and material space of every scene of a report to it: each contender under
+/// Adds videos and posters of every scene of a report to it: each contender under
 /// the settings at which single cases are quoted, side by side in the order of the report, beside
 /// the reason of whoever refuses the scene. `others` are scenes (names or paths) that no study ran:
 /// they get smaller films of their own and, from the same runs, strain over time. Two scenes at a

@@ -1,11 +1,8 @@
 #include "experiments/render/film/kept_film.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/chart/format.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -13,59 +10,36 @@ namespace taut {
 
 namespace {
 
-constexpr const char* kSchema = "taut-film-1";
+constexpr const char* kSchema = "taut-film-3";
 
-/// Of what report::base64() wrote.
-std::string from_base64(const std::string& text) {
-  static const auto kValues = [] {
-    std::array<int, 256> values{};
-    values.fill(-1);
-    int next = 0;
-    for (const char c :
-         std::string("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"))
-      values[static_cast<unsigned char>(c)] = next++;
-    return values;
-  }();
-  std::string bytes;
-  bytes.reserve(text.size() * 3 / 4);
-  std::uint32_t bits = 0;
-  int held = 0;
-  for (const char c : text) {
-    const int value = kValues[static_cast<unsigned char>(c)];
-    if (value < 0) break;
-    bits = bits << 6 | static_cast<std::uint32_t>(value), held += 6;
-    if (held < 8) continue;
-    held -= 8;
-    bytes += static_cast<char>(bits >> held & 0xFF);
-  }
+/// Beside the file of its numbers: KEY.mp4, KEY-poster.jpg.
+std::filesystem::path picture_of(const std::filesystem::path& file, const char* what,
+                                 const std::string& type) {
+  const char* extension = type == "video/mp4" ? ".mp4" : type == "image/jpeg" ? ".jpg" : ".png";
+  return file.parent_path() / (file.stem().string() + what + extension);
+}
+
+/// Throws InputError unless the picture has as many bytes as its film says.
+std::string picture(const std::filesystem::path& file, const JsonReader& size) {
+  std::string bytes = read_text(file);
+  if (static_cast<double>(bytes.size()) != size.number())
+    throw InputError(file.string() + " is damaged");
   return bytes;
 }
 
-std::string bytes_of(const JsonReader& json, const char* name) {
-  return from_base64(json.at(name).text());
-}
-
-FilmResult film_of(const JsonReader& json) {
+FilmResult film_of(const JsonReader& json, const std::filesystem::path& file) {
   json.require_schema(kSchema);
   const auto number = [&](const char* name) { return json.at(name).number(); };
   FilmResult film;
   report::SceneMedia& media = film.media;
   media.duration = number("duration"), media.speed = number("speed");
-  media.aspect = number("aspect"), media.frame = number("frame"), media.poster = number("poster_t");
-  media.clips.push_back({.type = json.at("type").text(),
-                         .bytes = bytes_of(json, "bytes"),
-                         .poster = bytes_of(json, "poster"),
-                         .poster_type = json.at("poster_type").text(),
-                         .alt = json.at("alt").text(),
-                         .panels = {}});
+  media.frame = number("frame"), media.poster = number("poster_t");
+  report::Clip& clip = media.clip;
+  clip.type = json.at("type").text(), clip.poster_type = json.at("poster_type").text();
+  clip.bytes = picture(picture_of(file, "", clip.type), json.at("bytes"));
+  clip.poster = picture(picture_of(file, "-poster", clip.poster_type), json.at("poster_bytes"));
+  clip.alt = json.at("alt").text();
   media.bar = parse_json(json.at("bar").text());
-  for (const JsonReader& row : json.at("material").items()) {
-    report::MaterialRow& made = media.material.emplace_back();
-    made.solver = row.at("solver").text();
-    for (const JsonReader& still : row.at("stills").items())
-      made.stills.push_back(
-          {still.at("t").number(), still.at("rms").number(), bytes_of(still, "png")});
-  }
   for (const JsonReader& one : json.at("series").items()) {
     report::TimeSeries& series = film.series.emplace_back();
     series.scene = one.at("scene").text(), series.solver = one.at("solver").text();
@@ -80,39 +54,33 @@ FilmResult film_of(const JsonReader& json) {
 
 void keep_film(const std::filesystem::path& file, const FilmResult& film) {
   const report::SceneMedia& media = film.media;
-  const report::Clip& clip = media.clips.front();
+  const report::Clip& clip = media.clip;
   Json json{{"schema", kSchema},
             {"duration", media.duration},
             {"speed", media.speed},
-            {"aspect", media.aspect},
             {"frame", media.frame},
             {"poster_t", media.poster},
             {"type", clip.type},
-            {"bytes", report::base64(clip.bytes)},
-            {"poster", report::base64(clip.poster)},
+            {"bytes", clip.bytes.size()},
+            {"poster_bytes", clip.poster.size()},
             {"poster_type", clip.poster_type},
             {"alt", clip.alt},
             {"bar", to_text(media.bar)}};
-  json["material"] = json_array(media.material, [](const report::MaterialRow& row) {
-    return Json{
-        {"solver", row.solver},
-        {"stills", json_array(row.stills, [](const auto& still) {
-           return Json{{"t", still.t}, {"rms", still.rms}, {"png", report::base64(still.png)}};
-         })}};
-  });
   json["series"] = json_array(film.series, [](const report::TimeSeries& series) {
     return Json{{"scene", series.scene}, {"solver", series.solver},
                 {"label", series.label}, {"value", series.value},
                 {"t", series.t},         {"y", json_array(series.y, json_number)}};
   });
   make_folder(file.parent_path());
-  write_file(file, to_text(json));
+  write_file(picture_of(file, "", clip.type), clip.bytes);
+  write_file(picture_of(file, "-poster", clip.poster_type), clip.poster);
+  write_file(file, to_text(json));  // the last: a film without it is none
 }
 
 std::optional<FilmResult> kept_film(const std::filesystem::path& file) try {
   if (!std::filesystem::exists(file)) return std::nullopt;
   return read_json(read_text(file), file.string(),
-                   [](const JsonReader& json) { return film_of(json); });
+                   [&](const JsonReader& json) { return film_of(json, file); });
 } catch (const InputError&) {
   return std::nullopt;
 }

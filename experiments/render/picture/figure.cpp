@@ -13,7 +13,7 @@ namespace {
 constexpr Rgb8 kAlarm = rgb(0xB3261E);
 
 /// "t = 2.48 s    max |ε| = 4.10 %    mean ε = +0.72 %    33 × 33 vertices"
-std::vector<std::string> caption(const SceneRenderer& renderer, const RecordedRun& run, double t) {
+std::string caption(const SceneRenderer& renderer, const RecordedRun& run, double t) {
   const Scene& scene = renderer.scene();
   const auto& frame = run.at(t);
   std::vector<std::string> parts{formatted("t = %.2f s", frame.t)};
@@ -23,63 +23,87 @@ std::vector<std::string> caption(const SceneRenderer& renderer, const RecordedRu
   parts.push_back(scene.mesh.grid ? std::to_string(scene.mesh.grid->nu) + " × " +
                                         std::to_string(scene.mesh.grid->nv) + " vertices"
                                   : std::to_string(scene.mesh.size()) + " vertices");
-  return parts;
+  return join(parts, "      ");
 }
 
-void draw_header(Canvas& canvas, const SceneRenderer& renderer, const RecordedRun& run, double t,
-                 Point corner, const PageLayout& layout) {
+void draw_title(Canvas& canvas, const RecordedRun& run, Point corner, const PageLayout& layout) {
   const double u = layout.unit, left = corner.x + 70 * u;
-  const double available = layout.panel_width - 90 * u;
-  const double title_y = corner.y + 0.42 * layout.header, line_y = corner.y + 0.76 * layout.header;
-  canvas.disc({corner.x + 45 * u, title_y - 9 * u}, 9 * u, run.colour);
+  const double available = layout.panel_width - 90 * u, y = corner.y + 0.62 * layout.header;
+  canvas.disc({corner.x + 45 * u, y - 9 * u}, 9 * u, run.colour);
   const double settings = run.settings.empty() ? 0 : text_width("   " + run.settings, 21 * u);
   const double title = text_width(run.title, 27 * u, Weight::bold);
   const double shrink = std::min(1.0, available / (title + settings));
-  const double advance =
-      canvas.text({left, title_y}, run.title, {27 * u * shrink, kInk, Weight::bold});
+  const double advance = canvas.text({left, y}, run.title, {27 * u * shrink, kInk, Weight::bold});
   if (!run.settings.empty())
-    canvas.text({left + advance, title_y}, "   " + run.settings, {21 * u * shrink, kMuted});
-  const std::string line = join(caption(renderer, run, t), "      ");
-  const double size = 19 * u * std::min(1.0, available / text_width(line, 19 * u));
-  canvas.text({left, line_y}, line, {size, kMuted});
+    canvas.text({left + advance, y}, "   " + run.settings, {21 * u * shrink, kMuted});
 }
 
-void draw_inset(Image& picture, const SceneRenderer& renderer, std::size_t run, double t,
-                Point panel, const PageLayout& layout) {
+/// The cloth laid flat, in a panel's upper right corner [px].
+struct Flat {
+  static constexpr int kRim = 3;
+  int side, margin;
+  explicit Flat(const PageLayout& layout)
+      : side(std::min(layout.panel_height / 5, layout.panel_width / 4)),
+        margin(layout.panel_height / 28) {}
+
+  /// Some of a run's cloth lies below it.
+  bool hides(const SceneRenderer& renderer, std::size_t run, double t) const {
+    const auto edge = [&](int pixels) {
+      return 1 - 2.f * static_cast<float>(side + margin + kRim) / static_cast<float>(pixels);
+    };
+    const float x = edge(renderer.options().width), y = edge(renderer.options().height);
+    return std::ranges::any_of(renderer.projected(run, t), [&](const auto& p) {
+      return p.x() > x && p.x() < 1 && p.y() > y && p.y() < 1;
+    });
+  }
+
+  void add(Image& panel, const SceneRenderer& renderer, std::size_t run, double t) const {
+    const Image flat = renderer.material_space(run, t, side);
+    if (flat.width() == 0) return;
+    const int x = panel.width() - margin - flat.width(), y = margin;
+    Canvas(panel).fill_rounded(x - kRim, y - kRim, flat.width() + 2 * kRim,
+                               flat.height() + 2 * kRim, kRim, rgb(0x4A5361));
+    panel.paste(flat, x, y);
+  }
+};
+
+/// A run's panel with what is written on it.
+Image panel_of(const SceneRenderer& renderer, const PageLayout& layout, std::size_t run, double t,
+               bool with_flat) {
   const double u = layout.unit;
-  const int side =
-      static_cast<int>(std::min(0.18 * layout.panel_width, 0.22 * layout.panel_height));
-  const Image flat = renderer.material_space(run, t, side);
-  if (flat.width() == 0) return;
-  const double label = 15.5 * u, pad = 7 * u;
-  const double width =
-      std::max<double>(flat.width(), text_width("material space", label)) + 2 * pad;
-  const double height = flat.height() + 2 * pad + 1.9 * label;
-  const double x = panel.x + layout.panel_width - 20 * u - width, y = panel.y + 22 * u;
-  Canvas canvas(picture);
-  canvas.fill_rounded(x, y, width, height, 8 * u, rgb(0xFFFFFF), 0.92);
-  picture.paste(flat, static_cast<int>(std::lround(x + (width - flat.width()) / 2)),
-                static_cast<int>(std::lround(y + pad)));
-  canvas.text({x + width / 2, y + height - 0.85 * label}, "material space",
-              {label, kMuted, Weight::regular, Align::centre});
+  const Flat flat(layout);
+  Image panel = renderer.panel(run, t);
+  if (with_flat) flat.add(panel, renderer, run, t);
+  if (layout.has_text()) {
+    const bool light = renderer.options().theme.top.g > 128;
+    const std::string line = caption(renderer, renderer.runs()[run], t);
+    const double room = layout.panel_width - 48 * u - (with_flat ? flat.side + flat.margin : 0);
+    const double size = 19 * u * std::min(1.0, room / text_width(line, 19 * u));
+    Canvas(panel).text({24 * u, 38 * u}, line, {size, light ? kMuted : rgb(0xC3CBD8)});
+  }
+  mark_absence(panel, renderer, run, t, u);
+  return panel;
 }
 
 void draw_footer(Canvas& canvas, const SceneRenderer& renderer, const PageLayout& layout,
-                 double t) {
+                 const std::vector<double>& times) {
   const double u = layout.unit, top = layout.height - layout.footer;
   const TextStyle label{18 * u, kMuted, Weight::regular, Align::centre};
   const ColourScale& scale = renderer.scale();
   canvas.text({layout.width / 2.0, top + 30 * u}, scale.title(), label);
-  const double width = 690 * u, x = (layout.width - width) / 2;
+  const double width = std::min(690 * u, 0.6 * layout.width), x = (layout.width - width) / 2;
   draw_colour_bar(canvas, scale, {x, top + 43 * u, width, 21 * u}, u);
-  if (scale.colour_by == ColourBy::strain) {
+  if (scale.colour_by == ColourBy::strain && x > 160 * u) {
     canvas.text({x - 36 * u, top + 60 * u}, "compressed",
                 {18 * u, kMuted, Weight::regular, Align::right});
     canvas.text({x + width + 36 * u, top + 60 * u}, "stretched", {18 * u, kMuted});
   }
   const bool hatched = std::ranges::any_of(renderer.runs(), [&](const RecordedRun& run) {
-    const auto& frame = run.at(t);
-    return live_figures(renderer.scene(), frame.state, frame.t).max_depth > renderer.hatch_depth();
+    return std::ranges::any_of(times, [&](double t) {
+      const auto& frame = run.at(t);
+      return live_figures(renderer.scene(), frame.state, frame.t).max_depth >
+             renderer.hatch_depth();
+    });
   });
   if (hatched && layout.columns > 1)
     canvas.text(
@@ -112,37 +136,61 @@ std::vector<std::string> caption_of(ColourBy colour_by, const LiveFigures& live)
   return {"max |v| = " + formatted("%.3g m/s", live.max_speed)};
 }
 
-PageLayout::PageLayout(int w, int h, int panels)
-    : width(w),
-      height(h),
-      columns(panels == 4 ? 2 : panels),
-      rows(panels == 4 ? 2 : 1),
-      unit(std::min(h / 1080.0, w / 1920.0 * (panels == 1 ? 1.6 : 1))) {
-  header = static_cast<int>(std::lround((rows == 1 ? 118 : 96) * unit));
-  footer = static_cast<int>(std::lround(126 * unit));
-  panel_width = width / columns;
-  panel_height = (height - footer) / rows - header;
+PageLayout PageLayout::page(int width, int height, int panels) {
+  PageLayout p{.width = width, .height = height, .columns = panels == 4 ? 2 : panels};
+  p.rows = panels == 4 ? 2 : 1;
+  p.unit = std::min(height / 1080.0, width / 1920.0 * (panels == 1 ? 1.6 : 1));
+  p.header = static_cast<int>(std::lround(66 * p.unit));
+  p.footer = static_cast<int>(std::lround(126 * p.unit));
+  p.gap = static_cast<int>(std::lround(4 * p.unit));
+  p.panel_width = (width - (p.columns - 1) * p.gap) / p.columns;
+  p.panel_height = (height - p.footer - (p.rows - 1) * p.gap) / p.rows - p.header;
+  return p;
 }
 
-Image compose(const SceneRenderer& renderer, const PageLayout& layout, double t) {
-  Image picture(layout.width, layout.height, rgb(0xFFFFFF));
+PageLayout PageLayout::sheet(int panel_width, int panel_height, int runs, int moments) {
+  PageLayout p{.columns = runs, .rows = moments, .unit = panel_height / 514.0};
+  p.header = static_cast<int>(std::lround(66 * p.unit));
+  p.footer = static_cast<int>(std::lround(126 * p.unit));
+  p.gap = 6, p.panel_width = panel_width, p.panel_height = panel_height;
+  p.width = runs * (panel_width + p.gap) - p.gap;
+  p.height = p.header + moments * (panel_height + p.gap) + p.footer;
+  return p;
+}
+
+PageLayout PageLayout::bare(int width, int height, int panels) {
+  return {.width = width,
+          .height = height,
+          .columns = panels,
+          .unit = height / 836.0,
+          .panel_width = width / panels,
+          .panel_height = height};
+}
+
+std::pair<int, int> PageLayout::corner(std::size_t run, std::size_t moment) const {
+  const int column = static_cast<int>(run) % columns, row = static_cast<int>(run) / columns;
+  return {column * (panel_width + gap),
+          (row + 1) * header + (row + static_cast<int>(moment)) * (panel_height + gap)};
+}
+
+Image compose(const SceneRenderer& renderer, const PageLayout& layout,
+              const std::vector<double>& times) {
+  Image picture(layout.width, layout.height,
+                layout.has_text() ? rgb(0xFFFFFF) : renderer.options().theme.top);
   Canvas canvas(picture);
-  for (std::size_t k = 0; k < renderer.runs().size(); ++k) {
-    const int column = static_cast<int>(k) % layout.columns;
-    const int row = static_cast<int>(k) / layout.columns;
-    const int x = column * layout.panel_width;
-    const int y = row * (layout.header + layout.panel_height);
-    const RecordedRun& run = renderer.runs()[k];
-    Image panel = renderer.panel(k, t);
-    mark_absence(panel, renderer, k, t, layout.unit);
-    picture.paste(panel, x, y + layout.header);
-    draw_header(canvas, renderer, run, t, {1.0 * x, 1.0 * y}, layout);
-    draw_inset(picture, renderer, k, t, {1.0 * x, 1.0 * y + layout.header}, layout);
-    canvas.fill(x, y + layout.header - 1, layout.panel_width, 1, kRule);
-    canvas.fill(x, y + layout.header + layout.panel_height, layout.panel_width, 1, kRule);
-    if (column > 0) canvas.fill(x, y + layout.header, 1, layout.panel_height, kRule);
+  for (std::size_t m = 0; m < times.size(); ++m) {
+    // In the first moments a sheet may reach into the corner: all panels do without the flat then.
+    bool flats = true;
+    for (std::size_t k = 0; k < renderer.runs().size(); ++k)
+      flats = flats && !Flat(layout).hides(renderer, k, times[m]);
+    for (std::size_t k = 0; k < renderer.runs().size(); ++k) {
+      const auto [x, y] = layout.corner(k, m);
+      picture.paste(panel_of(renderer, layout, k, times[m], flats), x, y);
+      if (layout.has_text() && m == 0)
+        draw_title(canvas, renderer.runs()[k], {1.0 * x, 1.0 * y - layout.header}, layout);
+    }
   }
-  draw_footer(canvas, renderer, layout, t);
+  if (layout.has_text()) draw_footer(canvas, renderer, layout, times);
   return picture;
 }
 
@@ -198,51 +246,6 @@ void mark_absence(Image& panel, const SceneRenderer& renderer, std::size_t run, 
     mark_stop(panel, *stop, unit);
   else if (!renderer.in_sight(run, t))
     plate(panel, "has left the picture", rgb(0x4A5361), unit);
-}
-
-Image compose_sheet(const SceneRenderer& renderer, const std::vector<double>& times) {
-  const int wide = renderer.options().width, high = renderer.options().height, gap = 6;
-  const double u = high / 400.0;
-  const Rgb8 background = renderer.options().theme.top;
-  const Rgb8 on_background = background.g > 128 ? kMuted : rgb(0xC3CBD8);
-  const int head = static_cast<int>(64 * u), foot = static_cast<int>(96 * u);
-  const int columns = static_cast<int>(renderer.runs().size());
-  const int rows = static_cast<int>(times.size());
-  Image picture(columns * (wide + gap) - gap, head + rows * (high + gap) + foot, rgb(0xFFFFFF));
-  Canvas canvas(picture);
-  for (int column = 0; column < columns; ++column) {
-    const auto index = static_cast<std::size_t>(column);
-    const RecordedRun& run = renderer.runs()[index];
-    const double x = column * (wide + gap) + 18 * u;
-    canvas.disc({x + 8 * u, 34 * u}, 7 * u, run.colour);
-    const double room = wide - 60 * u, gap_width = 14 * u;
-    const double needed =
-        text_width(run.title, 21 * u, Weight::bold) + gap_width + text_width(run.settings, 15 * u);
-    const double shrink = std::min(1.0, room / needed);
-    const double advance =
-        canvas.text({x + 26 * u, 41 * u}, run.title, {21 * u * shrink, kInk, Weight::bold});
-    canvas.text({x + 26 * u + advance + gap_width, 41 * u}, run.settings,
-                {15 * u * shrink, kMuted});
-    for (int row = 0; row < rows; ++row) {
-      const double t = times[static_cast<std::size_t>(row)];
-      Image panel = renderer.panel(index, t);
-      if (run.stop && t > run.stop->t) mark_stop(panel, *run.stop, u * 0.8);
-      const auto& frame = run.at(t);
-      const LiveFigures live = live_figures(renderer.scene(), frame.state, frame.t);
-      Canvas(panel).text({18 * u, 30 * u},
-                         formatted("t = %.2f s    ", frame.t) +
-                             caption_of(renderer.scale().colour_by, live).front(),
-                         {15 * u, on_background});
-      picture.paste(panel, column * (wide + gap), head + row * (high + gap));
-    }
-  }
-  const double bar = std::min(460 * u, 0.6 * picture.width());
-  const double top = head + rows * (high + gap);
-  canvas.text({picture.width() / 2.0, top + 22 * u}, renderer.scale().title(),
-              {13.5 * u, kMuted, Weight::regular, Align::centre});
-  draw_colour_bar(canvas, renderer.scale(),
-                  {(picture.width() - bar) / 2, top + 34 * u, bar, 15 * u}, 0.72 * u);
-  return picture;
 }
 
 }  // namespace taut

@@ -5,9 +5,8 @@
 
 namespace taut {
 
-/// What a report wants of a scene. Panels stand side by side on the dark background, each with its
-/// cloth laid flat in a corner, without text: the page writes captions and the colour bar itself,
-/// in its own fonts and themes.
+/// What a report wants of a scene: panels alone (PageLayout::bare) on the dark background; the page
+/// writes captions and the colour bar itself, in its own fonts and themes.
 struct MediaOptions {
   int width = 960, height = 400;  ///< of all panels together; even
   double duration = 4;            ///< s of the scene's beginning
@@ -19,17 +18,9 @@ struct MediaOptions {
 
 /// Pictures and numbers of one scene, moment by moment the same for all runs.
 struct Media {
-  std::string mp4;          ///< H.264; "" without ffmpeg
-  std::string poster;       ///< the moment of the greatest difference
-  std::string poster_type;  ///< "image/jpeg", or "image/png" without ffmpeg
-  /// A run's cloth laid flat, without light.
-  struct Flat {
-    double t = 0;    ///< s
-    double rms = 0;  ///< strain
-    std::string png;
-  };
-  std::vector<std::vector<Flat>> material;      ///< [run][moment]; empty: cloth that is no sheet
-  double aspect = 1;                            ///< width / height of a flat
+  std::string mp4;                              ///< H.264; "" without ffmpeg
+  std::string poster;                           ///< the moment of the greatest difference
+  std::string poster_type;                      ///< "image/jpeg", or "image/png" without ffmpeg
   double poster_t = 0;                          ///< s
   std::vector<double> t;                        ///< s, of each frame
   std::vector<std::vector<double>> rms_strain;  ///< [run][frame]

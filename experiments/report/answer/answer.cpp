@@ -148,7 +148,7 @@ class Questions {
     const std::string work = compared_.common_work();
     return "Equal work: " + (work.empty() ? "unequal, in each cell" : work) +
            (steps.empty() ? "" : ", time step " + range_text(steps)) +
-           ". Scenes: " + join(compared_.scenes, ", ", &QuotedScene::title) +
+           (input_.bench ? ". CPU times are per simulated second" : "") +
            ". Means are geometric where all values are positive. Marked: better than every other "
            "by more than " +
            shown(kShare, kTolerance, 1) +
@@ -323,6 +323,22 @@ class Questions {
     return cell.with("the largest tried");
   }
 
+  /// How the cases of a solver ended, and one that failed.
+  struct Count {
+    int cases = 0, failed = 0;
+    std::map<std::string, int> kinds = {};
+    std::string key = {};
+
+    void add(const Record& r) {
+      ++cases;
+      if (completed(r.status)) return;
+      const bool fails = is_failure(r.status);
+      failed += fails;
+      ++kinds[fails ? std::string(to_string(r.status.kind)) : "unsupported"];
+      if (fails && key.empty()) key = r.key;
+    }
+  };
+
   /// Of all cases of the page, whatever ran them.
   void add_failures() {
     Table table{"failures",
@@ -330,11 +346,6 @@ class Questions {
                 columns_of(solvers_, kErrorCount),
                 {},
                 "all cases of this page: studies, maps and timed ones"};
-    struct Count {
-      int cases = 0, failed = 0;
-      std::map<std::string, int> kinds;
-      std::string key;
-    };
     std::map<std::string, std::vector<Count>> scenes;
     std::vector<Count> all(solvers_.size());
     std::map<std::string, Count> others;  ///< solvers of maps alone
@@ -342,44 +353,42 @@ class Questions {
     for (const Record* r : list_.cases()) {
       const auto at = std::ranges::find(solvers_, r->solver, &Column::name);
       if (at == solvers_.end()) {
-        ++others[r->solver].cases, others[r->solver].failed += is_failure(r->status);
+        others[r->solver].add(*r);
         continue;
       }
       const auto i = static_cast<std::size_t>(at - solvers_.begin());
       const auto [scene, fresh] = scenes.try_emplace(r->scene, solvers_.size());
       if (fresh) order.push_back(r->scene);
-      for (Count* count : {&scene->second[i], &all[i]}) {
-        ++count->cases;
-        if (completed(r->status)) continue;
-        const bool fails = is_failure(r->status);
-        count->failed += fails;
-        ++count->kinds[fails ? std::string(to_string(r->status.kind)) : "unsupported"];
-        if (fails && count->key.empty()) count->key = r->key;
-      }
+      scene->second[i].add(*r), all[i].add(*r);
     }
-    const auto add = [&](const std::string& label, const std::vector<Count>& counts) {
-      std::vector<Cell> row{label};
-      std::set<int> tried;
-      for (const Count& count : counts) {
-        if (count.cases > 0) tried.insert(count.cases);
-        const std::string kinds = join(count.kinds, ", ", [](const auto& kind) {
-          return std::to_string(kind.second) + " " + kind.first;
-        });
-        row.push_back(count.cases == 0 ? Cell("not run")
-                                       : Cell(count.failed)
-                                             .with("of " + std::to_string(count.cases) +
-                                                   (kinds.empty() ? "" : ": " + kinds)));
-        if (!count.key.empty()) row.back().key = list_.key(count.key);
-      }
-      if (tried.size() == 1) mark_best(row, Better::less, 0);
-      table.rows.push_back(std::move(row));
-    };
-    for (const std::string& scene : order) add(scene, scenes.at(scene));
+    for (const std::string& scene : order)
+      table.rows.push_back(failure_row(scene, scenes.at(scene)));
     for (const auto& [solver, count] : others)
       table.caption += "; " + solver_title(solver) + ", in maps alone, " +
                        std::to_string(count.failed) + " of " + std::to_string(count.cases);
-    add("sum of " + std::to_string(order.size()) + (order.size() == 1 ? " scene" : " scenes"), all);
+    table.rows.push_back(failure_row(
+        "sum of " + std::to_string(order.size()) + (order.size() == 1 ? " scene" : " scenes"),
+        all));
     answer_.add(std::move(table));
+  }
+
+  /// Counts are compared only where all solvers had equally many cases.
+  std::vector<Cell> failure_row(const std::string& label, const std::vector<Count>& counts) {
+    std::vector<Cell> row{label};
+    std::set<int> tried;
+    for (const Count& count : counts) {
+      if (count.cases > 0) tried.insert(count.cases);
+      const std::string kinds = join(count.kinds, ", ", [](const auto& kind) {
+        return std::to_string(kind.second) + " " + kind.first;
+      });
+      row.push_back(count.cases == 0 ? Cell("not run")
+                                     : Cell(count.failed)
+                                           .with("of " + std::to_string(count.cases) +
+                                                 (kinds.empty() ? "" : ": " + kinds)));
+      if (!count.key.empty()) row.back().key = list_.key(count.key);
+    }
+    if (tried.size() == 1) mark_best(row, Better::less, 0);
+    return row;
   }
 
   const ReportInput& input_;

@@ -167,12 +167,10 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
 }
 
 Slice hold(const Records& records, const std::string& setting, double preferred) {
-  constexpr std::size_t kMostSets = 3;
   std::map<double, int> counts;
   for (const Record* record : records)
     if (const double value = value_of(*record, setting); std::isfinite(value)) ++counts[value];
-  if (counts.empty() || (counts.size() > 1 && counts.size() <= kMostSets))
-    return {records, std::numeric_limits<double>::quiet_NaN()};
+  if (counts.empty()) return {records, std::numeric_limits<double>::quiet_NaN()};
   const auto badness = [&](double value) { return std::abs(std::log(value / preferred)); };
   const auto best = std::ranges::max_element(counts, [&](const auto& a, const auto& b) {
     return std::pair(a.second, -badness(a.first)) < std::pair(b.second, -badness(b.first));
@@ -216,7 +214,8 @@ std::vector<std::string> coincident_curves(const Chart& chart) {
   for (std::size_t j = 1; j < chart.curves.size(); ++j)
     for (std::size_t i = 0; i < j; ++i) {
       const auto a = values(chart.curves[i]), b = values(chart.curves[j]);
-      double apart = a.size() == b.size() && a.size() > 1 ? 0 : 1;
+      const bool zeros = std::ranges::all_of(b, [](const auto& p) { return p.second == 0; });
+      double apart = a.size() == b.size() && a.size() > 1 && !zeros ? 0 : 1;
       for (auto one = a.begin(), other = b.begin(); apart < kSame && one != a.end(); ++one, ++other)
         apart = one->first != other->first ? 1
                 : one->second == other->second
@@ -326,13 +325,11 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
   std::vector<Chart> charts;
   // Curves along the time step are of one number of sweeps, all others of one time step.
   const auto add = [&](const std::string& id, const std::string& kind, const std::string& x,
-                       const std::string& y, const std::string& along, const std::string& caption) {
-    const std::string over = along == "setting" ? kSweeps : along,
-                      held = along == "dt" ? kSweeps : "dt";
-    const Slice slice =
-        hold(records_along(input, scene, over, y), held, held == "dt" ? 1.0 / 64 : 16);
+                       const std::string& y, const std::string& caption) {
+    const std::string held = x == "dt" ? kSweeps : "dt";
+    const Slice slice = hold(records_along(input, scene, x, y), held, held == "dt" ? 1.0 / 64 : 16);
     try {
-      Chart chart = make_chart(kind, slice.records, x, y, along);
+      Chart chart = make_chart(kind, slice.records, x, y, x);
       chart.id = scene + "-" + id, chart.scene = scene, chart.caption = caption;
       chart.title =
           capitalised(chart.y.title) + " over " + (x == "dt" ? "the time step" : chart.x.title);
@@ -348,23 +345,17 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
   for (const ValueSpec* value : values) {
     if (!over_sweeps_alone(*value)) continue;
     const std::string y(value->name);
-    if (!add(id_of(*value), "convergence", kSweeps, y, kSweeps, caption_of(*value))) continue;
+    if (!add(id_of(*value), "convergence", kSweeps, y, caption_of(*value))) continue;
     for (const StudyResult& study : input.studies)
       if (const auto at = study.slopes.find(scene);
           value->falls_with_sweeps && at != study.slopes.end())
         charts.back().slope = at->second;
   }
-  const bool timed =
-      std::ranges::any_of(records_along(input, scene, kSweeps, kErrorMetric),
-                          [](const Record* r) { return std::isfinite(value_of(*r, kCpuValue)); });
-  if (add("work", "work-precision", timed ? kCpuValue : "projections", kErrorMetric, "setting",
-          "Down and left is better."))
-    charts.back().front = true;
   for (const ValueSpec* value : values) {
     if (over_sweeps_alone(*value)) continue;
     const std::string y(value->name);
-    add(id_of(*value), "contact", kSweeps, y, kSweeps, caption_of(*value));
-    add(id_of(*value) + "-dt", "contact", "dt", y, "dt", caption_of(*value));
+    add(id_of(*value), "contact", kSweeps, y, caption_of(*value));
+    add(id_of(*value) + "-dt", "contact", "dt", y, caption_of(*value));
   }
   return charts;
 }
@@ -401,9 +392,7 @@ Chart cost_chart(const SceneBench& scene, const Records& records) {
   Chart chart = make_chart("cost", records, "cpu.per_second", kErrorMetric, "setting");
   chart.id = slug(scene.scene) + "-cost", chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
-  chart.caption =
-      "Down and left is better. Two runs of identical code: " + fixed(scene.control.low, 2) +
-      " to " + fixed(scene.control.high, 2) + ".";
+  chart.caption = "Down and left is better.";
   chart.front = true;
   for (const BenchedCase& c : scene.cases)
     if (c.stable()) chart.cost[c.record.key] = c.cost();

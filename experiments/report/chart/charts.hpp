@@ -38,8 +38,7 @@ std::vector<Curve> make_curves(const Records&, const std::string& x, const std::
                                const std::string& along, const std::string& also = "");
 
 /// The records at the value of `setting` which most of them share (ties: nearest to `preferred`),
-/// with that value in SI units. All records and NaN if two or three values were tried, which are
-/// that many sets of curves, or if none has the setting.
+/// with that value in SI units. All records and NaN if none has the setting.
 struct Slice {
   Records records;
   double value = 0;
@@ -76,7 +75,7 @@ Chart make_chart(std::string kind, const Records&, const std::string& x, const s
 void add_floor(Chart&);
 
 /// Which curves lie within a hundredth of an earlier one at every point, a sentence each: one would
-/// hide the other. None of more than a dozen curves.
+/// hide the other; zeros stand side by side on the axis. None of more than a dozen curves.
 std::vector<std::string> coincident_curves(const Chart&);
 
 /// Whether the point has no value to be drawn: it failed. What a solver cannot run is no failure.

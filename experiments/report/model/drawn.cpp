@@ -59,8 +59,8 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     cut.t.resize(static_cast<std::size_t>(end)), cut.y.resize(static_cast<std::size_t>(end));
     if (cut.t.size() > 1) by_value[series.value].push_back(json_of(cut, refs));
   }
-  // The scene's own quantity before an error that every scene has; last what stays zero but for
-  // rounding.
+  // The scene's own quantity before an error that every scene has; what stays zero but for rounding
+  // shows nothing.
   constexpr double kNoise = 1e-6;
   const auto place = [&](const std::string& value) {
     double largest = 0;
@@ -72,22 +72,12 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     return largest < kNoise ? 2 : spec && spec->role == Role::error ? 1 : 0;
   };
   Json tracks;
-  for (const int wanted : {0, 1, 2})
+  for (const int wanted : {0, 1})
     for (auto& [value, series] : by_value)
       if (place(value) == wanted)
         tracks.push_back(
             {{"metric", value}, {"title", capitalised(refs.use(value).title)}, {"series", series}});
   return tracks;
-}
-
-Json json_of(const MaterialRow& row) {
-  Json one{{"solver", row.solver}};
-  for (const MaterialRow::Still& m : row.stills)
-    one["moments"].push_back({{"t", m.t},
-                              {"rms", m.rms},
-                              {"text", shown(kErrorShare, m.rms)},
-                              {"image", "data:image/png;base64," + base64(m.png)}});
-  return one;
 }
 
 }  // namespace
@@ -99,20 +89,14 @@ Json json_interval(const Interval& i, std::size_t n) {
           {"n", n}};
 }
 
-Json json_of(const Chart& chart, CaseList& refs) {
-  Json one{{"id", chart.id},
-           {"scene", chart.scene},
-           {"kind", chart.kind},
-           {"title", chart.title},
-           {"caption", chart.caption},
-           {"x", json_of_axis(refs.use(chart.x.name), chart.ticks)},
-           {"y", json_of_axis(refs.use(chart.y.name), {})}};
-  add_if(one, "held", chart.held);
-  bool zeros = true;
+namespace {
+
+/// Its curves, all of a small chart; of a large one as many points as a page can draw, and a
+/// sentence on what is left out.
+void add_curves(Json& one, const Chart& chart, CaseList& refs) {
   std::size_t all = 0, failures = 0;
   for (const Curve& curve : chart.curves)
-    for (const Point& p : curve.points)
-      ++all, failures += failed(p), zeros = zeros && (failed(p) || p.y == 0);
+    for (const Point& p : curve.points) ++all, failures += failed(p);
   const std::vector<std::size_t> places =
       places_of(chart.curves.size(), all > kMostPoints ? kMostCurves : chart.curves.size());
   std::size_t drawn = 0;
@@ -134,18 +118,36 @@ Json json_of(const Chart& chart, CaseList& refs) {
                      " points, on " + std::to_string(places.size()) + " of " +
                      std::to_string(chart.curves.size()) + " curves; " + std::to_string(failures) +
                      " cases that failed are among the others.";
+}
+
+bool all_zero(const Chart& chart) {
+  return std::ranges::all_of(chart.curves, [](const Curve& curve) {
+    return std::ranges::all_of(curve.points, [](const Point& p) { return failed(p) || p.y == 0; });
+  });
+}
+
+}  // namespace
+
+Json json_of(const Chart& chart, CaseList& refs) {
+  Json one{{"id", chart.id},
+           {"scene", chart.scene},
+           {"kind", chart.kind},
+           {"title", chart.title},
+           {"caption", chart.caption},
+           {"x", json_of_axis(refs.use(chart.x.name), chart.ticks)},
+           {"y", json_of_axis(refs.use(chart.y.name), {})}};
+  add_if(one, "held", chart.held);
+  add_curves(one, chart, refs);
   for (const TimeSeries& series : chart.series) one["series"].push_back(json_of(series, refs));
   if (const double factor = theory_factor(chart); std::isfinite(factor))
     one["theory"] = {{"slope", *chart.slope},
                      {"factor", factor},
                      {"text", "theory: slope " + significant(*chart.slope, 2)}};
-  if (chart.floor)
-    one["floor"] = {{"y", chart.floor->y},
-                    {"text", chart.floor->text + ", " + chart.y.text(chart.floor->y)}};
+  if (chart.floor) one["floor"] = {{"y", chart.floor->y}, {"text", chart.floor->text}};
   if (chart.front)
     for (const Point& p : pareto_front(chart))
       one["front"].push_back({{"x", p.x}, {"y", p.y}, {"case", refs.key(*p.record)}});
-  if (zeros && !chart.curves.empty())
+  if (all_zero(chart) && !chart.curves.empty())
     one["zeros"] = true;
   else
     add_if(one, "same", coincident_curves(chart));
@@ -182,49 +184,28 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
 
 Json json_of(const SceneMedia& media, const ReportInput& input, CaseList& refs,
              std::size_t& budget) {
-  Json films;
-  for (std::size_t k = 0; k < media.clips.size(); ++k) {
-    const Clip& clip = media.clips[k];
-    Json film{{"id", "film-" + media.scene + (k > 0 ? "-" + std::to_string(k + 1) : "")},
-              {"scene", media.scene},
-              {"type", clip.type}};
-    const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
-    if (weight > budget) {
-      film["left_out"] = "The page would become too large: taut render " + media.scene;
-    } else {
-      budget -= weight;
-      film["src"] = "data:" + clip.type + ";base64," + base64(clip.bytes);
-      if (!clip.poster.empty())
-        film["poster"] = "data:" + clip.poster_type + ";base64," + base64(clip.poster);
-    }
-    film["poster_t"] = media.poster, film["duration"] = media.duration;
-    film["frame"] = media.frame, film["speed"] = media.speed;
-    film["alt"] = clip.alt;
-    for (const Clip::Panel& panel : clip.panels) {
-      Json one{{"solver", panel.solver}, {"settings", panel.settings}};
-      add_if(one, "case", refs.key(panel.key));
-      film["panels"].push_back(std::move(one));
-    }
-    film["caption"] = join(clip.panels, "; ", [](const Clip::Panel& panel) {
-      return solver_title(panel.solver) + ": " + panel.settings;
-    });
-    add_if(film, "bar", media.bar);
-    add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
-    films.push_back(std::move(film));
+  const Clip& clip = media.clip;
+  Json film{{"id", "film-" + media.scene}, {"scene", media.scene}, {"type", clip.type}};
+  const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
+  if (weight > budget) {
+    film["left_out"] = "The page would become too large: taut render " + media.scene;
+  } else {
+    budget -= weight;
+    film["src"] = "data:" + clip.type + ";base64," + base64(clip.bytes);
+    if (!clip.poster.empty())
+      film["poster"] = "data:" + clip.poster_type + ";base64," + base64(clip.poster);
   }
-  if (!media.material.empty() && !films.is_null()) {
-    Json rows;
-    for (const MaterialRow& row : media.material) {
-      std::size_t weight = 0;
-      for (const MaterialRow::Still& m : row.stills) weight += m.png.size() * 4 / 3;
-      if (weight > budget) continue;
-      budget -= weight;
-      rows.push_back(json_of(row));
-    }
-    if (!rows.is_null())
-      films.front()["material"] = {{"aspect", media.aspect}, {"rows", std::move(rows)}};
+  film["poster_t"] = media.poster, film["duration"] = media.duration;
+  film["frame"] = media.frame, film["speed"] = media.speed;
+  film["alt"] = clip.alt;
+  for (const Clip::Panel& panel : clip.panels) {
+    Json one{{"solver", panel.solver}, {"settings", panel.settings}};
+    add_if(one, "case", refs.key(panel.key));
+    film["panels"].push_back(std::move(one));
   }
-  return films;
+  add_if(film, "bar", media.bar);
+  add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
+  return film;
 }
 
 }  // namespace taut::report

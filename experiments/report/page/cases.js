@@ -8,6 +8,7 @@ const caseColumns = (() => {
     scale: metric(name).scale, cell: (c) => number(value(c) === undefined ? NaN : value(c) * metric(name).scale)});
   const used = (name) => model.cases.some((c) => Number.isFinite(c.values[name]));
   const values = Object.keys(model.metrics).filter(used), told = (name) => model.metrics[name].role;
+  const place = (name) => [...questions.keys(), name].indexOf(name);  // as the answer asks
   const cost = measured('cpu.per_second', (c) => c.cost?.['cpu.per_second']?.mid);
   const extra = (column) => ({...column, extra: true});
   return [
@@ -15,7 +16,7 @@ const caseColumns = (() => {
     {...plain('brief', 'setting', (c) => c.brief, (c) => caseLink(c.key, short(c.brief || 'defaults', 48))), head: true},
     measured('dt', (c) => c.dt),
     plain('status', 'status', (c) => c.status, (c) => [glyphBox(c.status), ' ', statusOf(c.status).title]),
-    ...values.filter(told).map((name) => measured(name, (c) => c.values[name])),
+    ...values.filter(told).sort((a, b) => place(a) - place(b)).map((name) => measured(name, (c) => c.values[name])),
     ...(model.cases.some((c) => c.cost) ? [cost] : []),
     ...values.filter((name) => !told(name)).map((name) => extra(measured(name, (c) => c.values[name]))),
     extra(measured('projections', (c) => c.projections)), extra(plain('case', 'case', (c) => c.key)),

@@ -17,8 +17,8 @@ const markerPath = (name, size) => d3.symbol().type(markers[name] ?? d3.symbolCi
 const variantDashes = ['', '7 4', '2 3', '10 3 2 3', '16 4', '4 2', '10 3 2 3 2 3', '2 6'];
 const dashOf = ({solver, variant}) => variant ? variantDashes[variant % variantDashes.length] : solverOf(solver).dash;
 
-/** Pixels: of a chart, above and below its plot, and of a row of failed cases. */
-const box = {height: 250, top: 10, bottom: 22, row: 13};
+/** Pixels: of a chart alone and beside others, above and below its plot, and of a row of failed cases; powers of ten on an axis. */
+const box = {height: 250, small: 190, top: 10, bottom: 22, row: 13, smallRow: 9, decades: 6};
 
 /** A scale over shown values: logarithmic over the positive ones or linear, with a little air. */
 function scaleOf(kind, values, range) {
@@ -87,93 +87,118 @@ function swatch(series) {
 }
 
 /** Whether the reference's own error is drawn: unless it lies far below all points. */
-const floorShown = ({floor, series}) => floor.y > d3.min(series.flatMap((s) => s.points)
+const floorShown = ({floor, series}) => floor && floor.y > d3.min(series.flatMap((s) => s.points)
     .map((p) => p.failed ? 0 : p.y).filter((v) => v > 0)) / 30;
 
-/** The key, without what the solvers' switches say for the whole page: further settings of a solver, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
-function chartKey(spec, kind) {
-  const points = spec.series.flatMap((s) => s.points), grey = (dash) => swatch({colour: 'var(--muted)', dash});
+/** The key of all panels, without what the solvers' switches say for the whole page: further settings of a solver, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
+function chartKey(specs, {kind, frame}) {
+  const points = specs.flatMap(pointsOf), grey = (dash) => swatch({colour: 'var(--muted)', dash});
   const statusesOf = (which) => [...new Set(points.filter(which).map((p) => p.status))].map(statusOf);
   const failed = statusesOf((p) => p.failed), unfinished = statusesOf((p) => !p.failed && p.status !== 'ok');
   const entry = (sign, text, order) => el('li', {'data-s': order}, sign, el('span', {}, text));
+  const once = (list, textOf) => [...index(list.filter(Boolean).map((one) => ({...one, text: textOf(one)})), 'text').values()];
+  const floored = points.filter((p) => onFloor(p, specs[0], frame));
   const list = el('ul', {className: 'key'},
-    spec.series.filter((s) => s.variant || s.label !== solverOf(s.solver).title)
+    once(specs.flatMap((spec) => spec.series), (s) => s.label).filter((s) => s.variant || s.label !== solverOf(s.solver).title)
         .map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
-    (spec.same ?? []).map((text) => entry('', text)),
-    spec.theory && entry(grey('4 3'), spec.theory.text),
-    spec.floor && entry(floorShown(spec) ? grey('1 3') : '', spec.floor.text + (floorShown(spec) ? '' : ': below the plot')),
-    spec.front && entry(swatch({className: 'front', colour: 'var(--stair)', dash: ''}), 'no setting is better in both'),
+    once(specs.map((spec) => spec.theory), ({text}) => text).map(({text}) => entry(grey('4 3'), text)),
+    once(specs.filter(floorShown).map((spec) => spec.floor), ({text}) => text).map(({text}) => entry(grey('1 3'), text)),
+    specs.some((spec) => spec.front) && entry(swatch({className: 'front', colour: 'var(--stair)', dash: ''}), 'no setting is better in both'),
     failed.map((s) => entry(el('b', {}, s.glyph), `above the plot: ${s.title}`)),
-    kind === 'log' && points.some((p) => p.zero) && entry(el('b', {}, '▲'), 'on the axis: exactly zero'),
+    floored.length > 0 && entry(el('b', {}, '▲'), 'on the axis: ' + [floored.some((p) => p.zero) && 'exactly zero',
+      floored.some((p) => !p.zero) && `below ${shown(frame.least / specs[0].y.scale, specs[0].y, 1)}`].filter(Boolean).join(', or ')),
     kind === 'log' && points.some((p) => p.y < 0) && entry(el('b', {}, '!'),
       `${points.filter((p) => p.y < 0).length} below zero: linear scale only`),
     unfinished.length > 0 && entry(el('b', {}, '○'), `hollow: ${unfinished.map((s) => s.title).join(', ')}`));
   return list.children.length ? list : '';
 }
 
-/** The figure of a chart. It is drawn when it gets a width, and again when that changes. */
-function chartFigure(spec) {
-  const points = spec.series.flatMap((s) => s.points);
-  const heading = el('h4', {}, short(spec.title, 120));
-  const held = spec.held && spec.held[0].toUpperCase() + spec.held.slice(1) + '.';
-  const note = el('p', {className: 'note'}, [held, spec.caption, spec.thinned].filter(Boolean).join(' '));
-  if (points.length && points.every((p) => p.zero))
-    return el('figure', {className: 'card chart flat', id: `chart-${spec.id}`}, el('figcaption', {}, heading, note),
-              el('p', {}, `Every value is exactly zero (${count(points.length, 'case')}).`));
-  const view = {kind: spec.y.axis, clip: `clip-${drawn.size}`};
-  const plot = el('div', {className: 'plot'}), key = el('div'), bar = el('div', {className: 'tools'});
+/** What the panels of a figure share: the values on their axes, below what a point stands on the axis, the rows of failed cases. */
+function frameOf(specs, kind) {
+  const {x, y} = specs[0], points = specs.flatMap(pointsOf);
+  const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
+  const up = numbers([...points.filter((p) => !p.failed).map((p) => p.y), ...specs.filter(floorShown).map((spec) => spec.floor.y)], y.scale);
+  const least = kind === 'log' ? (d3.max(up) || 0) / 10 ** box.decades : -Infinity;
+  const frame = {kind, least, up: up.filter((v) => v >= least), rows: d3.max(specs, (spec) => failing(spec).length),
+                 across: numbers(points.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale)};
+  return {...frame, floored: points.some((p) => onFloor(p, specs[0], frame))};
+}
+const pointsOf = (spec) => spec.series.flatMap((s) => s.points);
+const failing = (spec) => spec.series.filter((s) => s.points.some((p) => p.failed));
+const onFloor = (p, {y}, {kind, least}) => kind === 'log' && !p.failed && (p.zero || (p.y > 0 && p.y * y.scale < least));
+
+/** The figure of one quantity over another: a panel for each chart, all on the same axes, `nameOf` above each. */
+function chartFigure(specs, title, nameOf) {
+  const {x, y} = specs[0], common = (get) => specs.every((spec) => get(spec) === get(specs[0]));
+  const held = (spec) => spec.held && spec.held[0].toUpperCase() + spec.held.slice(1) + '.', caption = (spec) => spec.caption;
+  const remarks = (spec, shared) => [held, caption].filter((get) => common(get) === shared).map((get) => get(spec)).filter(Boolean);
+  for (const {values} of d3.nest().key((s) => s.solver).entries(specs.flatMap((spec) => spec.series))) {
+    const labels = [...new Set(values.map((s) => s.label))];  // the same dash in every panel
+    for (const s of values) s.variant = labels.indexOf(s.label);
+  }
+  const view = {kind: y.axis, height: specs.length > 1 ? box.small : box.height, frame: frameOf(specs, y.axis), draws: []};
+  const key = el('div'), bar = el('div', {className: 'tools'});
+  const keyOf = () => key.replaceChildren(chartKey(specs, view));
+  if (specs.some((spec) => pointsOf(spec).some((p) => p.y > 0))) {
+    const other = () => view.kind === 'log' ? 'linear' : 'log';
+    const flip = el('button', {type: 'button', title: 'other vertical scale', onclick: () => {
+      view.kind = other();
+      view.frame = frameOf(specs, view.kind);
+      flip.textContent = other();
+      keyOf();
+      for (const draw of view.draws) draw();
+    }}, other());
+    bar.append(flip);
+  }
+  keyOf();
+  return el('figure', {className: 'card chart'},
+    el('figcaption', {}, el('h3', {}, short(title, 120)), bar, note(remarks(specs[0], true).join(' '))), key,
+    el('div', {className: 'y-title'}, titled(y)),
+    el('div', {className: specs.length > 1 ? 'multiples' : ''}, specs.map((spec) =>
+      chartPanel(spec, view, nameOf?.(spec), [...remarks(spec, false), spec.thinned, ...(spec.same ?? [])]))),
+    el('div', {className: 'x-title'}, titled(x)));
+}
+
+/** One panel of a figure. It is drawn when it gets a width, and again when that changes. */
+function chartPanel(spec, view, name, remarks) {
+  const points = pointsOf(spec), said = remarks.filter(Boolean).map((text) => el('div', {}, text));
+  const panel = (...content) => el('div', {className: 'panel', id: `chart-${spec.id}`}, name && el('h4', {}, name), content,
+                                   said.length ? el('small', {}, said) : null);
+  if (points.length && points.every((p) => p.zero)) return panel(el('p', {}, `Every value is exactly zero (${count(points.length, 'case')}).`));
+  const plot = el('div', {className: 'plot', style: `min-height:${view.height}px`}), clip = `clip-${drawn.size}`;
   const svg = d3.select(plot).append('svg').attr('role', 'group')
-      .attr('aria-label', short(`${spec.title}: points`, 160));
+      .attr('aria-label', short(`${spec.title}, ${spec.scene}: points`, 160));
   const reset = rove(plot, '.point');
   const draw = (width) => {
     if (!width) return;
     const active = document.activeElement?.dataset?.place;
-    drawChart(svg, spec, view, width);
+    drawChart(svg, spec, {...view, clip}, width);
     if (svg.node().contains(document.activeElement) || active !== undefined)
       svg.node().querySelector(`[data-place="${active}"]`)?.focus();
     reset();
   };
   const again = () => draw(plot.clientWidth);
-  const keyOf = () => key.replaceChildren(chartKey(spec, view.kind));
-  if (points.some((p) => p.y > 0)) {
-    const other = () => view.kind === 'log' ? 'linear' : 'log';
-    const flip = el('button', {type: 'button', title: 'other vertical scale', onclick: () => {
-      view.kind = other();
-      flip.textContent = other();
-      keyOf();
-      again();
-    }}, other());
-    bar.append(flip);
-  }
-  keyOf();
+  view.draws.push(again);
   watchWidth(plot, again);
   drawn.add({plot, draw});
-  return el('figure', {className: 'card chart', id: `chart-${spec.id}`}, el('figcaption', {}, heading, bar, note), key,
-            el('div', {className: 'y-title'}, titled(spec.y)), plot, el('div', {className: 'x-title'}, titled(spec.x)));
+  return panel(plot);
 }
 
-function drawChart(svg, spec, view, width) {
-  const flat = spec.series.flatMap((s) => s.points), {x, y} = spec;
-  const failing = spec.series.filter((s) => s.points.some((p) => p.failed));
-  const strip = failing.length ? failing.length * box.row + 6 : 0;
-  const floor = view.kind === 'log' && flat.some((p) => p.zero) ? 12 : 0;
-  const [yLow, yHigh] = [box.height - box.bottom - floor, box.top + strip];
-  const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
-  const measured = flat.filter((p) => !p.failed).map((p) => p.y);
-  if (spec.floor && floorShown(spec)) measured.push(spec.floor.y);
-  const up = numbers(measured, y.scale);
-  const across = numbers(flat.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale);
-  const ys = scaleOf(view.kind, up, [yLow, yHigh]);
-  svg.attr('viewBox', `0 0 ${width} ${box.height}`).attr('width', width).attr('height', box.height);
+function drawChart(svg, spec, {kind, height, frame, clip}, width) {
+  const {x, y} = spec, failures = failing(spec), row = height === box.height ? box.row : box.smallRow;
+  const strip = frame.rows ? frame.rows * row + 6 : 0, base = height - box.bottom, floor = frame.floored ? 12 : 0;
+  const [yLow, yHigh] = [base - floor, box.top + strip];
+  const ys = scaleOf(kind, frame.up, [yLow, yHigh]);
+  svg.attr('viewBox', `0 0 ${width} ${height}`).attr('width', width).attr('height', height);
   svg.selectAll('*').remove();
   const axisY = svg.append('g').attr('class', 'axis y');
-  axisY.call(d3.axisLeft(ys).tickValues(ticksOf(ys, {...y, values: undefined}, view.kind, 5))
+  axisY.call(d3.axisLeft(ys).tickValues(ticksOf(ys, {...y, values: undefined}, kind, height / 50))
       .tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
   const left = Math.ceil(axisY.node().getBBox().width) + 4;
   axisY.attr('transform', `translate(${left},0)`);
-  const axisX = svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${box.height - box.bottom})`);
+  const axisX = svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${base})`);
   const drawX = (margin) => {
-    const scale = scaleOf(x.axis, across, [left + 8, width - margin]);
+    const scale = scaleOf(x.axis, frame.across, [left + 8, width - margin]);
     axisX.call(d3.axisBottom(scale).tickValues(ticksOf(scale, x, x.axis, width / 90))
         .tickFormat((v) => number(v)).tickSize(4).tickPadding(4));
     return scale;
@@ -185,35 +210,33 @@ function drawChart(svg, spec, view, width) {
   axisY.selectAll('.tick line').attr('x2', width - left - right);
   axisX.select('.domain').attr('d', `M${left},0H${width - right}`);
   thin(axisX.selectAll('text').nodes());
-  svg.append('clipPath').attr('id', view.clip).append('rect').attr('x', left).attr('y', yHigh - 4)
+  svg.append('clipPath').attr('id', clip).append('rect').attr('x', left).attr('y', yHigh - 4)
       .attr('width', Math.max(0, width - left - right + 6)).attr('height', Math.max(0, yLow - yHigh + 8));
-  const area = svg.append('g').attr('clip-path', `url(#${view.clip})`);
+  const area = svg.append('g').attr('clip-path', `url(#${clip})`);
   const px = (v) => xs(v * x.scale), py = (v) => ys(v * y.scale);
-  const usable = (p) => !p.failed && typeof p.y === 'number' && (view.kind !== 'log' || p.y > 0);
+  const usable = (p) => !p.failed && typeof p.y === 'number' && (kind !== 'log' || p.y * y.scale >= frame.least && p.y > 0);
   const line = d3.line().defined(usable).x((p) => px(p.x)).y((p) => py(p.y));
   if (spec.front)
     area.append('path').attr('class', 'front').attr('d', line.curve(d3.curveStepAfter)(spec.front.filter(usable)));
   line.curve(d3.curveLinear);
-  if (spec.theory && (view.kind === 'log') === (x.axis === 'log')) {
+  if (spec.theory && (kind === 'log') === (x.axis === 'log')) {
     const ends = xs.domain().map((v) => v / x.scale);
     area.append('path').attr('class', 'theory')
         .attr('d', d3.line()(ends.map((v) => [px(v), py(spec.theory.factor * v ** spec.theory.slope)])));
   }
-  if (spec.floor && floorShown(spec)) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
+  if (floorShown(spec)) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
   spec.series.forEach((s, order) => {
     const solver = solverOf(s.solver), colour = solverColour(s.solver);
-    const dodge = (order - (spec.series.length - 1) / 2) * 7;
+    const dodge = (order - (spec.series.length - 1) / 2) * Math.min(7, 30 / spec.series.length);
     const lines = area.append('g').attr('data-s', solver.order).style('stroke', colour).style('fill', 'none');
     if (s.join) lines.append('path').attr('class', 'line').attr('stroke-dasharray', dashOf(s)).attr('d', line(s.points));
     lines.append('path').attr('class', 'error')
         .attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py)).join(''));
     const group = svg.append('g').attr('data-s', solver.order).style('color', colour);
     s.points.forEach((p, i) => {
-      const floored = p.zero && view.kind === 'log';
-      if (!p.failed && !floored && !usable(p)) return;
-      const cx = px(p.x) + (floored ? dodge : 0);
-      const cy = p.failed ? box.top + 4 + failing.indexOf(s) * box.row
-                          : floored ? box.height - box.bottom - 5 : py(p.y);
+      const floored = onFloor(p, spec, frame), cx = px(p.x) + (floored ? dodge : 0);
+      if (!Number.isFinite(cx) || (!p.failed && !floored && !usable(p))) return;
+      const cy = p.failed ? box.top + 4 + failures.indexOf(s) * row : floored ? base - 5 : py(p.y);
       drawPoint(group, {spec, series: s, point: p, place: `${order}-${i}`, order, cx, cy, floored});
     });
   });

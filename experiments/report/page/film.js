@@ -95,19 +95,14 @@ function panels(film) {
         statusOf(cases.get(key).status).title]))));
 }
 
-/** All films of a scene in one player: the first one leads, the others follow it. */
-function player(scene, list) {
-  const playable = list.filter((film) => film.src), lead = playable.find((film) => film.type.startsWith('video/'));
-  const pictures = playable.map((film) => {
-    const size = {alt: film.alt, className: 'picture'};
-    if (!film.type.startsWith('video/')) return el('img', {...size, src: film.src});
-    return el('video', {className: 'picture', poster: film.poster, muted: true, playsInline: true, preload: 'none',
-                        'aria-label': film.alt});
-  });
-  const videos = pictures.filter((p) => p.tagName === 'VIDEO');
-  const tracks = playable.flatMap((film) => film.tracks ?? [])
-      .map((track) => timeChart(track, (t) => seek(t), lead?.duration));
-  let time = lead?.poster_t ?? playable[0]?.poster_t ?? 0, touched = false;
+/** The film of a scene with its controls, and its tracks beside it. */
+function player(scene, film) {
+  const moves = film.src && film.type.startsWith('video/');
+  const video = moves ? el('video', {className: 'picture', poster: film.poster, muted: true, playsInline: true, preload: 'none',
+                                     'aria-label': film.alt}) : null;
+  const picture = video ?? (film.src ? el('img', {alt: film.alt, className: 'picture', src: film.src}) : note(film.left_out));
+  const tracks = (film.tracks ?? []).map((track) => timeChart(track, (t) => seek(t), film.duration));
+  let time = film.poster_t ?? 0, touched = false;
   const label = el('span', {}, 'play'), clock = el('output', {className: 'clock'}, seconds(time));
   const slider = el('input', {type: 'range', min: 0, 'aria-label': `Time of the film of ${short(scene.title)} [s]`,
     oninput: () => seek(Number(slider.value))});
@@ -116,67 +111,61 @@ function player(scene, list) {
     slider.value = time;
     for (const track of tracks) track.show(time);
   };
-  const load = () => videos.forEach((video, i) => {
-    const film = playable.filter((f) => f.type.startsWith('video/'))[i];
-    if (video.src || !film) return;
-    video.addEventListener('loadedmetadata', () => place(video));
+  const load = () => {
+    if (video.src) return;
+    video.addEventListener('loadedmetadata', place);
     video.src = blobUrl(film.src);
-  });
+  };
   /** A frame is sought a little after its beginning: rounding must not show the one before. */
-  const place = (video) => {
-    const into = (time + (time > 0 ? lead.frame / 8 : 0)) / lead.speed;
+  const place = () => {
+    const into = (time + (time > 0 ? film.frame / 8 : 0)) / film.speed;
     if (video.readyState) video.currentTime = Math.min(video.duration, into);
   };
   const pause = () => {
-    for (const video of videos) video.pause();
+    video.pause();
     label.textContent = 'play';
     box.classList.remove('playing');
   };
   const seek = (t) => {
-    if (!lead) { time = t; return show(); }
-    load();
-    pause();
-    touched = true;
-    time = Math.max(0, Math.min(lead.duration, t));
-    videos.forEach(place);
+    time = Math.max(0, Math.min(film.duration, t));
+    if (video) {
+      load();
+      pause();
+      touched = true;
+      place();
+    }
     show();
   };
   const follow = () => {
-    if (videos[0].paused) return;
-    time = videos[0].currentTime * lead.speed;
-    const behind = (video) => Math.abs(video.currentTime - videos[0].currentTime) > 2 * lead.frame / lead.speed;
-    for (const video of videos.filter(behind)) video.currentTime = videos[0].currentTime;
+    if (video.paused) return;
+    time = video.currentTime * film.speed;
     show();
     requestAnimationFrame(follow);
   };
   const toggle = () => {
-    if (!videos[0].paused) return pause();
-    if (!touched || time >= lead.duration - lead.frame) seek(0);
+    if (!video.paused) return pause();
+    if (!touched || time >= film.duration - film.frame) seek(0);
     load();
     touched = true;
-    Promise.all(videos.map((video) => video.play())).then(() => requestAnimationFrame(follow)).catch(pause);
+    video.play().then(() => requestAnimationFrame(follow)).catch(pause);
     label.textContent = 'pause';
     box.classList.add('playing');
   };
-  const step = (by) => seek((Math.round(time / lead.frame) + by) * lead.frame);
+  const step = (by) => seek((Math.round(time / film.frame) + by) * film.frame);
   const button = (text, name, act) => el('button', {type: 'button', 'aria-label': name, onclick: act}, text);
-  const box = el('div', {className: 'card player', 'data-at': 'film', tabIndex: lead ? 0 : undefined, role: 'group',
+  const box = el('div', {className: 'card player', 'data-at': 'film', tabIndex: video ? 0 : undefined, role: 'group',
                          'aria-label': `Film of ${short(scene.title)}`},
-    el('div', {className: 'stage'},
-      el('div', {className: 'pictures'},
-         playable.map((film, i) => el('div', {className: 'film'}, panels(film), pictures[i]))),
-      playable[0]?.bar && colourBar(playable[0].bar),
-      lead && el('div', {className: 'controls'},
+    el('div', {className: 'stage'}, panels(film), picture, film.bar && colourBar(film.bar),
+      video && el('div', {className: 'controls'},
         el('button', {type: 'button', className: 'play', onclick: toggle}, label),
         button('◂', 'One frame back', () => step(-1)), button('▸', 'One frame forward', () => step(1)), slider, clock,
-        el('span', {className: 'hint'}, lead.speed < 1 && `${number(lead.speed, 2)} of real time · `, 'space, ← →'))),
-    el('div', {className: 'beside'}, tracks.map((track) => track.node),
-      list.map((film) => el('p', {className: 'note'}, film.left_out ?? film.caption))));
-  if (lead) {
-    slider.max = lead.duration;
-    slider.step = lead.frame;
-    for (const video of videos) video.onclick = () => { box.focus({preventScroll: true}); toggle(); };
-    videos[0].addEventListener('ended', pause);
+        el('span', {className: 'hint'}, film.speed < 1 && `${number(film.speed, 2)} of real time · `, 'space, ← →'))),
+    el('div', {className: 'beside'}, tracks.map((track) => track.node)));
+  if (video) {
+    slider.max = film.duration;
+    slider.step = film.frame;
+    video.onclick = () => { box.focus({preventScroll: true}); toggle(); };
+    video.addEventListener('ended', pause);
     box.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('button, a, input')) return;
       const act = {' ': toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1)}[event.key];

@@ -52,5 +52,5 @@ function mapsOf(scene) {
     d3.nest().key((map) => map.study + '\n' + map.title).entries(shown).map(({values}) => [
       el('h4', {}, short(values[0].title, 140), ' ', el('small', {}, `study ${short(values[0].study, 40)}`,
         values[0].scene_settings && `: ${short(values[0].scene_settings, 100)}`)),
-      el('div', {className: 'grid'}, values.map(mapFigure))]));
+      el('div', {className: 'grid three'}, values.map(mapFigure))]));
 }

@@ -28,7 +28,7 @@ function watchPrinting() {
   const begin = () => {
     if (document.body.classList.contains('printing')) return;
     document.body.classList.add('printing');
-    sceneView.showAll();
+    for (const {showAll} of oneOf.views) showAll();
     closed = [...document.querySelectorAll('main details:not([open])')];
     for (const part of closed) part.open = true;
     for (const {draw} of drawn) draw(330);
@@ -36,7 +36,7 @@ function watchPrinting() {
   const end = () => {
     document.body.classList.remove('printing');
     for (const part of closed) part.open = false;
-    if (sceneView.boxes.length) sceneView.showOne();
+    for (const {showOne} of oneOf.views) showOne();
     for (const {draw, plot} of drawn) draw(plot.clientWidth);
   };
   addEventListener('beforeprint', begin);
@@ -50,7 +50,7 @@ const placeOf = (id) => document.getElementById(id) ??
 
 function start() {
   paint();
-  const sections = [answerSection(), differencesSection(), sceneSection(), costSection(), stepsSection(), limitsSection(),
+  const sections = [answerSection(), differencesSection(), chartsSection(), sceneSection(), costSection(), stepsSection(), limitsSection(),
                     truthsSection(),
                     regressionSection(), casesSection(), methodSection()].filter(Boolean);
   document.getElementById('main').append(...sections);

@@ -22,8 +22,8 @@ function stepsSection() {
   return steps ? section('steps', 'Inside one step',
     note('Each solver does 1, 2, 3, ... iterations of one step from the same state: what does the next one bring? ',
          el('code', {}, 'taut converge')),
-    el('div', {className: 'grid three'}, all(steps.charts, charts).map(chartFigure)),
-    all(steps.tables, tables).map((table) => folded(table.title, tableNode(table)))) : null;
+    steps.charts && chartFigure(all(steps.charts, charts), 'Distance from the exact step', (spec) => short(spec.title, 60)),
+    all(steps.tables, tables).map(foldedTable)) : null;
 }
 
 function limitsSection() {
@@ -74,8 +74,7 @@ function methodSection() {
     folded('Solvers', tableOf('Solvers', ['solver', 'what it is', 'source', 'settings compared', 'cannot run'], model.solvers.map(solver))),
     method.studies?.length ? el('ul', {}, method.studies.map(study)) : null,
     el('p', {}, 'This makes it all again:'), command(model.meta.command)),
-    all(method.tables, tables).map((table) => folded(table.title,
-      scrolling(table.title, tableHeads(table), table.rows.map((cells) => tableRow(table, cells))))),
+    all(method.tables, tables).map(foldedTable),
     folded('Metrics, build and machine', tableOf('Metrics', ['metric', 'definition', 'unit', 'window'], glossary),
            factList([...(method.facts ?? []), ...build])),
     list('What this does not show', method.limits?.map((text) => item(text))),

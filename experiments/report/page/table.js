@@ -38,7 +38,7 @@ const unitOf = (column) => ({unit: column.shown ?? '', scale: column.scale ?? 1}
 /** What a cell says, the interval of a cost apart. */
 function cellText({value}, column) {
   if (Number.isFinite(middle(value))) return shown(middle(value), unitOf(column), column.digits);
-  return value === null ? '–' : typeof value === 'boolean' ? value ? 'yes' : 'no' : value;
+  return value === null ? '' : typeof value === 'boolean' ? value ? 'yes' : 'no' : value;
 }
 
 /** An interval beside its middle: "±0.3 %", the interval itself at the pointer. */
@@ -53,7 +53,7 @@ function cellContent(cell, column, most, brief) {
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
   const failed = entry && entry.status !== 'ok' && !/^\d/.test(text) && glyphBox(entry.status);
   return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
-    spread, note && el('small', {title: note}, ' ', short(brief ? note.split(':')[0] : note, 90))),
+    spread, note && el('small', {title: note}, ' ', short(brief ? note.split(':')[0] : note, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
     most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
       el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
 }
@@ -80,11 +80,11 @@ function tableCsv(table) {
     ...table.rows.map((cells) => cells.map(field))].map((fields) => fields.join(',')).join('\r\n') + '\r\n';
 }
 
-function tableNode(table, heading = 'h4') {
-  return el('div', {className: 'card', id: `table-${table.name}`},
-    el(heading, {}, short(table.title, 120), ' ', copyButton(() => tableCsv(table))), note(table.caption),
-    scrolling(`${table.title} (${table.name})`, tableHeads(table), table.rows.map((cells) => tableRow(table, cells))));
-}
+const tableBody = (table) => [note(table.caption), scrolling(`${table.title} (${table.name})`, tableHeads(table),
+  table.rows.map((cells) => tableRow(table, cells)))];
+const tableNode = (table, heading = 'h4') => el('div', {className: 'card', id: `table-${table.name}`},
+  el(heading, {}, short(table.title, 120), ' ', copyButton(() => tableCsv(table))), tableBody(table));
+const foldedTable = (table) => folded(table.title, copyButton(() => tableCsv(table)), tableBody(table));
 
 /** Questions whose scenes are shown; where there is room, those of the first one, unless the reader chose. */
 function unfolded() {
@@ -92,30 +92,47 @@ function unfolded() {
   return state.get('open') || innerWidth < 1000 ? chosen : [...questions.keys()].slice(0, 1);
 }
 
-/** Rows of one question: what all scenes say together, then each of them, unfolded by a click. */
+/** A scene of the answer by the label of its row: "hang (cloth.grid=[24, 24])" is of hang. */
+const sceneOf = ([{value}]) => String(value).split(' (')[0];
+const scenesOf = (table) => table.rows.length > 2 ? table.rows.slice(0, -1) : [];
+
+/** Rows of one question: what all scenes say together, or the scene that was chosen; then each of them, unfolded by a click. */
 function questionRows(table) {
-  const last = table.rows[table.rows.length - 1], each = table.rows.slice(0, -1), id = `answer-${table.name}`;
-  const scenesOf = each.length > 1 ? each : [];
-  const sceneCell = ({value, note: why}) => {
-    const name = String(value).split(' (')[0];
-    return [scenes.has(name) ? choice({scene: name, at: 'scenes'}, {}, value) : value, why && el('small', {}, ' ', why)];
-  };
+  const last = table.rows[table.rows.length - 1], id = `answer-${table.name}`;
+  const sceneCell = ([{value, note: why}, ...rest]) => [scenes.has(sceneOf([{value}])) ?
+    choice({scene: sceneOf([{value}]), at: 'scenes'}, {}, value) : value, why && el('small', {}, ' ', why)];
   const folds = [
     el('tr', {className: 'fold'}, el('td', {colSpan: table.columns.length},
       el('small', {}, table.caption, ' '), copyButton(() => tableCsv(table)))),
-    ...scenesOf.map((cells) => tableRow(table, cells, {className: 'fold'}, sceneCell(cells[0]), true))];
-  const button = el('button', {type: 'button', className: 'unfold'}, table.title);
+    ...scenesOf(table).map((cells) => tableRow(table, cells, {className: 'fold'}, sceneCell(cells), true))];
+  const button = el('button', {type: 'button', className: 'unfold'}, table.title), body = el('tbody', {id}, folds);
   button.onclick = () => {
     const open = unfolded().filter((name) => name !== table.name);
     state.set({open: open.length < unfolded().length ? open.length ? open : 'none' : [...open, table.name]}, false);
   };
+  let head = null, shown = null;
   state.watch(() => {
-    const open = unfolded().includes(table.name);
+    const open = unfolded().includes(table.name), scene = chosenScene();
+    const cells = !scene ? last : table.rows.find((row) => sceneOf(row) === scene) ?? [{value: `not on ${scene}`}, ...last.slice(1).map(() => ({value: null}))];
     button.setAttribute('aria-expanded', open);
     for (const fold of folds) fold.classList.toggle('folded', !open);
+    if (cells === shown) return;
+    head?.remove();
+    head = tableRow(table, shown = cells, {className: 'question'},
+                    [button, el('small', {title: cells[0].note ?? ''}, cells[0].value)], true, true);
+    body.prepend(head);
   });
-  const head = [button, el('small', {title: last[0].note ?? ''}, last[0].value)];
-  return el('tbody', {id}, tableRow(table, last, {className: 'question'}, head, true, true), folds);
+  return body;
+}
+
+/** The scene whose cells the questions show; "" for all scenes together. */
+const answered = [...new Set([...questions.values()].flatMap(scenesOf).map(sceneOf))];
+const chosenScene = () => answered.includes(state.get('scene')) ? state.get('scene') : '';
+function sceneChooser() {
+  const box = el('select', {'aria-label': 'scene of the answer', onchange: () => state.set({scene: box.value}, false)},
+    el('option', {value: ''}, 'all scenes'), answered.map((scene) => el('option', {value: scene}, scene)));
+  state.watch(() => { box.value = chosenScene(); });
+  return box;
 }
 
 /** The first screen: a row for each question. */
@@ -127,5 +144,5 @@ function answerSection() {
     el('h1', {}, meta.question || meta.title),
     asked.length ? el('div', {className: `card scroll answer ${asked[0].columns.length < 5 ? 'few' : ''}`, tabIndex: 0, role: 'region', 'aria-label': 'The answer'},
       el('table', {}, el('caption', {}, model.answer.subject),
-         el('thead', {}, tableHeads(asked[0], 'question')), asked.map(questionRows))) : null);
+         el('thead', {}, tableHeads(asked[0], answered.length > 1 ? sceneChooser() : 'question')), asked.map(questionRows))) : null);
 }

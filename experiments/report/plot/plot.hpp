@@ -25,20 +25,29 @@ const PlotKind& find_plot_kind(std::string_view name);
 /// What to plot; empty parts are the kind's own.
 struct PlotSpec {
   std::string kind, x, y, along, title;
-  std::string file;             ///< without extension; "": from kind, x and y
-  std::optional<double> slope;  ///< the theory's exponent
+  std::string file;  ///< without extension; "": from kind, x and y
+};
+
+/// What stands in one panel of a figure: the records of one scene, or its series over time.
+struct PlotPanel {
+  std::string title;
+  Records records;
+  std::vector<TimeSeries> series = {};
+  std::optional<double> slope = {};  ///< the theory's exponent
 };
 
 struct PlotFiles {
   std::filesystem::path svg, pdf, gp, csv;
+  std::vector<std::string> without;  ///< panels in which nothing can be drawn, and why
 };
 
-/// Draws the records of one scene, or the series over time, with gnuplot: plain axes, a key, error
-/// bars, failures on the upper edge. The CSV has one header and a row for each point. Throws
-/// InputError if x or y is not known (with a suggestion) or there is nothing to draw, and PlotError
-/// without gnuplot (script and CSV are there then).
-PlotFiles make_plot(PlotSpec, const Records&, std::span<const TimeSeries>,
-                    const std::filesystem::path& folder);
+/// Draws panels on the same axes with one key beside them, with gnuplot: failures on the upper
+/// edge, on a logarithmic axis zeros on the lower one, where several panels also what is below
+/// 1e-8 of the largest value. Kind "stability" has a panel for each solver and choice. The CSV has
+/// one header and a row for each point. Throws InputError if x or y is not known (with a
+/// suggestion) or there is nothing to draw, and PlotError without gnuplot (script and CSV are
+/// there then).
+PlotFiles make_plot(PlotSpec, const std::vector<PlotPanel>&, const std::filesystem::path& folder);
 
 /// The share of problems, an error `spec.y` to be reached on a scene, in which each solver costs at
 /// most a factor of the best (experiments/timing/profile.hpp). Throws as make_plot().

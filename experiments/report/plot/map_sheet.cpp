@@ -1,0 +1,87 @@
+// How cases end over two settings, and how often each solver is near the cheapest.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/palette.hpp"
+#include "experiments/report/chart/wording.hpp"
+#include "experiments/report/plot/sheet.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// "set xtics (...)" and the range of cells that are one apart.
+std::string cell_ticks(const char* axis, const Quantity& q, const std::vector<double>& values) {
+  std::string list;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    list += (k > 0 ? ", " : "") + gnuplot_string(tick_of(q, values[k])) + " " + std::to_string(k);
+  return "set " + std::string(axis) + "tics (" + list + ")\nset " + axis +
+         "range [-0.5:" + exact(static_cast<double>(values.size()) - 0.5) + "]\n";
+}
+
+}  // namespace
+
+Sheet map_sheet(const std::vector<StatusMap>& maps) {
+  Sheet sheet;
+  sheet.x_label = maps.front().x.label(), sheet.y_label = maps.front().y.label();
+  sheet.csv = "curve,solver,label,x,y,column,row,status,reason,case\n";
+  std::set<Status::Kind> kinds;
+  for (const StatusMap& map : maps)
+    for (const StatusMap::Cell& cell : map.cells) kinds.insert(cell.record->status.kind);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const StatusMap& map = maps[i];
+    for (const StatusMap::Cell& cell : map.cells)
+      sheet.csv += std::to_string(i) + "," + csv_field(map.solver) + "," + csv_field(map.label) +
+                   "," + exact(map.columns[cell.column]) + "," + exact(map.rows[cell.row]) + "," +
+                   std::to_string(cell.column) + "," + std::to_string(cell.row) + "," +
+                   std::string(to_string(cell.record->status.kind)) + "," +
+                   csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "\n";
+    sheet.panels.push_back(
+        {map.label, cell_ticks("x", map.x, map.columns) + cell_ticks("y", map.y, map.rows), ""});
+    for (const Status::Kind kind : kinds) {
+      const StatusStyle style = status_style(kind);
+      const std::string cells = "'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
+                                " && strcol(8) eq '" + std::string(to_string(kind)) +
+                                "' ? column(6) : NaN):7:";
+      sheet.draw(
+          cells + "(0.45):(0.45)",
+          "with boxxyerror fs solid 1 noborder lc rgb '" + std::string(style.colour.light) + "'",
+          std::string(to_string(kind)));
+      sheet.draw(cells + "(" + gnuplot_string(style.glyph) + ")",
+                 "with labels tc rgb '" + std::string(style.ink.light) + "'", "");
+    }
+  }
+  return sheet;
+}
+
+Sheet profile_sheet(const std::vector<PerformanceProfile>& profiles) {
+  Sheet sheet;
+  double most = 2;  // of the finite factors
+  for (const PerformanceProfile& profile : profiles)
+    for (const double r : profile.ratios)
+      if (std::isfinite(r)) most = std::max(most, r);
+  sheet.x_label = "CPU time over that of the cheapest solver";
+  sheet.y_label = "share of problems [%]";
+  sheet.settings = "set logscale x\nset xrange [1:" + exact(1.1 * most) + "]\nset yrange [0:105]\n";
+  sheet.csv = "curve,solver,factor,share\n";
+  sheet.panels.emplace_back();
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    const PerformanceProfile& profile = profiles[i];
+    std::set<double> factors{1, 1.1 * most};
+    for (const double r : profile.ratios)
+      if (std::isfinite(r)) factors.insert(r);
+    for (const double factor : factors)
+      sheet.csv += std::to_string(i) + "," + csv_field(profile.solver) + "," + exact(factor) + "," +
+                   exact(profile.share(factor)) + "\n";
+    sheet.draw("'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
+                   " ? column(3) : NaN):(100*column(4))",
+               "with steps lw 2 lc rgb '" + colour_of(profile.solver) + "' dt " +
+                   dash_of(profile.solver, 0),
+               solver_title(profile.solver));
+  }
+  return sheet;
+}
+
+}  // namespace taut::report
