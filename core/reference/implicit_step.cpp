@@ -18,12 +18,42 @@ using Points = std::vector<Vec3>;
 
 /// K of rigid links over the largest m/h^2, at first and at most.
 constexpr double kHardness = 1e4, kHardest = 1e8;
-/// Multipliers that leave more than this share of the violation grow without end: a flat cloth with
-/// both diagonals resists bending across its folds at second order alone. Then K grows instead, and
-/// what is left of the bend is halved with every factor of 8.
+/// Multipliers that leave more than this share of the violation grow without end, where links
+/// resist at second order alone: a taut row between two pins. Then K grows instead, and what is
+/// left of the bend is halved with every factor of 8.
 constexpr double kStalls = 0.8;
 constexpr double kLocked = 1e-7;     ///< m, of a violation
 constexpr double kRounding = 1e-14;  ///< m, of all lengths together
+constexpr double kFlat = 1e-13;      ///< of lengths: what is in a plane, or on a line
+constexpr double kNothing = 1e-12;   ///< a weight beside those of order 1
+
+using Weights = std::map<std::size_t, double>;
+
+/// sum of weights x = 0 of three vertices with these distances; empty: they are not on a line.
+std::vector<double> on_a_line(double ab, double ac, double bc) {
+  for (const auto& [sum, relation] :
+       {std::pair(ab + bc - ac, std::vector{-bc / ac, 1.0, -ab / ac}),
+        std::pair(ab + ac - bc, std::vector{1.0, -ac / bc, -ab / bc}),
+        std::pair(ac + bc - ab, std::vector{-bc / ab, -ac / ab, 1.0})})
+    if (std::abs(sum) < kFlat * (ab + ac + bc)) return relation;
+  return {};
+}
+
+/// The same of four with a, b and c on no line; empty: they are not in a plane.
+std::vector<double> in_a_plane(double ab, double ac, double ad, double bc, double bd, double cd) {
+  const auto place = [&](double from_a, double from_b) {  // a = (0, 0), b = (ab, 0)
+    const double along = (ab * ab + from_a * from_a - from_b * from_b) / (2 * ab);
+    return std::pair(along, std::sqrt(std::max(0.0, from_a * from_a - along * along)));
+  };
+  const auto [cx, cy] = place(ac, bc);
+  const auto [dx, up] = place(ad, bd);
+  for (const double dy : {up, -up})
+    if (std::abs(std::hypot(dx - cx, dy - cy) - cd) < kFlat * (ab + ac + ad)) {
+      const double c = dy / cy, b = (dx - c * cx) / ab;
+      return {1 - b - c, b, c, -1};
+    }
+  return {};
+}
 
 }  // namespace
 
@@ -52,6 +82,55 @@ ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, cons
       y_[i] += h * keep * from.v[i] + h * h * acceleration[i];
     else
       y_[i] = pin_position(scene, static_cast<int>(i), t + h);
+  if (rigid_) find_implied(scene, k);
+}
+
+/// Relations of rigidly linked vertices, each solved for one that moves.
+void ImplicitStep::find_implied(const Scene& scene, const Stiffness& stiffness) {
+  std::vector<std::map<std::size_t, double>> beside(y_.size());  // later neighbours, distance
+  for (const Link& l : scene.links)                              // between pins too
+    if (std::isinf(stiffness[static_cast<std::size_t>(l.family)]))
+      beside[to_index(std::min(l.a, l.b))][to_index(std::max(l.a, l.b))] = l.rest;
+  std::vector<Weights> of_others(y_.size());
+  for (std::size_t i = 0; i < y_.size(); ++i) of_others[i][i] = 1;
+  bool any = false;
+  const auto take = [&](const std::vector<std::size_t>& vertices, const std::vector<double>& c) {
+    Weights sum;
+    for (std::size_t k = 0; k < c.size(); ++k)
+      for (const auto& [v, weight] : of_others[vertices[k]]) sum[v] += c[k] * weight;
+    std::size_t solved = y_.size();
+    for (const auto& [v, weight] : sum)
+      if (inertia_[v] > 0 && std::abs(weight) > kNothing &&
+          (solved == y_.size() || std::abs(weight) >= (1 - kNothing) * std::abs(sum[solved])))
+        solved = v;
+    if (solved == y_.size()) return;  // said already
+    any = true;
+    const double own = sum[solved];
+    sum.erase(solved);
+    for (Weights& one : of_others)
+      if (const auto at = one.find(solved); at != one.end()) {
+        const double share = at->second / own;
+        one.erase(at);
+        for (const auto& [v, weight] : sum)
+          if (std::abs(one[v] -= share * weight) < kNothing) one.erase(v);
+      }
+  };
+  for (std::size_t a = 0; a < y_.size(); ++a)
+    for (const auto& [b, ab] : beside[a])
+      for (const auto& [c, bc] : beside[b]) {
+        const auto ac = beside[a].find(c);
+        if (ac == beside[a].end()) continue;
+        if (const auto line = on_a_line(ab, ac->second, bc); !line.empty()) {
+          take({a, b, c}, line);
+          continue;
+        }
+        for (const auto& [d, cd] : beside[c]) {
+          const auto ad = beside[a].find(d), bd = beside[b].find(d);
+          if (ad == beside[a].end() || bd == beside[b].end()) continue;
+          take({a, b, c, d}, in_a_plane(ab, ac->second, ad->second, bc, bd->second, cd));
+        }
+      }
+  if (any) of_others_ = std::move(of_others);
 }
 
 /// G with rigid links as springs K that a multiplier [N] has shifted: l C + K/2 C^2.
@@ -60,12 +139,38 @@ struct ImplicitStep::Multiplied {
   std::vector<double> stiffness, multiplier;
   std::vector<Eigen::Index> column;
   Eigen::Index size = 0;
+  Matrix basis = {};  ///< of the vertices in those that have no relation; empty: unity
   Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< its pattern is that of the links, x by x
   bool analysed = false;
 
   Multiplied(const ImplicitStep& s, double rigid) : step(s), multiplier(s.links_.size(), 0) {
     harden(rigid);
     for (const double m : s.inertia_) column.push_back(m > 0 ? std::exchange(size, size + 3) : -1);
+    if (step.of_others_.empty()) return;
+    std::vector<Eigen::Index> own(column.size(), -1);
+    Eigen::Index count = 0;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (column[i] >= 0 && step.of_others_[i].contains(i))
+        own[i] = std::exchange(count, count + 3);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      for (const auto& [v, weight] : step.of_others_[i])
+        for (int c = 0; c < 3 && column[i] >= 0 && own[v] >= 0; ++c)
+          entries.emplace_back(static_cast<int>(column[i]) + c, static_cast<int>(own[v]) + c,
+                               weight);
+    basis.resize(size, count);
+    basis.setFromTriplets(entries.begin(), entries.end());
+  }
+  bool reduced() const { return !step.of_others_.empty(); }
+  /// Where the vertices are by those that have no relation.
+  Points related(Points x) const {
+    if (!reduced()) return x;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (column[i] >= 0 && !step.of_others_[i].contains(i)) {
+        x[i].setZero();
+        for (const auto& [v, weight] : step.of_others_[i]) x[i] += weight * x[v];
+      }
+    return x;
   }
   /// The K of rigid links from now on [N/m].
   void harden(double rigid) {
@@ -97,7 +202,7 @@ struct ImplicitStep::Multiplied {
       if (column[a] >= 0) g.segment<3>(column[a]) -= pull;
       if (column[b] >= 0) g.segment<3>(column[b]) += pull;
     }
-    return g;
+    return reduced() ? Vector(basis.transpose() * g) : g;
   }
   Matrix hessian(const Points& x, bool clamped) const {
     std::vector<Eigen::Triplet<double>> entries;
@@ -129,12 +234,15 @@ struct ImplicitStep::Multiplied {
   }
   /// Whether it is positive definite.
   bool factor(const Points& x, bool clamped) {
-    const Matrix h = hessian(x, clamped);
+    Matrix h = hessian(x, clamped);
+    if (reduced())
+      h = Matrix(basis.transpose() * Matrix(h.selfadjointView<Eigen::Lower>()) * basis);
     if (!std::exchange(analysed, true)) ldlt.analyzePattern(h);
     ldlt.factorize(h);
     return ldlt.info() == Eigen::Success && ldlt.vectorD().minCoeff() > 0;
   }
-  Points moved(Points x, const Vector& p, double share) const {
+  Points moved(Points x, const Vector& step_of_own, double share) const {
+    const Vector p = reduced() ? Vector(basis * step_of_own) : step_of_own;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (column[i] >= 0) x[i] += share * p.segment<3>(column[i]);
     return x;
@@ -195,6 +303,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   for (const double m : inertia_) heaviest = std::max(heaviest, m);
   double hardness = kHardness * heaviest;
   Multiplied problem(*this, hardness);
+  x = problem.related(std::move(x));
   Minimum found;
   double before = 1e300;
   const int rounds = rigid_ ? 60 : 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,12 +40,16 @@ class ImplicitStep {
     double moved = 0;     ///< m, RMS: how far the last round of multipliers still moved x
     std::string problem;  ///< why it is none; "": it is one
   };
-  /// Newton with line search, sparse LDLT; rigid links by an augmented Lagrangian around it. The
-  /// minimum that `start` leads to: where links are compressed there may be others.
+  /// Newton with line search, sparse LDLT; rigid links by an augmented Lagrangian around it. Four
+  /// vertices in a plane, or three on a line, all rigidly linked, stay so: such relations are
+  /// linear, and eliminated. Their links alone resist leaving the plane at second order, without
+  /// finite multipliers. The minimum that `start` leads to: where links are compressed there may be
+  /// others.
   Minimum minimum(const std::vector<Vec3>& start) const;
 
  private:
   struct Multiplied;
+  void find_implied(const Scene&, const Stiffness&);
   struct Member {
     std::size_t a, b;
     double rest, stiffness;
@@ -54,6 +59,9 @@ class ImplicitStep {
   std::vector<double> mass_;
   std::vector<Vec3> y_;
   bool rigid_ = false;
+  /// [n] x of each vertex as a sum of weights times x of others, which have themselves alone;
+  /// empty: of all. Rigid links say it at second order only: four in a plane, three on a line.
+  std::vector<std::map<std::size_t, double>> of_others_;
 };
 
 }  // namespace taut::reference

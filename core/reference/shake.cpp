@@ -6,7 +6,9 @@
 #include <numeric>
 #include <utility>
 
+#include "core/model/bending.hpp"
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::reference {
@@ -16,6 +18,19 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 using Triplet = Eigen::Triplet<double>;
+
+/// The least step of converged_motion(): two seconds are some million steps.
+constexpr double kLeastStep = 0x1p-19;  ///< s
+
+double stiffness_of(const Scene& scene, const Link& l) {
+  return scene.stiffness[static_cast<std::size_t>(l.family)];
+}
+bool is_rigid(const Scene& scene, const Link& l) { return std::isinf(stiffness_of(scene, l)); }
+
+bool has_springs(const Scene& scene) {
+  return scene.bending ||
+         std::ranges::any_of(scene.links, [&](const Link& l) { return !is_rigid(scene, l); });
+}
 
 std::vector<Vec3> wind_forces(const Scene& scene, const std::vector<Vec3>& x,
                               const std::vector<Vec3>& v) {
@@ -57,14 +72,16 @@ struct Shake::Impl {
   double dt;
   int n = 0;  ///< steps taken
   std::vector<double> w;
-  std::vector<Link> links;
+  std::vector<Link> links, springs;  ///< rigid, elastic; an end moves
+  std::vector<BendingElement> bending;
   std::vector<Vec3> x, previous, before_previous;
   Eigen::SimplicialLDLT<Matrix> ldlt;
   bool analysed = false;
 
-  Impl(const Scene& s, double h) : scene(s), dt(h), w(inverse_masses(s)), x(s.start.x) {
+  Impl(const Scene& s, double h)
+      : scene(s), dt(h), w(inverse_masses(s)), bending(make_bending(s)), x(s.start.x) {
     for (const Link& l : s.links)
-      if (w[to_index(l.a)] + w[to_index(l.b)] > 0) links.push_back(l);
+      if (w[to_index(l.a)] + w[to_index(l.b)] > 0) (is_rigid(s, l) ? links : springs).push_back(l);
   }
 
   /// J M^-1 J^T at x, J the gradients d of (|d|^2 - r^2)/2: links that share a vertex couple.
@@ -132,8 +149,24 @@ struct Shake::Impl {
     return v;
   }
 
+  std::vector<Vec3> forces(const std::vector<Vec3>& v) const {
+    std::vector<Vec3> f = wind_forces(scene, x, v);
+    for (const Link& l : springs) {
+      const Vec3 d = x[to_index(l.b)] - x[to_index(l.a)];
+      const double length = d.norm();
+      if (length == 0) continue;  // no direction to pull in
+      const Vec3 pull = stiffness_of(scene, l) * (length - l.rest) / length * d;
+      f[to_index(l.a)] += pull, f[to_index(l.b)] -= pull;
+    }
+    for (const BendingElement& e : bending) {
+      const Vec3 push = e.stiffness * e.value([&](std::size_t i) { return x[i]; });
+      for (std::size_t i = 0; i < e.size; ++i) f[to_index(e.vertex[i])] -= e.weight[i] * push;
+    }
+    return f;
+  }
+
   bool step() {
-    const std::vector<Vec3> v = velocity_now(), f = wind_forces(scene, x, v);
+    const std::vector<Vec3> v = velocity_now(), f = forces(v);
     const double half = scene.damping * dt / 2;
     std::vector<Vec3> y = x;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -167,32 +200,53 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
   };
   refuse(!scene.colliders.empty(), "contact: impacts have no unique limit");
   refuse(scene.self_collision.has_value(), "self-collision: impacts have no unique limit");
-  refuse(scene.bending.has_value(), "bending: rods have none");
-  refuse(std::any_of(scene.links.begin(), scene.links.end(),
-                     [](const Link& l) { return l.family != Family::structural; }),
+  refuse(std::any_of(
+             scene.links.begin(), scene.links.end(),
+             [&](const Link& l) { return l.family != Family::structural && is_rigid(scene, l); }),
          "rigid shear or bending links lock: J M^-1 J^T is singular in the plane");
   const std::vector<double> w = inverse_masses(scene);
   for (const Link& l : scene.links) {
     const double d = (scene.start.x[to_index(l.b)] - scene.start.x[to_index(l.a)]).norm();
-    if (w[to_index(l.a)] + w[to_index(l.b)] > 0 && std::abs(d - l.rest) > 1e-6 * l.rest) {
+    if (is_rigid(scene, l) && w[to_index(l.a)] + w[to_index(l.b)] > 0 &&
+        std::abs(d - l.rest) > 1e-6 * l.rest) {
       refuse(true, "a slack or stretched start is ill-posed: start on the constraints");
       break;
     }
   }
+  if (const double rate = fastest_vibration(scene); rate * kLeastStep > 0.5)
+    reasons.push_back("springs vibrate with up to " + shortest(std::round(rate)) +
+                      " rad/s: steps would be shorter than 2 us");
   return reasons;
+}
+
+double fastest_vibration(const Scene& scene) {
+  std::vector<double> row(scene.start.x.size(), 0.0);  // of the stiffness matrix, sum |k| [N/m]
+  for (const Link& l : scene.links)
+    if (!is_rigid(scene, l))
+      for (const int end : {l.a, l.b}) row[to_index(end)] += 2 * stiffness_of(scene, l);
+  for (const BendingElement& e : make_bending(scene)) {
+    double sum = 0;
+    for (std::size_t i = 0; i < e.size; ++i) sum += std::abs(e.weight[i]);
+    for (std::size_t i = 0; i < e.size; ++i)
+      row[to_index(e.vertex[i])] += e.stiffness * std::abs(e.weight[i]) * sum;
+  }
+  double most = 0;
+  const std::vector<double> w = inverse_masses(scene);
+  for (std::size_t i = 0; i < row.size(); ++i) most = std::max(most, w[i] * row[i]);
+  return std::sqrt(most);
 }
 
 namespace {
 
-/// Whether every row of a flat grid with all structural and shear links, hung by its first row and
-/// let go with straight rows, stays straight: then it swings as one column of rods. Proof, row by
-/// row: a vertex at the distances l and sqrt(l^2 + s^2) from the vertex above it and from that
-/// one's neighbour at the distance s is displaced from the first at a right angle to the row; the
-/// links along the row then make these displacements equal.
+/// Whether every row of a flat grid with all structural and shear links, rigid, hung by its first
+/// row and let go with straight rows, stays straight: then it swings as one column of rods. Proof,
+/// row by row: a vertex at the distances l and sqrt(l^2 + s^2) from the vertex above it and from
+/// that one's neighbour at the distance s is displaced from the first at a right angle to the row;
+/// the links along the row then make these displacements equal.
 bool rows_stay_straight(const Scene& scene) {
   const auto& grid = scene.mesh.grid;
   if (!grid || grid->nu < 2 || grid->nv < 2 || !scene.pin_motions.empty() || scene.wind ||
-      !scene.colliders.empty() || scene.self_collision)
+      !scene.colliders.empty() || scene.self_collision || has_springs(scene))
     return false;
   const std::vector<Vec3>& x = scene.start.x;
   const auto at = [&](int i, int j) { return to_index(grid->index(i, j)); };
@@ -260,6 +314,9 @@ Trajectory converged_motion(const Scene& scene, const std::vector<double>& times
     m.reason = reasons.front();
     return m;
   }
+  const double rate = fastest_vibration(scene);
+  while (dt * rate > 0.5) dt /= 2;
+  m.dt = dt;
   std::vector<State> runs[3];
   for (int r = 0; r < 3; ++r) {
     runs[r] = run(scene, times, dt / (1 << r));
@@ -271,6 +328,8 @@ Trajectory converged_motion(const Scene& scene, const std::vector<double>& times
   }
   m.unique = true;
   m.derivation = "SHAKE at dt, dt/2 and dt/4, Richardson-extrapolated";
+  if (rate > 0)
+    m.derivation += "; elastic links and bending as forces, dt = 1/" + shortest(1 / dt) + " s";
   for (std::size_t k = 0; k < times.size(); ++k) {
     const State coarse = extrapolate(runs[0][k], runs[1][k]);
     m.states.push_back(extrapolate(runs[1][k], runs[2][k]));

@@ -334,6 +334,7 @@ std::vector<std::string> refuse_static(const Scene& scene) {
                      [](const Link& l) { return l.family == Family::bend; }),
          "bending links push: the sheet buckles, in more than one way");
   refuse(scene.bending.has_value(), "bending: rods have none");
+  refuse(!elastic_links(scene).empty(), "links are elastic: rods are not");
   refuse(std::any_of(scene.pin_motions.begin(), scene.pin_motions.end(),
                      [](const PinMotion& m) { return !m.motion.at_rest(); }),
          "the pins move");

@@ -20,8 +20,8 @@ struct Equilibrium {
 };
 
 /// Why no unique equilibrium is known for this scene, one sentence each; empty: one may exist and
-/// static_equilibrium decides. Contact, self-collision, wind, bending, moving pins and the absence
-/// of gravity or pins are refused here (truths without a unique answer).
+/// static_equilibrium decides. Contact, self-collision, wind, bending, elastic links, moving pins
+/// and the absence of gravity or pins are refused here (truths without a unique answer).
 std::vector<std::string> refuse_static(const Scene&);
 
 /// Minimum of the potential energy over all placements whose links keep their lengths.

@@ -15,6 +15,9 @@ namespace {
 const std::vector<double> kOrderSteps{1.0 / 256, 1.0 / 512,
                                       1.0 / 1024};  ///< s, to fit an order in dt
 
+/// The same below the periods of springs [s].
+const std::vector<double> kElasticSteps{1.0 / 4096, 1.0 / 8192, 1.0 / 16384};
+
 /// A draped sheet at its equilibrium, turned about its pin line and let go.
 Scene swung(int n, double degrees) {
   Scene s = under_gravity(bare::sheet(n, n));
@@ -88,6 +91,25 @@ TAUT_TRUTH(projection_tends_to_shake, 9, 3,
   check(
       let_go(5, 45), 600,
       "order in dt of the distance from SHAKE of its rows, 5x5 with shear links let go at 45 deg");
+}
+
+TAUT_TRUTH(springs_tend_to_reference, 9, 4,
+           "solvers of elastic links tend to the dynamic reference in first order",
+           "the limit dt -> 0 is the undamped motion, whatever the integrator") {
+  Scene s = let_go(5, 45);
+  s.stiffness.fill(20);
+  const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
+  for (const char* solver : {"implicit", "mass-spring:substeps=1,precision=double"}) {
+    if (!can_run(findings, solver, s)) continue;
+    const PowerLaw order = fit_over(kElasticSteps, [&](double dt) {
+      Scene finer = s;
+      finer.dt = dt;
+      Simulation sim(finer, solver, static_cast<int>(0.25 / dt));
+      return converged.unique ? max_distance(sim.state().x, converged.states[0].x) : std::nan("");
+    });
+    findings.slope(solver, "order in dt of the distance from it, 5x5 of 20 N/m let go at 45 deg",
+                   order, 1, 0.1);
+  }
 }
 
 }  // namespace taut

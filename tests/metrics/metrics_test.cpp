@@ -425,6 +425,30 @@ TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
   EXPECT_FALSE(measure(scene, motion).contains("reference.rms"));
 }
 
+/// Of elastic cloth too: springs integrated explicitly by another program, 2 % softer ones, none.
+TEST(ReferenceMotion, OfElasticClothIsThatOfItsStiffness) {
+  const auto error = [](const std::string& solver) {
+    const Scene scene =
+        load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/swing.toml",
+                   {"cloth.grid=[12, 12]", "links.stiffness={ structural = 300, shear = 300 }",
+                    "time.duration=2"});
+    EXPECT_EQ(known_references(scene).motion.size(), 4u);
+    const SolverChoice choice = parse_solver(solver + ",precision=double,substeps=512");
+    const auto instance = choice.entry->make(scene, choice.params);
+    instance->load(scene.start);
+    std::vector<State> states{scene.start};
+    for (int n = 0; n < scene.steps; ++n) {
+      instance->step(n * scene.dt, scene.dt);
+      instance->store(states.emplace_back());
+    }
+    return measure(scene, [&](int step) { return states[static_cast<std::size_t>(step)]; })
+        .at("motion.error");
+  };
+  const double right = error("mass-spring:material=scene");
+  EXPECT_LT(right, 1e-3);
+  EXPECT_GT(error("mass-spring:material=own,structural=294,shear=294"), 5 * right);
+}
+
 TEST(Metrics, DoNotCareWhereTheWorldIs) {
   const Scene scene = busy_scene();
   const auto states = noisy_states(scene);

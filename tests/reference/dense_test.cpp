@@ -108,10 +108,6 @@ TEST(ReferenceRefusals, OfTheDynamicReferenceNameTheirReason) {
        "contact: impacts have no unique limit"},
       {[](Scene& s) { s.self_collision = SelfCollision{0.1}; },
        "self-collision: impacts have no unique limit"},
-      {[](Scene& s) {
-         s.bending = Bending{1, 1};
-       },
-       "bending: rods have none"},
       {[](Scene& s) { s.links[0].family = Family::shear; },
        "rigid shear or bending links lock: J M^-1 J^T is singular in the plane"},
       {[](Scene& s) { s.links[0].family = Family::bend; },

@@ -1,11 +1,13 @@
 // The reference solvers against closed forms, and their refusal to answer where there is no answer.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "core/model/bending.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
@@ -119,6 +121,9 @@ TEST(StaticEquilibrium, RefusesWhatHasNoUniqueAnswer) {
   const std::string push = " would have to push: the sheet folds or locks, in more than one way";
   EXPECT_TRUE(reason(two_corners(6, 0.8, {.shear = true})).ends_with(push));
   EXPECT_TRUE(reason(two_corners(6, 0.8, {.bend = true})).starts_with("bending links push"));
+  Scene soft = rods(2, {Vec3::Zero(), Vec3(0, -1, 0), Vec3(0, -2, 0)});
+  soft.stiffness.fill(100);
+  EXPECT_TRUE(reason(soft).starts_with("links are elastic"));
   EXPECT_FALSE(reason(two_corners(6, 1.2)).ends_with(push)) << "the pins are too far apart";
   Scene ball = two_corners(6, 0.8);
   ball.colliders.push_back({Ball{Vec3(0.5, -0.5, 0), 0.2}, {}, 0});
@@ -313,10 +318,114 @@ TEST(Shake, ConvergedMotionIsThatOfThePendulumWithItsVelocityAndItsFloor) {
   }
 }
 
+/// n links of k [N/m], masses of 1 kg, on a straight line from its rest lengths.
+Scene elastic_chain(int n, double k) {
+  std::vector<Vec3> x;
+  for (int i = 0; i <= n; ++i) x.emplace_back(0, -i, 0);
+  Scene s = rods(n, x);
+  s.stiffness.fill(k);
+  return s;
+}
+
+// The chain stays straight, where its springs are linear: u(t) = rest - sum of a_p phi_p cos w_p t
+// with phi_p(j) = sin(j theta_p), theta_p = (2p - 1) pi/(2n + 1), w_p = 2 sqrt(k/m) sin(theta_p/2).
+TEST(Shake, AnElasticChainLetGoVibratesInItsModes) {
+  for (const int n : {1, 2, 7}) {
+    const double k = 900;
+    const Scene s = elastic_chain(n, k);
+    const std::vector<double> times{0.25, 0.5, 1};
+    const Trajectory t = converged_motion(s, times, 1.0 / 64);
+    ASSERT_TRUE(t.unique) << t.reason;
+    EXPECT_LE(t.dt * fastest_vibration(s), 0.5);
+    for (std::size_t at = 0; at < times.size(); ++at)
+      for (int j = 1; j <= n; ++j) {
+        double sag = kG / k * (j * n - j * (j - 1) / 2);  // m g/k (n + (n - 1) + ...)
+        for (int p = 1; p <= n; ++p) {
+          const double theta = (2 * p - 1) * std::numbers::pi / (2 * n + 1);
+          double amplitude = 0;
+          for (int i = 1; i <= n; ++i)
+            amplitude += kG / k * (i * n - i * (i - 1) / 2) * std::sin(i * theta);
+          sag -= amplitude / ((2 * n + 1) / 4.0) * std::sin(j * theta) *
+                 std::cos(2 * std::sqrt(k) * std::sin(theta / 2) * times[at]);
+        }
+        EXPECT_NEAR(t.states[at].x[static_cast<std::size_t>(j)].y(), -j - sag,
+                    2 * t.floor[at] + 1e-12)
+            << n << " links";
+      }
+    EXPECT_LT(t.floor.back(), 1e-4 * n);
+  }
+}
+
+// Without links bending is linear: free modes of M^-1 K, K of the bending energy's elements.
+TEST(Shake, BendingVibratesInTheModesOfItsEnergy) {
+  Scene s = two_corners(5, 1);
+  s.links.clear(), s.pins.clear();
+  s.gravity.setZero();
+  s.bending = Bending{.warp = 2e-3, .weft = 1e-3};
+  for (std::size_t i = 0; i < s.start.x.size(); ++i)
+    s.start.x[i].z() += 0.01 * static_cast<double>(i * i % 7);
+  const auto n = static_cast<Eigen::Index>(s.start.x.size());
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd root(n), z(n);
+  for (const BendingElement& e : make_bending(s))
+    for (std::size_t i = 0; i < e.size; ++i)
+      for (std::size_t j = 0; j < e.size; ++j)
+        k(e.vertex[i], e.vertex[j]) += e.stiffness * e.weight[i] * e.weight[j];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    root[i] = std::sqrt(s.mesh.mass[static_cast<std::size_t>(i)]);
+    z[i] = root[i] * s.start.x[static_cast<std::size_t>(i)].z();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(root.cwiseInverse().asDiagonal() * k *
+                                                             root.cwiseInverse().asDiagonal());
+  Eigen::VectorXd parts = modes.eigenvectors().transpose() * z;
+  const double time = 0.5;
+  for (Eigen::Index p = 0; p < n; ++p)
+    parts[p] *= std::cos(std::sqrt(std::max(0.0, modes.eigenvalues()[p])) * time);
+  EXPECT_GE(fastest_vibration(s), std::sqrt(modes.eigenvalues().maxCoeff()));
+  const Eigen::VectorXd exact = modes.eigenvectors() * parts;
+  const Trajectory t = converged_motion(s, {time}, 1.0 / 1024);
+  ASSERT_TRUE(t.unique) << t.reason;
+  EXPECT_LT(t.floor[0], 1e-6);
+  for (Eigen::Index i = 0; i < n; ++i)
+    EXPECT_NEAR(t.states[0].x[static_cast<std::size_t>(i)].z(), exact[i] / root[i],
+                2 * t.floor[0] + 1e-12);
+}
+
+// Rods below springs: both at once, and what the springs and the weights hold is kept.
+TEST(Shake, RodsBetweenSpringsKeepTheirLengthsAndTheEnergy) {
+  Scene s = elastic_chain(4, 500);
+  s.stiffness[static_cast<std::size_t>(Family::shear)] = kRigid[0];
+  s.links[1].family = s.links[3].family = Family::shear;
+  s.start.v.assign(5, Vec3::Zero()), s.start.v[4] = {1, 0, 2};
+  EXPECT_FALSE(converged_motion(s, {0.5}, 1e-3).unique) << "rigid shear";
+  s.stiffness = {kRigid[0], 500, 500};
+  s.links[1].family = s.links[3].family = Family::structural;
+  s.links[0].family = s.links[2].family = Family::shear;
+  const auto energy = [&](const State& state) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 5; ++i)
+      sum += s.mesh.mass[i] * (state.v[i].squaredNorm() / 2 - state.x[i].dot(s.gravity));
+    for (const std::size_t j : {0u, 2u})
+      sum += 250 * std::pow((state.x[j + 1] - state.x[j]).norm() - 1, 2);
+    return sum;
+  };
+  const Trajectory t = converged_motion(s, {0.5, 1}, 1.0 / 1024);
+  ASSERT_TRUE(t.unique) << t.reason;
+  for (const State& state : t.states) {
+    for (const std::size_t j : {1u, 3u})
+      EXPECT_NEAR((state.x[j + 1] - state.x[j]).norm(), 1, 2 * t.floor.back());
+    EXPECT_NEAR(energy(state), energy(s.start), 1e-5);
+  }
+}
+
 TEST(Shake, RefusesContactAndLockingLinks) {
   EXPECT_FALSE(converged_motion(two_corners(4, 1, {.shear = true}), {0.1}, 1e-3).unique);
   Scene s = two_corners(4, 0.8);
   EXPECT_FALSE(converged_motion(s, {0.1}, 1e-3).unique);  // stretched start
+  s.stiffness.fill(100);
+  EXPECT_TRUE(converged_motion(s, {0.1}, 1.0 / 1000).unique) << "springs may be stretched";
+  s.stiffness.fill(1e12);
+  EXPECT_TRUE(converged_motion(s, {0.1}, 1.0 / 1000).reason.starts_with("springs vibrate"));
 }
 
 }  // namespace

@@ -4,8 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
+#include <random>
+#include <tuple>
 
 #include "core/reference/closed_forms.hpp"
 #include "tests/solver/elastic_step.hpp"
@@ -57,6 +62,118 @@ TEST(Convergence, GapIsThatOfTheEnergyAndNewtonsMethodClosesIt) {
   EXPECT_LT(std::abs(newton.points.back().gap), 1e-12);
   EXPECT_GE(reached(newton, 1e-6), 0);
   EXPECT_EQ(reached(vbd, 1e-12), -1);
+}
+
+/// A sheet that hangs by its first row, turned by 45 degrees.
+Scene let_go(int nu, int nv, const LinkChoice& families) {
+  Scene scene = hanging_sheet(nu, nv, families);
+  scene.pins.resize(to_index(nu));
+  std::iota(scene.pins.begin(), scene.pins.end(), 0);
+  const Eigen::AngleAxisd turn(std::numbers::pi / 4, Vec3::UnitX());
+  for (Vec3& x : scene.start.x) x = turn * x;
+  return scene;
+}
+
+/// Newton's method on the whole KKT system, dense, of least norm where constraints are redundant:
+/// the nearest placement to y with (|d|^2 - r^2)/2 = 0, and with each cell of a sheet whose cells
+/// are rigid a parallelogram.
+std::vector<Vec3> nearest_placement(const Scene& scene, const std::vector<Vec3>& y, bool cells) {
+  const std::vector<double> w = inverse_masses(scene);
+  std::vector<Vec3> x = scene.start.x;
+  const auto n = static_cast<Eigen::Index>(3 * x.size());
+  const Grid& grid = *scene.mesh.grid;
+  const auto links = static_cast<Eigen::Index>(scene.links.size());
+  const Eigen::Index rows = links + (cells ? 3 * (grid.nu - 1) * (grid.nv - 1) : 0);
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(rows);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(n, n), jacobian = Eigen::MatrixXd::Zero(rows, n);
+    Eigen::VectorXd g(n), c = Eigen::VectorXd::Zero(rows);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double m = scene.mesh.mass[i] / (scene.dt * scene.dt);
+      h.diagonal().segment<3>(3 * static_cast<Eigen::Index>(i)).array() += m;
+      g.segment<3>(3 * static_cast<Eigen::Index>(i)) = m * (x[i] - y[i]);
+    }
+    for (Eigen::Index j = 0; j < links; ++j) {
+      const Link& l = scene.links[static_cast<std::size_t>(j)];
+      const Vec3 d = x[to_index(l.b)] - x[to_index(l.a)];
+      c[j] = (d.squaredNorm() - l.rest * l.rest) / 2;
+      jacobian.row(j).segment<3>(3 * l.b) = d, jacobian.row(j).segment<3>(3 * l.a) = -d;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const auto& [p, q, sign] : {std::tuple(l.a, l.a, 1.0), std::tuple(l.b, l.b, 1.0),
+                                         std::tuple(l.a, l.b, -1.0), std::tuple(l.b, l.a, -1.0)})
+          h(3 * p + axis, 3 * q + axis) += sign * multipliers[j];
+    }
+    Eigen::Index row = links;
+    for (int v = 0; cells && v + 1 < grid.nv; ++v)
+      for (int u = 0; u + 1 < grid.nu; ++u)
+        for (int axis = 0; axis < 3; ++axis, ++row)
+          for (const auto& [vertex, sign] :
+               {std::pair(grid.index(u, v), 1.0), std::pair(grid.index(u + 1, v), -1.0),
+                std::pair(grid.index(u, v + 1), -1.0), std::pair(grid.index(u + 1, v + 1), 1.0)}) {
+            jacobian(row, 3 * vertex + axis) = sign;
+            c[row] += sign * x[to_index(vertex)][axis];
+          }
+    g += jacobian.transpose() * multipliers;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (w[i] == 0) {
+        const auto at = 3 * static_cast<Eigen::Index>(i);
+        h.middleRows<3>(at).setZero(), h.middleCols<3>(at).setZero();
+        h.diagonal().segment<3>(at).setOnes(), g.segment<3>(at).setZero();
+        jacobian.middleCols<3>(at).setZero();
+      }
+    Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n + rows, n + rows);
+    kkt << h, jacobian.transpose(), jacobian, Eigen::MatrixXd::Zero(rows, rows);
+    Eigen::VectorXd right(n + rows);
+    right << -g, -c;
+    const Eigen::VectorXd step =
+        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(kkt).solve(right);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] += step.segment<3>(3 * static_cast<Eigen::Index>(i));
+    multipliers += step.tail(rows);
+    if (step.head(n).norm() < 1e-13) return x;
+  }
+  ADD_FAILURE() << "did not converge";
+  return x;
+}
+
+/// Sheets that fold along their rows, and chains and nets, with velocities at random.
+TEST(Convergence, ExactStepOfRigidLinksAgreesWithDenseNewtonOnTheKktSystem) {
+  reference::Stiffness rigid;
+  rigid.fill(std::numeric_limits<double>::infinity());
+  for (const unsigned seed : {3u, 4u, 5u})
+    for (auto [scene, cells] : {std::pair(let_go(5, 5, {true, true, false}), true),
+                                std::pair(let_go(3, 6, {true, true, false}), true),
+                                std::pair(let_go(4, 5, {true, false, false}), false),
+                                std::pair(hanging_sheet(1, 12, {true, false, false}), false)}) {
+      std::mt19937 random(seed);
+      for (Vec3& v : scene.start.v)
+        for (double& speed : v) speed = static_cast<double>(random()) / 4294967296.0 - 0.5;
+      for (const int pin : scene.pins) scene.start.v[to_index(pin)].setZero();
+      const reference::ImplicitStep step(scene, scene.start, 0, rigid);
+      const auto exact = step.minimum(scene.start.x);
+      ASSERT_EQ(exact.problem, "");
+      EXPECT_LT(exact.stretch, 1e-11);
+      EXPECT_LT(largest_distance(exact.x, nearest_placement(scene, step.prediction(), cells)), 1e-9)
+          << seed << ' ' << scene.mesh.size();
+    }
+}
+
+/// A sweep minimises over one vertex after the other: it lowers the energy, and may lead away from
+/// the exact step at first, where stretch goes before bends do.
+TEST(Convergence, VertexBlockDescentLowersTheGapInEverySweepAndGoesARoundaboutWay) {
+  const Scene scene = let_go(6, 6, {true, true, false});
+  const State state = state_at(scene, parse_solver("implicit:structural=1e5,shear=1e5"), 0.5);
+  for (const char* order : {"coloured", "mesh"}) {
+    const Convergence vbd =
+        converge(scene, state, 0.5, {std::string("vbd:order=") + order}, 1 << 11).front();
+    double farthest = 0;
+    for (std::size_t i = 1; i < vbd.points.size(); ++i) {
+      EXPECT_LE(vbd.points[i].gap, vbd.points[i - 1].gap + 1e-12) << order;
+      farthest = std::max(farthest, vbd.points[i].distance);
+    }
+    EXPECT_GT(farthest, 1.2 * vbd.points[0].distance) << order;
+    EXPECT_LT(vbd.points.back().distance, 1e-9) << order;
+  }
 }
 
 /// All goes along the chain: strains shrink as the sweep's matrix says.

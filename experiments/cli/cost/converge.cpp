@@ -90,7 +90,8 @@ Table points(const std::vector<Convergence>& all) {
                {"cpu", "CPU time", kMilliseconds}}};
   table.caption =
       "gap: (G - G*)/(G_0 - G*) of springs; of rigid links the square of the distance over that of "
-      "the prediction, weighted by mass.";
+      "the prediction, weighted by mass. Sweeps that lower the energy lower the gap, not always "
+      "the distance: they take out stretch first, and may move the cloth away along its bends.";
   for (const Convergence& c : all)
     for (const ConvergencePoint& p : c.points)
       table.rows.push_back(
@@ -101,7 +102,8 @@ Table points(const std::vector<Convergence>& all) {
 Answer answer_of(const Scene& scene, const Options& options, double at,
                  const std::vector<Convergence>& all) {
   const std::string set = join(options.settings, ", ");
-  Answer answer{"converge", "one step of " + scene.name + (set.empty() ? "" : ", " + set)};
+  Answer answer{"converge",
+                std::string(report::kOneStep) + scene.name + (set.empty() ? "" : ", " + set)};
   answer.add({"scene"}, scene.name);
   answer.add({"at", "from its state at", kTime}, at);
   answer.add({"from", "of a run of"},
@@ -146,12 +148,11 @@ Answer ask(const Options& options) {
 
 std::string draw(const Answer& answer, const Options& options) {
   const report::OneStep step(answer);
-  const report::PlotSpec spec{
-      .kind = "convergence",
-      .x = report::kSweeps,
-      .y = report::step_value(options.kind),
-      .title = answer.subject,
-      .file = slug("converge-" + answer.fact("scene").text() + "-" + options.kind)};
+  const report::PlotSpec spec{.kind = "convergence",
+                              .x = report::kSweeps,
+                              .y = report::step_value(options.kind),
+                              .title = answer.subject,
+                              .file = slug("converge-" + step.scene() + "-" + options.kind)};
   return report::make_plot(spec, {{"", report::step_records(step, options.kind)}}, options.figures)
       .svg.string();
 }

@@ -38,6 +38,22 @@ OneStep::OneStep(Answer answer) : found(std::move(answer)) {
   for (const auto& row : points.rows) records.push_back(record_of(found, points, row));
 }
 
+std::string OneStep::scene() const {
+  return found.subject.starts_with(kOneStep) ? found.subject.substr(kOneStep.size())
+                                             : found.subject;
+}
+
+std::string OneStep::label(const std::string& solver) const {
+  const Table& solvers = found.table("solvers");
+  const std::string title = solver_title(solver_name(solver));
+  const auto same = std::ranges::count_if(solvers.rows, [&](const auto& row) {
+    return solver_title(solver_name(solvers.at(row, "solver").text())) == title;
+  });
+  const std::size_t params = solver.find(':');
+  if (same < 2 || params == std::string::npos) return title;
+  return title + " (" + solver.substr(params + 1) + ")";
+}
+
 std::vector<std::string> step_kinds() { return {"distance", "gap", "stretch", "residual"}; }
 
 std::string step_value(std::string_view kind) {
@@ -60,7 +76,7 @@ Records step_records(const OneStep& step, std::string_view kind) {
 Chart step_chart(const OneStep& step, std::string_view kind) {
   Chart chart = make_chart("step", step_records(step, kind), kSweeps, step_value(kind), kSweeps);
   chart.scene = step.found.fact("scene").text();
-  chart.id = slug(chart.scene + "-step-" + std::string(kind));
+  chart.id = slug(step.scene() + "-step-" + std::string(kind));
   chart.title = capitalised(step.found.subject);
   const Table& solvers = step.found.table("solvers");
   std::string floors;
@@ -68,8 +84,7 @@ Chart step_chart(const OneStep& step, std::string_view kind) {
   for (const auto& row : solvers.rows) {
     moved = std::fmax(moved, solvers.at(row, "moved").number());
     if (const double floor = solvers.at(row, "floor").number(); floor > 0)
-      floors += (floors.empty() ? "" : ", ") +
-                solver_title(solver_name(solvers.at(row, "solver").text())) + " " +
+      floors += (floors.empty() ? "" : ", ") + step.label(solvers.at(row, "solver").text()) + " " +
                 shown(kLength, floor, 2);
   }
   if (!floors.empty())

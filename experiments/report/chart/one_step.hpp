@@ -16,7 +16,14 @@ struct OneStep {
   std::vector<Record> records;
 
   explicit OneStep(Answer);
+  /// Its scene with what is set of it, "drape, cloth.span=0.7".
+  std::string scene() const;
+  /// Title of one of its solvers, with its parameters where several have that title.
+  std::string label(const std::string& solver) const;
 };
+
+/// An answer's subject is this and its scene.
+inline constexpr std::string_view kOneStep = "one step of ";
 
 /// What can be drawn over the iterations of a step: "distance", "gap", "stretch", "residual".
 std::vector<std::string> step_kinds();

@@ -23,7 +23,8 @@ const std::vector<Cell>* first_of(const Table& table, const std::string& solver,
 }
 
 /// Of one solver: what its links are, and how its iterations go.
-std::vector<Cell> row_of(const Answer& found, const std::vector<Cell>& own) {
+std::vector<Cell> row_of(const OneStep& step, const std::vector<Cell>& own) {
+  const Answer& found = step.found;
   const Table &solvers = found.table("solvers"), &points = found.table("points"),
               &reached = found.table("reached");
   const std::string solver = solvers.at(own, "solver").text();
@@ -39,8 +40,8 @@ std::vector<Cell> row_of(const Answer& found, const std::vector<Cell>& own) {
     return row ? reached.at(*row, "iterations") : Cell("not reached");
   };
   const double k = solvers.at(own, "structural").number();
-  return {found.fact("scene").text(),
-          solver_title(solver_name(solver)),
+  return {step.scene(),
+          step.label(solver),
           std::isnan(k) ? Cell("rigid") : Cell(shown({"N/m", "N/m"}, k, 2)),
           after(1),
           after(kLooked),
@@ -76,7 +77,7 @@ Json json_of_steps(const ReportInput& input, CaseList& refs, Json& charts, Answe
       add_by_id(steps, "charts", json_of(step_chart(step, "distance"), refs), charts);
     } catch (const InputError&) {  // no exact step
     }
-    for (const auto& own : found.table("solvers").rows) table.rows.push_back(row_of(found, own));
+    for (const auto& own : found.table("solvers").rows) table.rows.push_back(row_of(step, own));
   }
   add_table(steps, std::move(table), tables);
   return steps;
