@@ -17,6 +17,8 @@ namespace {
 /// bytes. Keys that came later stand at the end, each with its name and its place among the others.
 class Bytes {
  public:
+  explicit Bytes(std::span<const SceneKey> keys) : keys_(keys) {}
+
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void add(T value) {
@@ -64,13 +66,14 @@ class Bytes {
   /// The keys of the section that are members of the part.
   template <class Part>
   void add(std::string_view section, const Part& part) {
-    each_key(section, part, [&](const SceneKey& key, const auto& value, const auto& initial) {
+    const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
       if (!key.later) return add(value);
       if (!key.counts(value, initial)) return;
-      Bytes bytes;
+      Bytes bytes(keys_);
       bytes.add(text_.size()), bytes.add(value);
       later_.emplace_back(key.path, bytes.text_);
-    });
+    };
+    each_key(section, part, visit, keys_);
   }
   std::string all() const {
     std::string text = text_;
@@ -84,6 +87,7 @@ class Bytes {
   }
 
  private:
+  std::span<const SceneKey> keys_;
   std::string text_;
   std::vector<std::pair<std::string, std::string>> later_;  ///< with its place and value
 };
@@ -126,8 +130,8 @@ Vec3 pin_position(const Scene& scene, int vertex, double t) {
 
 namespace {
 
-Bytes bytes_of(const Scene& s) {
-  Bytes bytes;
+Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
+  Bytes bytes(keys);
   bytes.add(s.mesh), bytes.add(s.start), bytes.add(s.pins), bytes.add(s.pin_motions);
   bytes.add(s.links), bytes.add(s.colliders), bytes.add(s.wind), bytes.add(s.self_collision);
   bytes.add("forces", s), bytes.add("cloth", s), bytes.add(s.dt), bytes.add(s.steps);
@@ -139,8 +143,14 @@ Bytes bytes_of(const Scene& s) {
 
 }  // namespace
 
-std::string content(const Scene& scene) { return bytes_of(scene).all(); }
+std::string content(const Scene& scene, std::span<const SceneKey> keys) {
+  return bytes_of(scene, keys).all();
+}
+std::string content(const Scene& scene) { return content(scene, scene_keys()); }
 
-std::vector<std::string> later_keys(const Scene& scene) { return bytes_of(scene).later_keys(); }
+std::vector<std::string> later_keys(const Scene& scene, std::span<const SceneKey> keys) {
+  return bytes_of(scene, keys).later_keys();
+}
+std::vector<std::string> later_keys(const Scene& scene) { return later_keys(scene, scene_keys()); }
 
 }  // namespace taut

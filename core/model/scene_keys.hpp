@@ -119,11 +119,16 @@ std::span<const SceneKey> scene_keys();
 /// none such.
 const SceneKey* find_scene_key(std::string_view path);
 
+/// content() and later_keys() as they are with another table of keys.
+std::string content(const Scene&, std::span<const SceneKey> keys);
+std::vector<std::string> later_keys(const Scene&, std::span<const SceneKey> keys);
+
 /// Calls visit(key, member, its default) for every key of the section that is a member of the part.
 template <class Part, class Visit>
-void each_key(std::string_view section, Part& part, const Visit& visit) {
+void each_key(std::string_view section, Part& part, const Visit& visit,
+              std::span<const SceneKey> keys = scene_keys()) {
   const std::remove_const_t<Part> initial{};
-  for (const SceneKey& key : scene_keys())
+  for (const SceneKey& key : keys)
     if (key.section() == section)
       std::visit(
           [&](auto member) {

@@ -197,6 +197,9 @@ TEST(Answers, OfAnyKindComeBackFromJsonAndSayTheSameInCsvAndToPeople) {
     const Json read = parse_json(json);
     for (const Table& table : answer.tables)
       expect_csv(read["tables"][table.name], csv_rows(to_csv(answer, table.name)));
+    if (!answer.tables.empty()) {
+      EXPECT_EQ(to_csv(answer), to_csv(answer, answer.tables[0].name));
+    }
     const Rows facts = csv_rows(to_csv(answer, "facts"));
     ASSERT_EQ(facts.size(), answer.facts.size() + 1);
     for (std::size_t i = 0; i < answer.facts.size(); ++i)

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -136,6 +137,16 @@ TEST(Baseline, AnUpdateRewritesOnlyValuesThatMovedBeyondTheTolerance) {
   EXPECT_EQ(result[0].values.at("new.value"), 0.3333);
   EXPECT_EQ(result[1].values.at("stretch.max"), 0.31416);  // rounded to 1e-4 of itself
   EXPECT_TRUE(compare(result, now, t).findings.empty());
+}
+
+TEST(Baseline, AnUpdateKeepsNoMoreDigitsThanAHundredthOfTheToleranceNeeds) {
+  Baseline now = two();
+  for (const auto& [value, absolute, kept] :
+       {std::array{107.0, 1000.0, 100.0}, {107.0, 500.0, 110.0}, {107.0, 10.0, 107.0}}) {
+    now[0].values["stretch.max"] = value;
+    const Tolerances t({{"default", {absolute, 0, false, "some"}}});
+    EXPECT_EQ(updated({}, now, t)[0].values.at("stretch.max"), kept) << absolute;
+  }
 }
 
 TEST(Baseline, ACaseIsReproducedByOneLine) {

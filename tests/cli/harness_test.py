@@ -538,6 +538,9 @@ class Store(CommandLine):
         self.taut("run", study, program="taut-faulty", env=ares, expect=2)
         self.assertIn("(6 were stored already)", self.taut("run", study, program="taut-faulty", env=zeus).err)
         self.taut("run", study, program="taut-faulty", env=ares)
+        mark.write_text("zeus \n")  # cut by a full disk: of no process
+        self.taut("run", study, program="taut-faulty", env=zeus)
+        self.assertFalse(mark.exists())
 
     def test_a_program_that_vanishes_is_no_result(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")

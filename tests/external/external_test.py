@@ -382,6 +382,9 @@ class Hostile(Programs):
         self.assertGreater(min(self.times("later")), 0.0015)
         self.assertLess(max(self.times("plain")), 0.001)
 
+    def test_what_an_exchange_and_a_state_cost_is_no_steps(self):
+        self.assertLess(max(self.times("slow")), 0.001)
+
     def times(self, mode):
         return [row["cpu"] for row in rows_of(self.answer("bench", "./five.toml", "--solver", hostile(mode, 30), "--rounds", 2), "samples")]
 

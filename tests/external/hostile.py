@@ -99,6 +99,8 @@ def main():
                 misbehave()
             if real and MODE == "lie":
                 spin(0.002 * request["count"])
+            if real and MODE == "slow":
+                spin(0.002)
             if real and MODE == "later":
                 queue += request["count"]
             for k in range(3 * n * request["count"]):
@@ -111,7 +113,7 @@ def main():
             if not (real and steps == 5 and MODE in ("garbage", "error")):
                 answer({"cpu_ns": 1000} if MODE == "lie" else {})
         elif op == "store":
-            spin(0.002 * queue)
+            spin(0.01 if real and MODE == "slow" else 0.002 * queue)
             queue = 0
             state = x.tobytes() + v.tobytes()
             if real and steps == 5 and MODE == "half":

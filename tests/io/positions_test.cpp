@@ -317,6 +317,24 @@ TEST_F(Positions, FramesMayCountInStepsAndBeSetApartByASign) {
   EXPECT_EQ(all_of(folder_ / "one.obj").size(), 1u);
 }
 
+TEST_F(Positions, WhatCannotBeWrittenSaysWhy) {
+  const Mesh mesh = make_sheet({.nu = 2, .nv = 3, .width = 1, .height = 1, .mass = 1});
+  const auto says = [&](const fs::path& path, const std::string& why) {
+    try {
+      create_positions(path, mesh)->append(0, mesh.rest);
+      ADD_FAILURE() << path;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), path.string() + ": cannot be written: " + why);
+    }
+  };
+  for (const char* name : {"a.npy", "a.pc2"}) {
+    says(folder_ / "none" / name, "No such file or directory");
+    if (!fs::exists("/dev/full")) continue;
+    fs::create_symlink("/dev/full", folder_ / name);
+    says(folder_ / name, "No space left on device");
+  }
+}
+
 TEST_F(Positions, TextFilesAreReadWholeUpToTheirLimitOrRefused) {
   const std::string text(70000, 'x');
   const fs::path path = file("t", text);

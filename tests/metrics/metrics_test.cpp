@@ -272,6 +272,17 @@ TEST(SelfIntersection, OfAFlapThatFoldsThroughTheSheet) {
   EXPECT_NEAR(measure_at_rest(scene, state).at("self.gap"), 0.03 - 0.1, 1e-12);
 }
 
+// Balls that overlap at rest are not deep in each other for that: what they lack of that distance
+// is.
+TEST(SelfIntersection, BallsThatOverlapAtRestAreNearerThanAtRest) {
+  Scene scene = sheet(5);
+  scene.self_collision = SelfCollision{.radius = 0.2};  // 0.25 m apart
+  EXPECT_EQ(measure_at_rest(scene, scene.start).at("self.gap"), 0);
+  State state = scene.start;
+  state.x[12] += 0.1 * (state.x[13] - state.x[12]);
+  EXPECT_NEAR(measure_at_rest(scene, state).at("self.gap"), -0.025, 1e-12);
+}
+
 // 192 steps: the run is looked at each 9 steps, the last second (64 steps) each 6 back from the
 // end.
 TEST(SelfIntersection, IsLookedForAtTwentyMomentsOfTheRunAndTenOfTheLastSecond) {

@@ -5,6 +5,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 namespace taut::scene_keys_test {
 namespace {
@@ -83,6 +84,52 @@ TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
   EXPECT_TRUE(counted.count("forces.damping") && counted.count("wind.law") &&
               counted.count("collider.half_extents") && counted.count("bending.warp"));
   EXPECT_GE(counted.size(), 19u);
+}
+
+// Any key may have been the one that came later: a scene at its default then has the content that
+// it had before there was the key, and any other value has a content of its own.
+TEST(SceneKeys, OneThatCameLaterCountsWhereItIsNotAtItsDefaultAlone) {
+  const std::vector<SceneKey> known(scene_keys().begin(), scene_keys().end());
+  const Scene initial = scene_of_all();
+  std::size_t later = 0;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    std::vector<SceneKey> before = known, now = known;
+    before.erase(before.begin() + static_cast<std::ptrdiff_t>(k));
+    now[k] = known[k].came_later();
+    EXPECT_EQ(content(initial, now), content(initial, before)) << known[k].path;
+    EXPECT_TRUE(later_keys(initial, now).empty()) << known[k].path;
+    if (content(initial) == content(initial, before)) continue;  // no member of a scene
+    Scene scene = initial;
+    bool moved = false;
+    each_part(scene, [&](const char* section, auto& part) {
+      const auto visit = [&](const SceneKey& key, auto& value, const auto&) {
+        if (&key == &now[k] && !moved) move(value), moved = true;
+      };
+      each_key(section, part, visit, now);
+    });
+    ASSERT_TRUE(moved) << known[k].path;
+    EXPECT_NE(content(scene, now), content(initial, now)) << known[k].path;
+    EXPECT_EQ(later_keys(scene, now), std::vector<std::string>{std::string(known[k].path)});
+    EXPECT_TRUE(later_keys(scene).empty()) << "none of this program's keys came later";
+    ++later;
+  }
+  EXPECT_GE(later, 19u);
+}
+
+// The same value in another place is another scene.
+TEST(SceneKeys, OneThatCameLaterCountsWithItsPlace) {
+  std::vector<SceneKey> keys(scene_keys().begin(), scene_keys().end());
+  for (SceneKey& key : keys)
+    if (key.path == "collider.friction" || key.path == "forces.damping") key = key.came_later();
+  std::set<std::string> contents;
+  for (std::size_t c = 0; c < 4; ++c) {
+    Scene scene = scene_of_all();
+    scene.colliders[c].friction = 0.5;
+    contents.insert(content(scene, keys));
+    scene.colliders[c].friction = 0, scene.damping = 0.5 + static_cast<double>(c);
+    contents.insert(content(scene, keys));
+  }
+  EXPECT_EQ(contents.size(), 8u);
 }
 
 }  // namespace

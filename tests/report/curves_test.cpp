@@ -59,6 +59,10 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweepsAndPointsOverTheStep) {
     file.resolved_settings = {{"floor of strain", "1e-7"}};
     study.records.push_back(file);
   }
+  Record failed =
+      synthetic::record("hang", "jakobsen", 512, 1.0 / 64);  // drawn as a mark, at its sweeps
+  failed.status = {Status::Kind::exploded, "energy", 3, 0}, failed.values.clear();
+  study.records.push_back(failed);
   const auto of_file = [](const Chart& chart) {
     std::vector<std::pair<double, double>> points;
     for (const Curve& curve : chart.curves)
@@ -71,7 +75,7 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweepsAndPointsOverTheStep) {
   input.studies = {study};
   const std::vector<Chart> charts = scene_charts(input, "hang");
   ASSERT_FALSE(charts.empty());
-  EXPECT_EQ(of_file(charts.front()), (Points{{1, 1.0 / 64}, {256, 1.0 / 64}}))
+  EXPECT_EQ(of_file(charts.front()), (Points{{1, 1.0 / 64}, {512, 1.0 / 64}}))
       << "at the time step of the others";
   EXPECT_EQ(of_file(make_chart("stability", input.studies[0].records, "dt", "stretch.rms", "dt")),
             (Points{{1.0 / 64, 1.0 / 64}, {1.0 / 32, 1.0 / 32}}));

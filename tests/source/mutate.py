@@ -11,8 +11,9 @@ Usage: mutate.py BUILD [--sample N] [--layers N] [--minutes M] [--seed S] [--lay
    of that error. So a layer is compiled once, as BUILD compiles it, however many errors it has. Errors that do not compile go.
 3. A check is a unit test, a truth of `taut verify` or a test of the command line. For each error the checks in the layer's own
    folder of tests run, then others, quick ones before slow ones (as ctest last saw them in BUILD), until one is red or they took
-   --limit seconds of CPU. A check also notices if it takes four times the CPU time that it took before. A check that is red
-   without the error as well says nothing.
+   --limit seconds of CPU. Every run writes down which functions with errors it reaches, and checks that did not reach a function
+   are not asked about its errors. A check also notices if it takes four times the CPU time that it took before. A check that is
+   red without the error as well says nothing.
 
 Survivors are printed as a difference. Those that change no result are listed in equivalent_mutants.txt with the reason,
 and are not drawn. Left out, and counted: places outside of functions or in constexpr ones, and headers that layers include which
@@ -52,10 +53,28 @@ LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut
               "system", "answer", "metrics", "case", "external", "study", "timing", "require", "baseline", "truths",
               "report", "render")}}
 LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
-CHOSEN = """
+MOST = 1 << 16  # errors at a time
+CHOSEN = f"""
+#include <fcntl.h>
 #include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
 int taut_error;
-__attribute__((constructor(101))) static void choose(void) { taut_error = getenv("TAUT_ERROR") ? atoi(getenv("TAUT_ERROR")) : 0; }
+static unsigned char nowhere[{MOST}];
+unsigned char* taut_reached = nowhere;
+__attribute__((constructor(101))) static void choose(void) {{
+  taut_error = getenv("TAUT_ERROR") ? atoi(getenv("TAUT_ERROR")) : 0;
+  const char* file = getenv("TAUT_REACHED");
+  const int descriptor = file ? open(file, O_RDWR) : -1;
+  if (descriptor < 0) return;
+  void* shared = mmap(0, {MOST}, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  if (shared != MAP_FAILED) taut_reached = shared;
+  close(descriptor);
+}}
+"""
+HEAD = """extern "C" int taut_error;
+extern "C" unsigned char* taut_reached;
+#define taut_has(number) (taut_reached[number] = 1, taut_error == number)
 """
 CHANCE = 0.001
 
@@ -185,12 +204,12 @@ def planted(text, mutants, ranges):
     for mutant in mutants:
         start, end, body = mutant.body(text)
         of.setdefault((start, end), []).append((mutant, body))
-    out, at = 'extern "C" int taut_error;\n', 0
+    out, at = HEAD, 0
     for (start, end), chosen in sorted(of.items()):
         out += text[at:start]
         for mutant, body in chosen:
             first = out.count("\n") + 1
-            out += f" if (taut_error == {mutant.number}) {{{body}}} else"
+            out += f" if (taut_has({mutant.number})) {{{body}}} else"
             ranges[mutant] = range(first, out.count("\n") + 2)
         out += f" {{{text[start:end]}}}"
         at = end
@@ -244,31 +263,53 @@ def draw(layers, random_, build):
                     yield mutant
 
 
-def judge(mutant, checks, programs, limit):
+class Batch:
+    """Checks of one program and folder that run in one process."""
+
+    def __init__(self, checks):
+        self.checks, self.folder, self.seconds = checks, checks[0].folder, sum(check.seconds for check in checks)
+        self.reached = None  # by number of an error: whether they run its function; None: unknown
+
+
+def batches_of(checks):
+    """Quick ones together, up to 3 s."""
+    def program(check):
+        return check.folder, check.program, str(check.script)
+    for _, group in itertools.groupby(sorted(checks, key=lambda check: (*program(check), check.seconds)), program):
+        batch = []
+        for check in group:
+            if batch and sum(one.seconds for one in batch) + check.seconds >= 3:
+                yield Batch(batch)
+                batch = []
+            batch.append(check)
+        yield Batch(batch)
+
+
+def judge(mutant, batches, programs, limit):
     """Sets by whom it is noticed, and what that took."""
     own = mutant.layer.split("/")[-1]
-    running = sorted((check for check in checks if fnmatch.fnmatch(check.name, mutant.checks)),
-                     key=lambda check: (check.folder != own, check.seconds))
-    while running and mutant.seconds < limit and not mutant.by:
-        # Quick ones of a program go into one process.
-        seconds = itertools.accumulate(check.seconds for check in running)
-        batch = [check for check, until in zip(running, seconds)
-                 if check is running[0] or until < 3 and (check.program, check.script) == (running[0].program, running[0].script)]
-        running = [check for check in running if check not in batch]
-        program, allowed = programs / batch[0].program, 5 + 4 * sum(check.seconds for check in batch)
-        with tempfile.TemporaryDirectory() as where:
-            red, seconds = run(batch, program, where, allowed, TAUT_ERROR=str(mutant.number))
-        mutant.tried, mutant.seconds = mutant.tried + len(batch), mutant.seconds + seconds
-        if not red:
-            continue
-        culprits = [check for check in batch if check.name == red]
-        with tempfile.TemporaryDirectory() as where:
-            if not culprits or not run(culprits, program, where, allowed)[0]:
-                mutant.by = red
-        if not mutant.by:  # red without the error too
+    for batch in sorted(batches, key=lambda batch: (batch.folder != own, batch.seconds)):
+        while batch.checks and (batch.reached is None or batch.reached[mutant.number]):
+            checks = batch.checks
+            program, allowed = programs / checks[0].program, 5 + 4 * sum(check.seconds for check in checks)
+            with tempfile.TemporaryDirectory() as where:
+                reached = pathlib.Path(where, "reached")
+                reached.write_bytes(bytes(MOST))
+                red, seconds = run(checks, program, where, allowed, TAUT_ERROR=str(mutant.number), TAUT_REACHED=str(reached))
+                seen = reached.read_bytes()
+            mutant.tried, mutant.seconds = mutant.tried + len(checks) * seen[mutant.number], mutant.seconds + seconds
+            if not red:
+                batch.reached = seen
+                break
+            culprits = [check for check in checks if check.name == red]
+            with tempfile.TemporaryDirectory() as where:
+                if not culprits or not run(culprits, program, where, allowed)[0]:
+                    mutant.by = red
+                    return
             print(f"red without any error: {red}", flush=True)
-            checks[:] = [check for check in checks if check not in culprits]
-            running = [check for check in batch if check not in culprits] + running
+            batch.checks = [check for check in checks if check not in culprits]
+        if mutant.seconds >= limit:
+            return
 
 
 def main():
@@ -308,14 +349,16 @@ def main():
         if options.list:
             return 0
         programs = build.plant(mutants, pool)
-        checks = checks_of(build.build)
+        checks, batches = checks_of(build.build), {}
+        for asked in {mutant.checks for mutant in mutants}:
+            batches[asked] = list(batches_of(check for check in checks if fnmatch.fnmatch(check.name, asked)))
         compiled = [mutant for mutant in mutants if mutant.compiles]
         print(f"{len(compiled)} of {len(mutants)} errors compile; {len(checks)} checks: {spent()}", flush=True)
 
         def judged(mutant):
             if time.monotonic() - start > 60 * options.minutes:
                 return False
-            judge(mutant, checks, programs, options.limit)
+            judge(mutant, batches[mutant.checks], programs, options.limit)
             how = f"noticed by {mutant.by}" if mutant.by else f"SURVIVED {mutant.tried} checks"
             print(f"{how}: {mutant.text()}   ({mutant.seconds:.0f} s)", flush=True)
             return True

@@ -28,7 +28,8 @@ class Check:
 
 
 def checks_of(build):
-    """Every check, with the seconds that it took when ctest last ran it in BUILD, or more than most take."""
+    """Every check, with the seconds that it took when ctest last ran it in BUILD, or more than most take. One of a script,
+    or a truth, counts as the mean of all that ctest runs with it."""
     took = {}
     with contextlib.suppress(OSError):
         took = {words[0]: float(words[2]) for line in (build / "Testing/Temporary/CTestCostData.txt").read_text().splitlines()
@@ -45,10 +46,13 @@ def checks_of(build):
         elif name.endswith("."):
             suite = name
     truths = subprocess.run([build / TAUT, "verify", "--list", "--csv"], check=True, text=True, capture_output=True).stdout
-    checks += [Check(TAUT, truth["name"], 15) for truth in csv.DictReader(truths.splitlines())]
+    names = [truth["name"] for truth in csv.DictReader(truths.splitlines())]
+    # On two cores.
+    checks += [Check(TAUT, name, 2 * took["truths"] / len(names) if "truths" in took else 15) for name in names]
     for script in SCRIPTS:
-        checks += [Check(TAUT, f"{of.name}.{test.name}", 30, script) for of in ast.parse(script.read_text()).body
-                   if isinstance(of, ast.ClassDef) for test in of.body if getattr(test, "name", "").startswith("test")]
+        names = [f"{of.name}.{test.name}" for of in ast.parse(script.read_text()).body if isinstance(of, ast.ClassDef)
+                 for test in of.body if getattr(test, "name", "").startswith("test")]
+        checks += [Check(TAUT, name, took[script.stem] / len(names) if script.stem in took else 30, script) for name in names]
     return checks
 
 

@@ -29,9 +29,10 @@ Record some_record() {
   r.key = std::string(63, 'a') + "7";
   r.id = "hang jakobsen:iterations=8";
   r.spec = {"hang", {"time.dt=\"1/60\""}, "jakobsen:iterations=8"};
-  r.scene = "hang";
+  r.scene = "a sheet";  // no text is another one's
   r.solver = "jakobsen";
   r.params = {{"iterations", "8"}};
+  r.log = "what it said";
   r.dt = 1.0 / 60;
   r.steps = 600;
   r.vertices = 400;

@@ -22,13 +22,11 @@ OutputFile::OutputFile(std::filesystem::path path)
 }
 
 void OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
-  errno = 0;
   out_.seekp(static_cast<std::streamoff>(offset));
   out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out_.flush();
   if (out_) return;
-  fail_in(path_,
-          std::string("cannot be written: ") + (errno != 0 ? std::strerror(errno) : "write error"));
+  fail_in(path_, std::string("cannot be written: ") + std::strerror(errno));
 }
 
 namespace {

@@ -321,6 +321,45 @@ TEST(FaceContact, ABoxCornerLeavesTheFaceOverTheCorner) {
   EXPECT_GT(deepest_in(box, {scene.start.x[0], scene.start.x[1], scene.start.x[2]}).depth, 0.01);
 }
 
+// The long edge of a face crosses an edge of a box 10 mm inside of two of its sides, and 15 mm
+// inside of a third: it leaves over the two, and nothing pushes it over the third.
+TEST(FaceContact, LeavesABoxOverItsNearestSidesAlone) {
+  Scene scene =
+      one_face({.shape = Box{.center = {-0.5, -0.5, 0}, .half_extents = {0.5, 0.5, 0.1}}});
+  scene.mesh.rest = scene.start.x = {{-1.01, 0.99, 0.085}, {0.99, -1.01, 0.085}, {1, 1, 0.085}};
+  const State state = Runner(scene, ",faces=on,iterations=1").step();
+  Vec3 momentum = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i)
+    momentum += scene.mesh.mass[i] * (state.x[i] - scene.start.x[i]);
+  EXPECT_GT(momentum.x(), 0.01);
+  EXPECT_NEAR(momentum.y(), momentum.x(), 1e-9);
+  EXPECT_EQ(momentum.z(), 0);
+}
+
+// Nothing that is quick to leave a face out may leave out one that touches a solid's farthest
+// point.
+TEST(FaceContact, SeesASmallFaceAtTheFarthestPointOfALargeSolid) {
+  const Vec3 half(4, 4, 4), end(6, 0, 0);
+  const auto expect = [](const auto& shape, const Vec3& farthest) {
+    const Vec3 out = farthest.normalized(), u = out.unitOrthogonal(), v = out.cross(u);
+    Scene scene = one_face({.shape = shape});
+    Corners t;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double angle = 2.1 * static_cast<double>(i);
+      t[i] = farthest - 0.002 * out + 0.2 * (std::cos(angle) * u + std::sin(angle) * v);
+    }
+    scene.mesh.rest = scene.start.x = {t[0], t[1], t[2]};
+    const double before = deepest_in(shape, t).depth;
+    ASSERT_GT(before, 5e-4);
+    const State state = Runner(scene, ",faces=on,iterations=8").step();
+    EXPECT_LT(deepest_in(shape, {state.x[0], state.x[1], state.x[2]}).depth, before / 4);
+  };
+  expect(Ball{Vec3::Zero(), 5}, {0, 5, 0});
+  expect(Box{.center = Vec3::Zero(), .half_extents = half}, half);
+  expect(Box{.center = Vec3::Zero(), .half_extents = half}, {-4, 4, -4});
+  expect(Capsule{-end, end, 1}, {7, 0, 0});
+}
+
 TEST(FaceContact, LeavesPinsAlone) {
   Scene scene = one_face({.shape = Ball{{0, -0.19, 0}, 0.2}});
   scene.pins = {0, 1, 2};

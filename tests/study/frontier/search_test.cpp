@@ -124,6 +124,10 @@ TEST(Frontier, QuestionsBecomeCases) {
                  .solver),
             "jakobsen:iterations=7");
   EXPECT_EQ(
+      (FrontierQuestion{base, "iterations", {}, Direction::down_in_whole_numbers}.setting(1 / 6.8)),
+      7)
+      << "the nearest";
+  EXPECT_EQ(
       (FrontierQuestion{base, "wind.strength", {}, Direction::down}.at(1 / 8.0).overrides.back()),
       "wind.strength=8");
   EXPECT_EQ(range_of(base, "omega", 0.5, {}).from, 0.5);
@@ -241,6 +245,26 @@ TEST(Frontier, TheoryEndsWhereTheRangeDoes) {
   EXPECT_EQ(above.law, inside.law);
 }
 
+// A chain of the same mass in more pieces has lighter ones: the last number of them that is stable.
+TEST(Frontier, TheoryOfWholeNumbersIsTheLastThatIsStable) {
+  for (const char* stiffness : {"20", "23", "31", "40"}) {
+    const FrontierQuestion question{{"chain",
+                                     {"time.dt=0.02", "forces.gravity=[0, 0, 0]"},
+                                     std::string("mass-spring:substeps=1,structural=") + stiffness},
+                                    "cloth.grid.1",
+                                    {.from = 2, .to = 99, .whole = true}};
+    const auto stable = [&](double value) {
+      const Case one = make_case(question.at(value));
+      return linear_stability(*one.scene, one.choice)->stable();
+    };
+    const auto predicted = predicted_frontier(question);
+    ASSERT_TRUE(predicted && predicted->kind == Frontier::Kind::bracketed) << stiffness;
+    EXPECT_EQ(predicted->value, std::round(predicted->value)) << stiffness;
+    EXPECT_TRUE(stable(predicted->value)) << stiffness;
+    EXPECT_FALSE(stable(predicted->value + 1)) << stiffness;
+  }
+}
+
 Scene hung_chain(int links) {
   Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
   scene.gravity.setZero();
@@ -269,6 +293,15 @@ TEST(LinearStability, OneMassOnASpring) {
   EXPECT_NEAR(margin(scene, spring + drag, 2 / w * (std::sqrt(1 + zeta * zeta) - zeta)), 1, 1e-5);
   EXPECT_NEAR(margin(scene, spring + drag + ",drag-at=central", 2 / w), 1, 1e-5);
   EXPECT_GT(margin(scene, spring + ",integrator=explicit-euler", 1e-3), 1);
+  // Both: x' = x + (q (1 - b) (x - x_before) - w^2 h^2 x)/(1 + b), b = c h/(2m), turns around at
+  // w^2 h^2 = 2 (1 + q) + 2 b (1 - q).
+  const double step = 0.05, c = 0.7, b = c * step / (2 * m), left = std::exp(-3 * step);
+  const double stiff = m * (2 * (1 + left) + 2 * b * (1 - left)) / (step * step);
+  EXPECT_NEAR(
+      margin(in_air,
+             "mass-spring:substeps=1,drag=0.7,drag-at=central,structural=" + std::to_string(stiff),
+             step),
+      1, 1e-6);
 }
 
 TEST(LinearStability, DragHoldsExplicitEulerUpToItsClosedForm) {
