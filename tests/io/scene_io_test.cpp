@@ -345,7 +345,7 @@ TEST(SceneFiles, AFabricIsMassAndBendingInPlaceOfTheScenes) {
     EXPECT_TRUE(fabric.drape > 0 && fabric.drape < 1) << fabric.name;
   }
   EXPECT_NE(errors_of("fabric = \"petrak-m\"\ncloth = { grid = [2, 2], size = [1, 1] }")
-                .find("unknown fabric 'petrak-m'; did you mean 'petrak-m1'"),
+                .find("not 'petrak-m'; did you mean 'petrak-m1'"),
             std::string::npos);
 }
 
