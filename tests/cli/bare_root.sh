@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The README's two commands on a Debian 12 that has nothing else: what they install is all that they, and the tests, use.
 # The bare system is a folder (debootstrap, from the mirror of this machine). In it stands this tree with BUILD, under an overlay:
-# it is configured and compiled anew with what the root has.
+# it is configured anew with what the root has, and compiled anew where BUILD used ccache, which the root has not.
 # Usage: bare_root.sh BUILD [--whole]
 #   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call other programs.
 # Ends with 77, not run, where no such system can be made; says why.
