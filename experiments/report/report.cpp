@@ -22,10 +22,9 @@ namespace {
 Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
 
 /// "Jakobsen and Bullet", "7 cloth solvers on 7 scenes", or what the input says.
-std::string report_title(const ReportInput& input) {
+std::string report_title(const ReportInput& input, const ComparedSolvers& compared) {
   if (!input.title.empty()) return input.title;
   constexpr std::size_t kMostNames = 3;
-  const ComparedSolvers compared = compared_solvers_of(input);
   if (compared.all.size() > kMostNames)
     return std::to_string(compared.all.size()) + " cloth solvers on " +
            std::to_string(compared.scenes.size()) +
@@ -81,7 +80,7 @@ class Builder {
 
  private:
   Json meta(std::size_t listed) const {
-    Json one{{"title", report_title(input_)}};
+    Json one{{"title", report_title(input_, compared_)}};
     add_if(one, "question", input_.question);
     one["build"] = Json::object();
     for (const auto& [what, value] : input_.provenance)
@@ -351,9 +350,9 @@ std::string make_model(const ReportInput& input, int indent) {
 std::string make_report(const ReportInput& input) {
   const std::string model = for_script(make_model(input));
   CaseList list(input);
-  const std::string answer =
-      escape_html(to_text(answer_of(input, compared_solvers_of(input), list)));
-  const std::string title = escape_html(report_title(input));
+  const ComparedSolvers compared = compared_solvers_of(input);
+  const std::string answer = escape_html(to_text(answer_of(input, compared, list)));
+  const std::string title = escape_html(report_title(input, compared));
   const std::string_view page = page_file("index.html");
   std::string html;
   for (std::size_t at = 0; at < page.size();) {
