@@ -23,14 +23,14 @@ std::optional<Grid> read_grid(Section& cloth) {
   if (!counts) return std::nullopt;
   for (const double count : *counts)
     if (count != std::floor(count)) {
-      cloth.report("grid", "must hold whole numbers, not " + shortest(count));
+      cloth.report("grid", "must hold whole numbers, not " + as_typed(count));
       return std::nullopt;
     }
   const double all = (*counts)[0] * (*counts)[1];
   if (all < 2) {
     cloth.report("grid", "makes a cloth of one vertex; it needs two at least");
   } else if (all > kMaxVertices) {
-    cloth.report("grid", "makes " + shortest(all) + " vertices; at most " +
+    cloth.report("grid", "makes " + as_typed(all) + " vertices; at most " +
                              std::to_string(kMaxVertices) + " are allowed");
   } else {
     return Grid{static_cast<int>((*counts)[0]), static_cast<int>((*counts)[1])};
@@ -99,8 +99,8 @@ void start_sheet(Section& cloth, const SheetShape& shape, const FileKeys& said, 
   if (hung && shape.nu < 3) {
     cloth.report("span", "needs three vertices along u at least");
   } else if (hung && said.span > shape.width) {
-    cloth.report("span", "must be at most the width " + shortest(shape.width) + ", not " +
-                             shortest(said.span));
+    cloth.report("span", "must be at most the width " + as_typed(shape.width) + ", not " +
+                             as_typed(said.span));
   } else if (hung && said.span < shape.width) {
     const auto row = arc(shape.nu, shape.width, said.span);
     const Grid& g = *scene.mesh.grid;
@@ -155,7 +155,7 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fab
   for (Vec3& x : surface.vertices) {
     x = said.origin + rotation * (said.scale * x);
     if (x.cwiseAbs().maxCoeff() <= kFar) continue;
-    cloth.report("mesh", "reaches farther than " + shortest(kFar) + " m from the origin");
+    cloth.report("mesh", "reaches farther than " + as_typed(kFar) + " m from the origin");
     return false;
   }
   const auto mass = read_mass(cloth, fabric, said, surface.faces.empty() ? 1 : area(surface));
@@ -258,7 +258,7 @@ class VertexReader {
 
   void add_number(const Value& value) {
     if (value.kind != Value::Kind::integer || value.number < 0 || value.number >= mesh_.size())
-      return report(value, "names vertex " + shortest(value.number) + ", but the cloth has 0 to " +
+      return report(value, "names vertex " + as_typed(value.number) + ", but the cloth has 0 to " +
                                std::to_string(mesh_.size() - 1));
     all_.push_back(static_cast<int>(value.number));
   }
@@ -268,7 +268,7 @@ class VertexReader {
                       value.items[1].kind == Value::Kind::integer;
     if (!pair) return report(value, "must be a pair of whole numbers [i, j]");
     const double i = value.items[0].number, j = value.items[1].number;
-    const std::string given = "[" + shortest(i) + ", " + shortest(j) + "]";
+    const std::string given = "[" + as_typed(i) + ", " + as_typed(j) + "]";
     if (!mesh_.grid)
       return report(value, "names " + given + ", but only a grid has [i, j]; name vertex numbers");
     const Grid& g = *mesh_.grid;

@@ -345,7 +345,7 @@ std::optional<double> Section::judged(const Value& value, const std::string& key
     diagnostics_.report(value.place, "'" + key + "' in " + name_ + " must be finite");
   } else if (!range.holds(*number)) {
     diagnostics_.report(value.place, "'" + key + "' in " + name_ + " must be " + range.text() +
-                                         ", not " + shortest(*number));
+                                         ", not " + as_typed(*number));
   } else {
     return *number;
   }

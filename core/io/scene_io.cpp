@@ -73,8 +73,8 @@ std::vector<Motion::Key> read_path(Section& section) {
     key.finish();
     if (!t) continue;
     if (!path.empty() && *t - path.back().t < 1e-9)
-      key.report("t", "must grow from key to key: " + shortest(*t) + " follows " +
-                          shortest(path.back().t));
+      key.report("t", "must grow from key to key: " + as_typed(*t) + " follows " +
+                          as_typed(path.back().t));
     else
       path.push_back({*t, displacement});
   }
@@ -218,7 +218,7 @@ void set_steps(const FileKeys& said, Section& time, Scene& scene) {
   const double steps = std::ceil(said.duration / scene.dt * (1 - 1e-7));
   constexpr double kMaxSteps = 1e9;
   if (steps > kMaxSteps) {
-    time.report("duration", "makes " + shortest(steps) + " steps; at most 1e9 are allowed");
+    time.report("duration", "makes " + as_typed(steps) + " steps; at most 1e9 are allowed");
     return;
   }
   scene.steps = std::max(1, static_cast<int>(steps));
@@ -287,7 +287,7 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
   root.diagnostics().report(
       item.place, "the cloth starts inside this " + std::string(type_name(collider.shape)) + ": " +
                       std::to_string(count) + " vertices, vertex " + std::to_string(vertex) + " " +
-                      shortest(std::round(1e9 * deepest) / 1e9) +
+                      as_typed(std::round(1e9 * deepest) / 1e9) +
                       " m deep; move one of them, or set start_inside = \"resolve\" in [cloth]");
 }
 
@@ -300,7 +300,7 @@ void judge_path(const Value& item, Section& root, const Collider& collider, cons
     if (speed * scene.dt <= farthest) continue;
     root.diagnostics().report(
         item.place, "the path jumps: from key " + std::to_string(k) + " to key " +
-                        std::to_string(k + 1) + " it makes " + shortest(speed * scene.dt) +
+                        std::to_string(k + 1) + " it makes " + as_typed(speed * scene.dt) +
                         " m in one time step, more than the size of the cloth");
     return;
   }
@@ -318,13 +318,13 @@ void judge_sizes(Section& root, const FileKeys& said, const Scene& scene) {
   const double least = spacing(scene);
   if (least == 0) return;
   if (scene.thickness > least && !scene.colliders.empty())
-    root.report("cloth", "thickness " + shortest(scene.thickness) +
-                             " m is larger than the spacing " + shortest(least) +
+    root.report("cloth", "thickness " + as_typed(scene.thickness) +
+                             " m is larger than the spacing " + as_typed(least) +
                              " m of the vertices");
   if (!scene.self_collision || said.overlap) return;
   if (2 * scene.self_collision->radius > least * (1 + 1e-9))
-    root.report("self_collision", "particles of radius " + shortest(scene.self_collision->radius) +
-                                      " m overlap at rest, where they are " + shortest(least) +
+    root.report("self_collision", "particles of radius " + as_typed(scene.self_collision->radius) +
+                                      " m overlap at rest, where they are " + as_typed(least) +
                                       " m apart: at most half of that, or set overlap = true");
 }
 

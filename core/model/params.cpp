@@ -68,14 +68,12 @@ std::string canonical_value(const ParamSpec& spec, std::string_view given, std::
     return {};
   }
   if (whole) value = static_cast<double>(integer);
-  const auto text = [&](double number) {  // 100000 and not 1e+05, which is no whole number
-    return whole ? std::to_string(static_cast<long>(number)) : shortest(number == 0 ? 0 : number);
-  };
   if (!(value >= spec.min && value <= spec.max)) {  // NaN too
-    problem = "is outside " + text(spec.min) + " to " + text(spec.max);
+    problem = "is outside " + as_typed(spec.min) + " to " + as_typed(spec.max);
     return {};
   }
-  return text(value);
+  // 100000 and not 1e+05, which is no whole number
+  return whole ? std::to_string(integer) : shortest(value == 0 ? 0 : value);
 }
 
 }  // namespace

@@ -201,18 +201,9 @@ Value initial(Value Part::*member) {
   return Part{}.*member;
 }
 
-/// As it is typed: 1e6 and not 1e+06.
-std::string plain(double value) {
-  std::string text = shortest(value == 0 ? 0 : value);
-  for (const std::string_view noise : {"e+0", "e-0"})
-    if (const auto at = text.find(noise); at != text.npos)
-      text.replace(at, noise.size(), noise[1] == '-' ? "e-" : "e");
-  return text;
-}
-
-std::string typed(double value, const SceneKey&) { return plain(value); }
+std::string typed(double value, const SceneKey&) { return as_typed(value); }
 std::string typed(bool value, const SceneKey&) { return value ? "true" : "false"; }
-std::string typed(const Vec3& v, const SceneKey&) { return "[" + join(v, ", ", plain) + "]"; }
+std::string typed(const Vec3& v, const SceneKey&) { return "[" + join(v, ", ", as_typed) + "]"; }
 template <class Enumeration>
 requires std::is_enum_v<Enumeration> std::string typed(Enumeration value, const SceneKey& key) {
   return '"' + parts_of(key.choices)[static_cast<std::size_t>(value)] + '"';
@@ -237,8 +228,8 @@ const SceneKey* find_scene_key(std::string_view path) {
 std::string Range::text() const {
   const Range any;
   std::string low, high;
-  if (min != any.min) low = (above_min ? "greater than " : "at least ") + shortest(min);
-  if (max != any.max) high = "at most " + shortest(max);
+  if (min != any.min) low = (above_min ? "greater than " : "at least ") + as_typed(min);
+  if (max != any.max) high = "at most " + as_typed(max);
   return low + (low.empty() || high.empty() ? "" : " and ") + high;
 }
 
@@ -249,9 +240,9 @@ std::string SceneKey::allowed() const {
   else if (!choices.empty())
     text = "\"" + join(parts_of(choices), "\" or \"") + "\"";
   else if (range.max != Range{}.max)
-    text = range.above_min           ? "above 0, at most " + plain(range.max)
-           : range.min == -range.max ? "within " + plain(range.max)
-                                     : plain(range.min) + " to " + plain(range.max);
+    text = range.above_min           ? "above 0, at most " + as_typed(range.max)
+           : range.min == -range.max ? "within " + as_typed(range.max)
+                                     : as_typed(range.min) + " to " + as_typed(range.max);
   return text + (text.empty() || limits.empty() ? "" : "; ") + std::string(limits);
 }
 

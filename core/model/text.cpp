@@ -28,6 +28,16 @@ std::string shortest(double value) {
   return {text, end};
 }
 
+std::string as_typed(double value) {
+  std::string text = shortest(value == 0 ? 0 : value);
+  const auto exponent = text.find('e');
+  if (exponent == text.npos) return text;
+  if (text[exponent + 1] == '+') text.erase(exponent + 1, 1);
+  const auto digits = text.find_first_of("0123456789", exponent);
+  if (text[digits] == '0') text.erase(digits, 1);
+  return text;
+}
+
 std::vector<std::string> parts_of(std::string_view list, char separator) {
   std::vector<std::string> all;
   while (!list.empty()) {

@@ -14,6 +14,9 @@ std::string printable(std::string_view);
 /// The shortest text that reads back as the same number.
 std::string shortest(double value);
 
+/// The same as a person types it: 1e6 and not 1e+06, no sign of a zero.
+std::string as_typed(double value);
+
 /// The parts of "a|b|c".
 std::vector<std::string> parts_of(std::string_view list, char separator = '|');
 

@@ -35,7 +35,7 @@ CLI::Validator above_zero_seconds() {
         const bool number = CLI::detail::lexical_cast(text, value);
         return number && value > 0 && value <= kLongestSeconds
                    ? ""
-                   : "'" + text + "' is not a number above 0, at most " + shortest(kLongestSeconds);
+                   : "'" + text + "' is not a number above 0, at most " + as_typed(kLongestSeconds);
       },
       "above 0");
 }
@@ -108,7 +108,7 @@ void add_samples(CLI::App& app, int& rounds, double& seconds, int fewest_rounds)
                      std::to_string(rounds) + ")")
       ->check(CLI::Range(fewest_rounds, 1000));
   app.add_option("--seconds", seconds,
-                 "CPU time of one sample (default: " + shortest(seconds) + ")")
+                 "CPU time of one sample (default: " + as_typed(seconds) + ")")
       ->check(above_zero_seconds());
 }
 
@@ -116,7 +116,7 @@ void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {
   app.add_option("--metric", metric, "What the error is (default: " + metric + ")")
       ->check(metric_value());
   app.add_option("--tolerance", tolerance,
-                 "Smaller relative differences are none (default: " + shortest(tolerance) + ")")
+                 "Smaller relative differences are none (default: " + as_typed(tolerance) + ")")
       ->check(above_zero());
 }
 

@@ -113,10 +113,21 @@ void keep_current(StudyBench& bench) {
 
 namespace {
 
+std::string name_of(const CaseSpec& spec) {
+  return spec.scene + "\n" + spec.solver + "\n" + join(spec.overrides, "\n");
+}
+
+/// Of a case that several builds ran the record that was stored last.
 std::vector<Record> all_records(const Store& store) {
   std::vector<Record> records;
-  for (const std::string& key : store.keys())
-    if (auto record = store.find(key)) records.push_back(slim(std::move(*record)));
+  std::map<std::string, std::size_t> index;
+  for (const std::string& key : store.keys()) {
+    std::optional<Record> record = store.find(key);
+    if (!record) continue;
+    const auto [at, fresh] = index.try_emplace(name_of(record->spec), records.size());
+    if (fresh) records.emplace_back();
+    records[at->second] = slim(std::move(*record));
+  }
   return records;
 }
 
@@ -192,9 +203,6 @@ Differences stored_differences(const Store& a, const Store& b) {
 ReportInput stored_anywhere(const std::vector<Study>& studies, const Store& store) {
   ReportInput input;
   const std::vector<Record> all = all_records(store);
-  const auto name_of = [](const CaseSpec& spec) {
-    return spec.scene + "\n" + spec.solver + "\n" + join(spec.overrides, "\n");
-  };
   std::map<std::string, const Record*> by_name;
   for (const Record& r : all) by_name[name_of(r.spec)] = &r;
   for (const Study& study : studies) {

@@ -324,7 +324,10 @@ std::vector<Store::Entry> Store::entries() const {
 
 std::vector<std::string> Store::keys() const {
   std::vector<std::string> keys;
-  for (Entry& one : entries()) keys.push_back(std::move(one.key));
+  Database* database = reading();
+  if (!database) return keys;
+  Database::Rows row = database->rows("SELECT key FROM cases ORDER BY case_id");
+  while (row.next()) keys.push_back(row.text(0));
   return keys;
 }
 

@@ -83,7 +83,7 @@ class Store {
     bool is_result = false;
   };
   std::vector<Entry> entries() const;     ///< sorted by key
-  std::vector<std::string> keys() const;  ///< sorted
+  std::vector<std::string> keys() const;  ///< as they were stored
   /// SHA-256 over the keys and results of all cases that are results: two stores that know the same
   /// have the same.
   std::string digest() const;

@@ -303,10 +303,17 @@ class StudyReader {
                                                       key + "'" + suggestion(key, settings()) +
                                                       " (scene, solver, or an axis's name)");
         std::vector<std::string>& values = exclusion.when[key];
+        const auto add = [&](const Value& value) {
+          values.push_back(text_of(value, toml));
+          guarded(value, [&] {  // of a preset's scenes and solvers too
+            if (key == "scene") find_scene(parse_scene(values.back()).name);
+            if (key == "solver") find_solver(values.back());
+          });
+        };
         if (item.items[i].is_array() && !toml)
-          for (const Value& v : item.items[i].items) values.push_back(text_of(v, toml));
+          for (const Value& v : item.items[i].items) add(v);
         else
-          values.push_back(text_of(item.items[i], toml));
+          add(item.items[i]);
       }
       if (exclusion.when.empty())
         diagnostics_.report(item.place, "an exclusion is a table such as { scene = \"ball\" }");

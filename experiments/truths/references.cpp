@@ -38,6 +38,18 @@ Scene let_go(int n, double degrees) {
   return s;
 }
 
+/// Order in dt of the distance after 0.25 s between a solver and where the motion was found to
+/// converge to; NaN if it does not converge.
+PowerLaw order_from(const reference::Trajectory& converged, const std::vector<double>& steps,
+                    const Scene& s, const std::string& solver) {
+  return fit_over(steps, [&](double dt) {
+    Scene finer = s;
+    finer.dt = dt;
+    Simulation sim(finer, solver, static_cast<int>(0.25 / dt));
+    return converged.unique ? max_distance(sim.state().x, converged.states[0].x) : std::nan("");
+  });
+}
+
 }  // namespace
 
 TAUT_TRUTH(static_floor, 9, 1, "the static reference is at rounding, by self-convergence",
@@ -78,13 +90,7 @@ TAUT_TRUTH(projection_tends_to_shake, 9, 3,
     const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
     for (const std::string& solver : {jakobsen(sweeps), bullet(sweeps)}) {
       if (!can_run(findings, solver, s)) continue;
-      const PowerLaw order = fit_over(kOrderSteps, [&](double dt) {
-        Scene finer = s;
-        finer.dt = dt;
-        Simulation sim(finer, solver, static_cast<int>(0.25 / dt));
-        return converged.unique ? max_distance(sim.state().x, converged.states[0].x) : std::nan("");
-      });
-      findings.slope(solver, quantity, order, 1, 0.15);
+      findings.slope(solver, quantity, order_from(converged, kOrderSteps, s, solver), 1, 0.15);
     }
   };
   check(swung(5, 45), 150, "order in dt of the distance from SHAKE, 5x5 swung from 45 deg");
@@ -101,14 +107,8 @@ TAUT_TRUTH(springs_tend_to_reference, 9, 4,
   const auto converged = reference::converged_motion(s, {0.25}, 1.0 / 1024);
   for (const char* solver : {"implicit", "mass-spring:substeps=1,precision=double"}) {
     if (!can_run(findings, solver, s)) continue;
-    const PowerLaw order = fit_over(kElasticSteps, [&](double dt) {
-      Scene finer = s;
-      finer.dt = dt;
-      Simulation sim(finer, solver, static_cast<int>(0.25 / dt));
-      return converged.unique ? max_distance(sim.state().x, converged.states[0].x) : std::nan("");
-    });
     findings.slope(solver, "order in dt of the distance from it, 5x5 of 20 N/m let go at 45 deg",
-                   order, 1, 0.1);
+                   order_from(converged, kElasticSteps, s, solver), 1, 0.1);
   }
 }
 

@@ -367,7 +367,7 @@ class Store(CommandLine):
         for words in (["run", study, "--timeout"], ["advise", "hang", "--error", "1%", "--patience"], ["require", "hang", "--patience"],
                       ["bench", study, "--seconds"], ["bench", "scaling", "--limit"]):
             for value in ("1e300", "1e18", "inf", "1000001"):
-                self.assertIn("at most 1e+06", self.taut(*words, value, expect=2).err)
+                self.assertIn("at most 1e6", self.taut(*words, value, expect=2).err)
         self.taut("run", study, "--timeout", 1e6)
         self.assertEqual([r["status"]["kind"] for r in self.records()], ["ok"])
 

@@ -342,11 +342,11 @@ TEST(SceneValues, PinsMoveOnceAndFacesAreWhatWindNeeds) {
 TEST(SceneValues, TheFileComesFirstAndOverridesInTheirOrder) {
   EXPECT_EQ(problems("wind = 1\n" + level("mass = 0"), {"forces.damping=-2", "cloth.lumping='x'"}),
             "x:1:8: 'wind' in the scene must be a table, not a whole number\n"
-            "x:6:8: 'mass' in [cloth] must be at least 1e-09 and at most 1e+09, not 0\n"
+            "x:6:8: 'mass' in [cloth] must be at least 1e-9 and at most 1e9, not 0\n"
             "cloth.lumping='x': column 15: 'lumping' in [cloth] must be \"area\" or \"equal\", not "
             "\"x\"\n"
             "forces.damping=-2: column 16: 'damping' in [forces] must be at least 0 and at most "
-            "1e+06, not -2");
+            "1e6, not -2");
 }
 
 }  // namespace

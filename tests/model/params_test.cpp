@@ -57,9 +57,9 @@ TEST(Params, BordersBelongToTheirRange) {
   EXPECT_EQ(canonical("sweeps=1000000,omega=2.5"),
             "sweeps=1000000,omega=2.5,order=mesh,note='a b'");
   const std::string start = ": column 1: mine: ";
-  EXPECT_EQ(problems("sweeps=-6"), "sweeps=-6" + start + "sweeps=-6 is outside -5 to 1000000");
+  EXPECT_EQ(problems("sweeps=-6"), "sweeps=-6" + start + "sweeps=-6 is outside -5 to 1e6");
   EXPECT_EQ(problems("sweeps=1000001"),
-            "sweeps=1000001" + start + "sweeps=1000001 is outside -5 to 1000000");
+            "sweeps=1000001" + start + "sweeps=1000001 is outside -5 to 1e6");
   EXPECT_EQ(problems("omega=-1.001"), "omega=-1.001" + start + "omega=-1.001 is outside -1 to 2.5");
   EXPECT_EQ(problems("omega=2.501"), "omega=2.501" + start + "omega=2.501 is outside -1 to 2.5");
   EXPECT_EQ(problems("omega=nan"), "omega=nan" + start + "omega=nan is outside -1 to 2.5");
@@ -123,7 +123,7 @@ TEST(SolverTexts, AreReadAndTheirErrorsCountFromTheFirstCharacter) {
   EXPECT_EQ(&find_solver("bullet"), parse_solver("bullet").entry);
   EXPECT_EQ(solver_problems("xpbd:"), "xpbd:: column 6: expected key=value after the colon");
   EXPECT_EQ(solver_problems("xpbd:bend=-1,bind=2"),
-            "xpbd:bend=-1,bind=2: column 6: xpbd: bend=-1 is outside 0 to 1e+12\n"
+            "xpbd:bend=-1,bind=2: column 6: xpbd: bend=-1 is outside 0 to 1e12\n"
             "xpbd:bend=-1,bind=2: column 14: xpbd: unknown parameter 'bind'; did you mean 'bend'?");
   EXPECT_EQ(solver_problems("xpdb:bend=1,2"),
             "xpdb:bend=1,2: column 1: unknown solver 'xpdb'; did you mean 'xpbd'? (`taut list "

@@ -307,7 +307,8 @@ TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
     r.values["stretch.rms"] *= 2;
     if (r.solver == "xpbd") r.params["new"] = "1";
     put(r, "0" + std::to_string(i));
-    if (i == 7) r.params["new"] = "2", put(r, "19");  // two under one name: neither is compared
+    if (i == 7)  // two under one name: neither is compared
+      r.params["new"] = "2", r.spec.solver += ",new=2", put(r, "19");
   }
   Record alone = all[1];
   alone.spec.overrides.push_back("cloth.mass=2"), put(alone, "20");
@@ -323,6 +324,26 @@ TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
   EXPECT_EQ(found.only_a, 2u);
   EXPECT_EQ(found.only_b, 3u);
   EXPECT_EQ(found.noise, 0);
+
+  // A folder that a second build ran into: what it stored last stands, whatever the key.
+  for (const char* key : {"zz", "21"}) {
+    Record r = all[3];
+    r.values["stretch.rms"] = key[0] == 'z' ? 7 : 8;
+    put(r, key);
+  }
+  const Differences again = stored_differences(store_, other);
+  ASSERT_EQ(again.pairs.size(), 6u);
+  EXPECT_EQ(again.only_a, 2u);
+  EXPECT_EQ(again.only_b, 3u);
+  const auto newest =
+      std::ranges::find(again.pairs, all[3].id, [](const auto& p) { return p.first.id; });
+  ASSERT_NE(newest, again.pairs.end());
+  EXPECT_EQ(newest->second.value("stretch.rms"), 8);
+  const ReportInput of_other = stored_anywhere({study_}, other);
+  const auto shown = std::ranges::find(of_other.studies.at(0).records, all[3].id, &Record::id);
+  ASSERT_NE(shown, of_other.studies[0].records.end());
+  EXPECT_EQ(shown->value("stretch.rms"), 8);
+
   const ReportInput any = stored_anywhere({study_}, store_), none = stored_anywhere({}, store_);
   ASSERT_EQ(any.studies.size(), 1u);
   EXPECT_EQ(any.studies[0].name, "few");

@@ -212,6 +212,12 @@ TEST_F(StudyFile, AnExclusionNamesAnyOfSomeValues) {
   EXPECT_EQ(left("{ substeps = [2, 1], solver = [\"xpbd\", \"bullet\"] }"), "j1@4 j2@4 j1@5 j2@5 ");
   EXPECT_EQ(left("{ scene = \"fall\" }, { scene = [\"hang\"], substeps = 1 }"),
             "j2@4 x2@4 j2@5 x2@5 ");
+  EXPECT_EQ(wrong("question = \"?\"\nscenes = [\"hang\"]\nsolvers = [\"jakobsen\"]\nexclude = [\n"
+                  "{ scene = \"hamg\" },\n{ solver = [\"xpbd\", \"jakobson\"] }]\n"),
+            "5:11: unknown scene 'hamg'; did you mean 'hang'? (`taut list scenes` names all; a "
+            "path has a '/' or ends in .toml)\n"
+            "6:21: unknown solver 'jakobson'; did you mean 'jakobsen'? (`taut list solvers` names "
+            "all)\n");
 }
 
 TEST_F(StudyFile, WhatIsWrongIsSaidWithItsPlaceAllAtOnce) {

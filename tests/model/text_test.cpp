@@ -1,0 +1,26 @@
+#include "core/model/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace taut::text_test {
+namespace {
+
+TEST(Text, NumbersAreSaidAsTheyAreTyped) {
+  EXPECT_EQ(as_typed(1e6), "1e6");
+  EXPECT_EQ(as_typed(-2.5e-9), "-2.5e-9");
+  EXPECT_EQ(as_typed(1e15), "1e15");
+  EXPECT_EQ(as_typed(1e100), "1e100");
+  EXPECT_EQ(as_typed(1e-100), "1e-100");
+  EXPECT_EQ(as_typed(1000), "1000");
+  EXPECT_EQ(as_typed(-0.0), "0");
+  for (int power = -300; power <= 300; ++power) {
+    const double value = 1.0625 * std::pow(10.0, power);
+    EXPECT_EQ(std::strtod(as_typed(value).c_str(), nullptr), value);
+  }
+}
+
+}  // namespace
+}  // namespace taut::text_test
