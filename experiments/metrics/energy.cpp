@@ -1,6 +1,4 @@
-#include <numeric>
-
-#include "core/model/bending.hpp"
+#include "experiments/metrics/mechanical_energy.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -22,16 +20,7 @@ class Energy final : public Metric {
        false, Window::run},
   };
   static bool measures(const Scene& scene) { return !scene.gravity.isZero(0); }
-  explicit Energy(const Scene& scene)
-      : mass_(scene.mesh.mass),
-        bending_(make_bending(scene)),
-        start_(scene.start.x),
-        gravity_(scene.gravity),
-        end_(scene) {
-    const double total = std::accumulate(mass_.begin(), mass_.end(), 0.0);
-    bent_at_start_ = bending_energy(bending_, start_);
-    unit_ = total * gravity_.norm() * extent(scene);
-  }
+  explicit Energy(const Scene& scene) : energy_(scene), end_(scene) {}
 
   void observe(const Snapshot& m) override {
     const auto [kinetic, total] = measure(m.state);
@@ -49,27 +38,19 @@ class Energy final : public Metric {
     double kinetic = 0, total = 0;  ///< in units of m g L
   };
   Energies measure(const State& state) const {
-    double kinetic = 0, potential = bending_energy(bending_, state.x) - bent_at_start_;
-    for (std::size_t i = 0; i < mass_.size(); ++i) {
-      kinetic += mass_[i] * state.v[i].squaredNorm() / 2;
-      potential -= mass_[i] * gravity_.dot(state.x[i] - start_[i]);
-    }
-    return {kinetic / unit_, (kinetic + potential) / unit_};
+    const double kinetic = energy_.kinetic(state);
+    return {kinetic / energy_.unit(), (kinetic + energy_.potential(state)) / energy_.unit()};
   }
 
-  std::vector<double> mass_;
-  std::vector<BendingElement> bending_;
-  double bent_at_start_ = 0;  ///< J
-  std::vector<Vec3> start_;
-  Vec3 gravity_;
+  MechanicalEnergy energy_;
   LastSecond end_;
-  double unit_ = 0;  ///< m g L [J]
   Summary kinetic_, total_;
 };
 
 }  // namespace
 
 TAUT_METRIC(energy, Energy, "Mechanical energy; relaxation dissipates it legitimately",
-            "sum of m v^2/2 - m g . (x - x_start) over vertices, and the energy of bending");
+            "sum of m v^2/2 - m g . (x - x_start) over vertices, and the energy of bending and of "
+            "elastic links");
 
 }  // namespace taut

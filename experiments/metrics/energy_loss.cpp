@@ -1,4 +1,4 @@
-#include "core/model/bending.hpp"
+#include "experiments/metrics/mechanical_energy.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -9,15 +9,21 @@ namespace {
 /// and of the largest after it: no ripple of a swing counts.
 constexpr double kTurn = 0.25;
 
+/// If all swings together exchange less, in units of m g L, the cloth trembles at rest.
+constexpr double kSwing = 1e-3;
+
 class EnergyLoss final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
       {.name = "energy.loss",
        .unit = kSignedShare,
-       .help = "kinetic + potential energy lost from the first turning point to the last, over the "
-               "sum of the largest kinetic energies between them; a turning point is a least "
-               "kinetic energy of at most a quarter of the largest on either side; none with "
-               "colliders, self-collision, wind, damping or moving pins, which do work",
+       .help =
+           "kinetic + potential energy lost from the first turning point to the last, over the "
+           "sum of the largest kinetic energies between them; a turning point is a least "
+           "kinetic energy of at most a quarter of the largest on either side; none with "
+           "colliders, self-collision, wind, damping or moving pins, which do work; none if that "
+           "sum is below a thousandth of m g L (cloth at rest) or the loss above it (cloth that "
+           "sinks and does not swing)",
        .window = Window::run,
        .title = "energy lost from peak to peak"},
   };
@@ -25,11 +31,7 @@ class EnergyLoss final : public Metric {
     return !scene.gravity.isZero(0) && scene.colliders.empty() && !scene.self_collision &&
            !scene.wind && scene.damping == 0 && scene.pin_motions.empty();
   }
-  explicit EnergyLoss(const Scene& scene)
-      : mass_(scene.mesh.mass),
-        bending_(make_bending(scene)),
-        start_(scene.start.x),
-        gravity_(scene.gravity) {}
+  explicit EnergyLoss(const Scene& scene) : energy_(scene) {}
 
   void observe(const Snapshot& m) override {
     const Moment now = measure(m.state);
@@ -41,7 +43,9 @@ class EnergyLoss final : public Metric {
     if (now.kinetic > largest_) largest_ = now.kinetic, least_ = now;
   }
   std::vector<double> finish() override {
-    return {exchanged_ > 0 ? (first_ - last_) / exchanged_ : Summary::kNone};
+    const double loss = (first_ - last_) / exchanged_;
+    const bool swings = exchanged_ > kSwing * energy_.unit() && loss <= 1;
+    return {swings ? loss : Summary::kNone};
   }
   std::vector<double> now(const Snapshot&) const override { return {Summary::kNone}; }
 
@@ -50,13 +54,8 @@ class EnergyLoss final : public Metric {
     double kinetic = 0, total = 0;  ///< J
   };
   Moment measure(const State& s) const {
-    Moment m;
-    for (std::size_t i = 0; i < mass_.size(); ++i) {
-      m.kinetic += mass_[i] * s.v[i].squaredNorm() / 2;
-      m.total -= mass_[i] * gravity_.dot(s.x[i] - start_[i]);
-    }
-    m.total += m.kinetic + bending_energy(bending_, s.x);
-    return m;
+    const double kinetic = energy_.kinetic(s);
+    return {kinetic, kinetic + energy_.potential(s)};
   }
   void turn() {
     if (turned_)
@@ -66,10 +65,7 @@ class EnergyLoss final : public Metric {
     turned_ = true, last_ = least_.total;
   }
 
-  std::vector<double> mass_;
-  std::vector<BendingElement> bending_;
-  std::vector<Vec3> start_;
-  Vec3 gravity_;
+  MechanicalEnergy energy_;
   Moment least_;                 ///< since the largest kinetic energy after the last turning point
   double largest_ = 0;           ///< J, kinetic, since the last turning point
   bool turned_ = false;          ///< there was a turning point

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "core/reference/elastica.hpp"
 #include "tests/metrics/measured.hpp"
 #include "tests/support/cloths.hpp"
 
@@ -77,18 +79,43 @@ Scene strip() {
   return s;
 }
 
-TEST(Cantilever, SeesItsEndFromBetweenTheTwoRows) {
-  const Scene s = strip();
+/// The last rows of a strip turned about its clamp.
+std::vector<Vec3> turned(const Scene& s, double angle) {
   std::vector<Vec3> x = s.mesh.rest;
-  const double angle = 0.7243, l = 0.2 / 7.5;
+  const double l = 0.2 / 7.5;
   for (std::size_t v = 6; v < x.size(); ++v) {
     const double out = s.mesh.rest[v].z() - l / 2;
     x[v] = Vec3(x[v].x(), -out * std::sin(angle), l / 2 + out * std::cos(angle));
   }
+  return x;
+}
+
+TEST(Cantilever, SeesItsEndFromBetweenTheTwoRows) {
+  const Scene s = strip();
+  const double angle = 0.7243;
+  const std::vector<Vec3> x = turned(s, angle);
   EXPECT_NEAR(standing(s, x, "cantilever.angle"), angle, 1e-12);
   EXPECT_NEAR(standing(s, x, "cantilever.bending_length"),
               0.2 * std::cbrt(std::cos(angle / 2) / (8 * std::tan(angle))), 1e-12);
   EXPECT_NEAR(standing(s, x, "cantilever.bending_length") / 0.2, 0.50932, 1e-4) << "41.5 degrees";
+}
+
+// How far Peirce's formula is from the elastica, as the help says it.
+TEST(Cantilever, HasABendingLengthWherePeircesFormulaHolds) {
+  const Scene s = strip();
+  const auto too_long = [&](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return standing(s, turned(s, angle), "cantilever.bending_length") /
+               (0.2 * reference::bending_length(angle)) -
+           1;
+  };
+  EXPECT_NEAR(too_long(20), 0.0042, 1e-4);
+  EXPECT_NEAR(too_long(41.5), 0.0188, 1e-4);
+  EXPECT_NEAR(too_long(59.999), 0.0442, 1e-4);
+  EXPECT_TRUE(std::isnan(too_long(60.001)));
+  EXPECT_NEAR(reference::peirce_bending_length(87 * std::numbers::pi / 180) /
+                  reference::bending_length(87 * std::numbers::pi / 180),
+              1.566, 1e-3);
 }
 
 TEST(Cantilever, IsOfLevelStripsHeldByTwoRowsAlone) {

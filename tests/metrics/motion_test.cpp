@@ -100,6 +100,40 @@ TEST(EnergyLoss, IgnoresRipplesAndNeedsAWholeSwing) {
   EXPECT_FALSE(measure_at_rest(damped, damped.start).contains("energy.loss"));
 }
 
+TEST(EnergyLoss, IsNotOfClothThatTremblesOrSinks) {
+  const Scene scene = sheet(3);  // m g L = 6.9 J
+  const auto loss = [&](double kinetic, double lost) {
+    return measure(scene, [&](int step) { return swinging(scene, step, 40, kinetic, lost); })
+        .at("energy.loss");
+  };
+  EXPECT_NEAR(loss(0.01, 0.002), 0.2, 1e-9);
+  EXPECT_TRUE(std::isnan(loss(0.0005, 0.0001)));
+  EXPECT_NEAR(loss(0.8, 0.72), 0.9, 1e-12);
+  EXPECT_TRUE(std::isnan(loss(0.8, 0.88)));
+}
+
+// Two weights that hang on a spring each, let go at its rest length: u'' = g - u K/m.
+TEST(Energy, HoldsThatOfElasticLinksSoThatAWeightOnASpringLosesNone) {
+  Scene scene = sheet(2);
+  const auto u_of = [&](const State& s) { return Vec3(s.x[2] - s.x[0]); };
+  const Vec3 down = u_of(scene.start).normalized();
+  scene.gravity = 9.81 * down;
+  scene.stiffness[static_cast<std::size_t>(Family::structural)] = 30;
+  const double mass = scene.mesh.mass[2], omega = std::sqrt(30 / mass), sag = mass * 9.81 / 30;
+  const auto v = measure(scene, [&](int step) {
+    State state = scene.start;
+    const double phase = omega * step * scene.dt;
+    for (const std::size_t i : {2U, 3U}) {
+      state.x[i] += sag * (1 - std::cos(phase)) * down;
+      state.v[i] = sag * omega * std::sin(phase) * down;
+    }
+    return state;
+  });
+  EXPECT_NEAR(v.at("energy.loss"), 0, 1e-12);
+  EXPECT_NEAR(v.at("energy.mean"), 0, 1e-14);
+  EXPECT_GT(v.at("energy.kinetic"), 1e-3);
+}
+
 TEST(Pins, CarryTheWeightAtRestAndTheCentripetalForceInMotion) {
   Scene scene = sheet(3);
   scene.pins = {4};

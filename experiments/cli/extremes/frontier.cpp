@@ -67,7 +67,10 @@ Answer answer_of(const Options& options, const Case& first, const CaseFrontier& 
                                 ": largest stable " + options.of};
   const auto end = [&](const char* name, const char* heading, double value) {
     const Probed* probe = found.at(value);
-    answer.add({name, heading, unit, 7}, Cell(value).with(probe ? describe(probe->status) : ""));
+    std::string what = probe ? describe(probe->status) : "";
+    if (probe && probe->stable() && probe->status.kind == Status::Kind::extreme)
+      what += "; a large strain alone is no instability";
+    answer.add({name, heading, unit, 7}, Cell(value).with(what));
   };
   answer.add(Column("of").in_detail(), options.of);
   answer.add(Column("kind").in_detail(), to_string(found.kind));

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/bending.hpp"
+#include "core/model/scene.hpp"
+
+namespace taut {
+
+/// Energies of a scene's cloth [J]: what moves, and what gravity, bending and the links that the
+/// scene makes elastic have stored, K/2 (length - rest length)^2 each. Rigid links store nothing.
+class MechanicalEnergy {
+ public:
+  explicit MechanicalEnergy(const Scene&);
+
+  double kinetic(const State&) const;
+  double potential(const State&) const;  ///< 0 at the start
+  double unit() const { return unit_; }  ///< m g L, L the diagonal of the rest shape's bounding box
+
+ private:
+  double stored(const std::vector<Vec3>& x) const;
+
+  struct Spring {
+    Link link;
+    double stiffness = 0;  ///< N/m
+  };
+  std::vector<double> mass_;
+  std::vector<Vec3> start_;
+  Vec3 gravity_;
+  std::vector<BendingElement> bending_;
+  std::vector<Spring> springs_;
+  double unit_ = 0, at_start_ = 0;
+};
+
+}  // namespace taut
