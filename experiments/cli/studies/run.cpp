@@ -46,22 +46,29 @@ std::vector<StudyCases> all_cases(const std::vector<Study>& studies) {
   return all;
 }
 
+/// The main job's six parts, the first of them the cases.
+void say_part(int part, const std::string& what) {
+  progress() << "part " << part << " of 6: " << what << '\n';
+}
+
 /// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
 /// still gives numbers; the report shows how noisy. Then truths and baselines: what the report says
 /// besides the studies. It says which one failed, too, so the run goes on.
 int finish_main_job(const MainJob& job, const Options& options) {
+  say_part(2, "what accuracy costs, one case at a time");
   bench::time_study(job.bench, job.preset, 0.015, options.out);
   const Store store(options.out);
   for (const std::string& scene : job.steps) {
-    progress() << "inside one step of " << scene << '\n';
+    say_part(3, "inside one step of " + scene);
     store.keep(
         convergence::one_step(scene, load_study(job.studies.front(), options.preset).solvers));
   }
-  progress() << "holding solvers to closed forms and published numbers\n";
+  say_part(4, "solvers beside closed forms and published numbers");
   store.keep(verify::verify_all(options.jobs));
-  progress() << "comparing with the committed baselines\n";
+  say_part(5, "the committed baselines");
   const Answer compared = check::check_all(options.jobs, options.out);
   if (!options.json) print(compared, {});
+  say_part(6, "the page and its films");
   const std::string page =
       reporting::report_main_job(options.preset == job.preset ? "" : options.preset, options.out);
   if (!options.json) std::cout << page << '\n';
@@ -171,6 +178,7 @@ int run(Options options) {
   }
   const Store store(options.out);
   store.prepare();
+  if (bare && !options.no_report) say_part(1, "cases of the studies");
   const CampaignProgress campaign = run_missing(cases, store, command_line(options),
                                                 {.jobs = options.jobs,
                                                  .limits = options.limits,
