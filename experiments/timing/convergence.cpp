@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "core/model/input_error.hpp"
 
@@ -61,9 +62,8 @@ double contraction(const std::vector<ConvergencePoint>& points, double floor) {
   const std::size_t last = std::max<std::size_t>(2, falling.size() / 3);
   if (falling.size() < last + 1) return kUnknown;
   double k = 0, y = 0, kk = 0, ky = 0;
-  for (std::size_t i = falling.size() - last; i < falling.size(); ++i)
-    k += falling[i].first, y += falling[i].second, kk += falling[i].first * falling[i].first,
-        ky += falling[i].first * falling[i].second;
+  for (const auto& [at, log_distance] : std::span(falling).last(last))
+    k += at, y += log_distance, kk += at * at, ky += at * log_distance;
   const auto n = static_cast<double>(last);
   return std::exp((n * ky - k * y) / (n * kk - k * k));
 }

@@ -64,6 +64,7 @@ class MadeUp {
     Cell made = kinds[up_to(5)];
     if (up_to(3) == 0) made.note = word();
     if (up_to(5) == 0) made.key = "0123abcd";
+    made.best = up_to(5) == 0;
     return made;
   }
   Column column(const std::string& name) {

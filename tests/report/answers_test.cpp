@@ -77,6 +77,25 @@ TEST(PageAnswers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
   EXPECT_EQ(answer.table("failures").rows.back()[3].number(), 0) << "no failure";
 }
 
+// Only where a mean is taken of what may be nothing at all.
+TEST(PageAnswers, SayWhatLessCountsAsWhereAMeanTakesItSo) {
+  Reported made;
+  for (const char* scene : {"ball", "swing"})
+    for (const char* solver : {"jakobsen", "bullet"})
+      made.add(scene, solver,
+               {{"stretch.rms", 0.01}, {"penetration.peak", 0.002}, {"motion.share", 0.5}});
+  made.input.studies[0].records.back().dt = 1.0 / 32;
+  const Answer answer = made.answer();
+  const auto caption = [&](const char* table) { return answer.table(table).caption; };
+  for (const char* table : {"stretch.rms", "penetration.peak", "motion.share"})
+    EXPECT_EQ(caption(table).find("less than") != std::string::npos,
+              table == std::string("stretch.rms"))
+        << caption(table);
+  EXPECT_NE(caption("stretch.rms").find("; less than 0.1\u00A0% counts as 0.1\u00A0%"),
+            std::string::npos)
+      << caption("stretch.rms");
+}
+
 TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   Reported made;
   const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});

@@ -10,6 +10,7 @@
 #include "experiments/report/input.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/truths/assertions/assertions.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::chosen_report_test {
@@ -224,6 +225,126 @@ TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
   EXPECT_EQ(
       model["differences"]["a"].get<std::string>() + model["differences"]["b"].get<std::string>(),
       "xy");
+}
+
+// Two builds of one solver in sessions of their own: the geometric mean, and never more than
+// likely.
+TEST(Chosen, CostsOfTwoFoldersAreComparedSolverBySolver) {
+  ReportInput input = chosen();
+  const std::vector<Record>& records = input.studies[0].records;  // in turns Jakobsen's, Bullet's
+  const auto timed = [](const Record& r, double cost) {
+    const std::vector<double> samples(12, cost * r.dt);
+    return BenchedCase{r, {samples, samples, 0, "", ""}};
+  };
+  Differences two{"x", "y", {{records[0], records[0]}}, {}, 3, 5, 0.02};
+  two.timed = {{timed(records[0], 2), timed(records[0], 1)},
+               {timed(records[2], 3), timed(records[2], 3)},
+               {timed(records[1], 4), timed(records[1], 4.02)}};
+  BenchedCase failed = timed(records[4], 1);
+  failed.timing.failure = "made up";
+  two.timed.emplace_back(failed, timed(records[4], 100));
+  two.timed.emplace_back(timed(records[4], 1), failed);
+  input.differences = two;
+  const Json model = model_of(input);
+  const Json& costs = model["tables"]["differences-cost"]["rows"];
+  ASSERT_EQ(costs.size(), 2u);
+  EXPECT_EQ((Json{costs[0][0], costs[0][1]}), (Json{"Bullet", 1.0}));
+  EXPECT_NEAR(costs[0][2].get<double>(), 1.005, 1e-9);
+  EXPECT_EQ((Json{costs[1][0], costs[1][1]}), (Json{"Jakobsen", 2.0}));
+  EXPECT_NEAR(costs[1][2].get<double>(), std::sqrt(0.5), 1e-9);
+  EXPECT_EQ(costs[1][3], to_string(Certainty::likely)) << "beyond the noise";
+  EXPECT_EQ(costs[0][3], to_string(Certainty::none)) << "within the noise";
+  EXPECT_EQ(model["tables"]["differences-ends"]["caption"],
+            "1 cases in both; in A alone 3, in B alone 5");
+}
+
+TEST(Chosen, ACostIsThatOfTheCheapestThatReachesAnErrorAndAProfileCountsThem) {
+  ReportInput input = chosen();
+  std::vector<Record>& records = input.studies[0].records;
+  SceneBench scene{"hang", {1 / 1.02, 1, 1.02}, {}};
+  for (const auto& [at, error, cost] : {std::tuple{0u, 0.08, 1.0},
+                                        {2u, 0.008, 4.0},
+                                        {4u, 0.007, 6.0},
+                                        {1u, 0.09, 2.0},
+                                        {3u, 0.05, 5.0},
+                                        {5u, 0.0009, 8.0}}) {
+    records[at].values = {{"stretch.rms", error}, {"motion.share", 0.4}, {"energy.peak", 7}};
+    const std::vector<double> samples(12, cost * records[at].dt);
+    scene.cases.push_back({records[at], {samples, samples, 0, "", ""}});
+  }
+  input.bench = StudyBench{"sweeps", "a machine", {scene}};
+  const Json model = model_of(input);
+  const Json& levels = model["tables"]["cost-levels-hang"];
+  const auto cost = [&](std::size_t row, std::size_t column) {
+    const Json& cell = levels["rows"][row][column];
+    return cell.is_array() ? cell[1] : cell;
+  };
+  ASSERT_EQ(levels["rows"].size(), 4u);
+  EXPECT_EQ((Json{cost(0, 0), cost(1, 0), cost(2, 0), cost(3, 0)}), (Json{0.1, 0.01, 1e-3, 1e-4}));
+  const double jakobsen[] = {1, 4}, bullet[] = {2, 8, 8};
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_NEAR(cost(k, 1).get<double>(), jakobsen[k], 1e-12) << k;
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(cost(k, 2).get<double>(), bullet[k], 1e-12) << k;
+  for (std::size_t k = 2; k < 4; ++k) EXPECT_EQ(cost(k, 1), "not reached");
+  EXPECT_EQ(cost(3, 2), "not reached");
+  const std::string solvers[] = {"jakobsen", "bullet"};
+  std::size_t seen = 0;
+  for (const Json& note : levels["notes"]) {
+    const std::size_t row = note["row"];
+    const std::string solver = note["column"], text = note["note"];
+    EXPECT_EQ(note["key"], short_key("hang", solver, row == 0 ? 4 : solver == "bullet" ? 16 : 8));
+    EXPECT_TRUE(text.ends_with(", " + quantity("motion.share").title + " 40\u00A0%")) << text;
+    EXPECT_EQ(text.find(quantity("stretch.rms").title), text.npos) << "the row has it: " << text;
+    if (row < 2) {
+      EXPECT_EQ(note.contains("best"), solver == "jakobsen") << row;
+    }
+    ++seen;
+  }
+  EXPECT_EQ(seen, 5u);
+  const Json& profiles = model["tables"]["cost-profiles"];
+  const double third = 1.0 / 3;
+  EXPECT_EQ(profiles["rows"],
+            (Json{{"Jakobsen", 2 * third, 2 * third, 2 * third, 2 * third, 2 * third, 2 * third},
+                  {"Bullet", third, third, 1.0, 1.0, 1.0, 1.0}}))
+      << "of three errors that somebody reaches";
+  EXPECT_TRUE(profiles["caption"].get<std::string>().starts_with("Share of 3 problems:"));
+}
+
+// The largest change first, and no more rows than one reads.
+TEST(Chosen, OfManyChangesTheLargestAreListed) {
+  ReportInput input = chosen();
+  Differences two{"x", "y", {}, {}, 0, 0, 0};
+  for (int i = 1; i <= 250; ++i) {
+    Record a = input.studies[0].records[0], b = a;
+    a.values = {{"stretch.rms", 1}}, b.values = {{"stretch.rms", 1 + i * 1e-3}};
+    two.pairs.emplace_back(a, b);
+  }
+  input.differences = two;
+  const Json model = model_of(input);
+  const Json& table = model["tables"]["differences-values"];
+  ASSERT_EQ(table["rows"].size(), 200u);
+  EXPECT_TRUE(
+      table["caption"].get<std::string>().starts_with("The 200 largest relative changes of 250;"));
+  for (std::size_t i = 0; i < 200; ++i)
+    EXPECT_NEAR(table["rows"][i][4].get<double>(), (250 - static_cast<double>(i)) * 1e-3, 1e-12);
+}
+
+// What this program's own truths say of an assertion stands in the place of what was found before.
+TEST(Chosen, AssertionsHaveTheVerdictOfThisProgramWhereItJudgedThem) {
+  ReportInput input = chosen();
+  const Json earlier = model_of(input), &before = earlier["tables"]["assertions"];
+  ASSERT_EQ(before["rows"].size(), assertions().size());
+  const Assertion& judged = assertions()[1];
+  input.truths = Truths{};
+  input.truths->assertions[std::string(judged.assertion)] = {"made up", "x^2"};
+  const Json later = model_of(input), &now = later["tables"]["assertions"];
+  for (std::size_t i = 0; i < assertions().size(); ++i) {
+    EXPECT_EQ(before["rows"][i][0],
+              std::string(assertions()[i].source) + ", " + std::string(assertions()[i].place));
+    EXPECT_EQ(before["rows"][i][2], to_string(assertions()[i].verdict));
+    EXPECT_EQ(now["rows"][i][2], i == 1 ? Json("made up") : before["rows"][i][2]);
+    EXPECT_EQ(now["rows"][i][4], i == 1 ? Json("x²") : Json(nullptr));
+  }
 }
 
 }  // namespace

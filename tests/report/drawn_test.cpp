@@ -11,6 +11,7 @@
 #include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
+#include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::drawn_test {
 namespace {
@@ -171,6 +172,7 @@ TEST(Drawn, ACellOfAMapIsTheCaseOfItsRowAndColumn) {
         EXPECT_EQ(one["solver"], map["solver"]);
         EXPECT_EQ(one["scene"], map["scene"]);
         EXPECT_EQ(one["status"], cell["status"]);
+        EXPECT_EQ(cell.value("reason", ""), one.value("reason", ""));
         for (const auto& [axis, place] : {std::pair{"x", "column"}, {"y", "row"}}) {
           const Json& values = map[axis]["values"];
           EXPECT_TRUE(std::ranges::is_sorted(values.get<std::vector<double>>()));
@@ -179,6 +181,29 @@ TEST(Drawn, ACellOfAMapIsTheCaseOfItsRowAndColumn) {
         ++seen;
       }
   EXPECT_GT(seen, 300U);
+}
+
+// A map over a setting of the scene: its cells differ in that one.
+TEST(Drawn, AMapNamesItsAxesAndTheSettingsThatAllItsCellsShare) {
+  const Record other = synthetic::record("hang", "jakobsen", 8, 1.0 / 64);
+  ReportInput input{.studies = {{"one", "?", {other}, 1, {}}},
+                    .maps = {{"spans", "?", "dt", "cloth.span", {}}}};
+  for (const char* dt : {"0.01", "0.02"})
+    for (const char* span : {"0.7", "0.8", "0.9"}) {
+      Record r = synthetic::record("hang", "jakobsen", 8, std::stod(dt));
+      r.spec.overrides = {std::string("time.dt=") + dt, "cloth.mass=2",
+                          std::string("cloth.span=") + span, "forces.damping=1"};
+      r.key = std::string(dt) + span + std::string(20, 'x');
+      input.maps[0].records.push_back(r);
+    }
+  const Json model = parse_json(make_model(input));
+  ASSERT_EQ(model["maps"].size(), 1u);
+  const Json& map = model["maps"][0];
+  EXPECT_EQ(map["scene_settings"], "cloth.mass=2, forces.damping=1");
+  EXPECT_EQ(map["title"], "How cases end over time step and cloth.span");
+  EXPECT_EQ(map["x"]["values"], (Json{0.01, 0.02}));
+  EXPECT_EQ(map["y"]["values"], (Json{0.7, 0.8, 0.9}));
+  EXPECT_EQ(map["cells"].size(), 6u);
 }
 
 TEST(Drawn, AChartSaysTheWindowOfItsValueAndContactIsOfTheWholeRun) {

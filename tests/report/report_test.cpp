@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "experiments/report/answer/case_list.hpp"
 #include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
@@ -221,6 +222,77 @@ TEST(Model, FiguresOfTheWholeAreCounted) {
   const Json model = model_of(input);
   EXPECT_EQ(model["truths"], input.truths->shown);
   EXPECT_EQ(model["regressions"], *input.regressions);
+}
+
+/// What the last paragraph of the method says the results say nothing of.
+std::string limits(const ReportInput& input) {
+  std::string all;
+  const Json model = model_of(input);
+  for (const Json& point : model["method"]["limits"]) all += point.get<std::string>() + "\n";
+  return all;
+}
+
+TEST(Model, WhatResultsSayNothingOfIsAllThatWasNotRun) {
+  ReportInput input = example();
+  std::string said = limits(input);
+  EXPECT_NE(said.find("Other scenes than hang and ball, simulated for 4.00\u00A0s"), said.npos)
+      << said;
+  EXPECT_NE(
+      said.find("Other time steps than 1.00\u00A0ms to 100\u00A0ms, other work than 1 substeps "
+                "of 1 to 256 sweeps"),
+      said.npos)
+      << said;
+  EXPECT_NE(said.find("no CPU time was measured"), said.npos);
+  EXPECT_NE(said.find("The " + std::to_string(40 - input.studies[0].records.size()) +
+                      " planned cases that have not been run."),
+            said.npos)
+      << said;
+  input.studies = {{"one", "?", {synthetic::record("box", "jakobsen", 4, 1.0 / 64)}, 1, {}}};
+  input.bench = StudyBench{"one", "a machine", {}};
+  said = limits(input);
+  EXPECT_NE(said.find("Other scenes than box, "), said.npos) << said;
+  EXPECT_NE(said.find("time steps than 15.6\u00A0ms, other work than 1 substeps of 4 sweeps;"),
+            said.npos)
+      << said;
+  EXPECT_NE(said.find("Cost on another machine than a machine"), said.npos) << said;
+  EXPECT_EQ(said.find("planned"), said.npos) << said;
+}
+
+// Of more cases than a page can carry all that something on it names, and others evenly.
+TEST(CasesOfAPage, AreAllOrThoseThatAreNamedAndAsManyOthersAsThereIsRoomFor) {
+  ReportInput input{.studies = {{"many", "?", {}, 0, {}}}};
+  std::vector<Record>& records = input.studies[0].records;
+  for (std::size_t i = 0; i < 3 * kMostCases; ++i) {
+    records.push_back({});
+    records.back().key = std::string(i % 2 ? "a" : "b") + std::to_string(100'000 + i);
+  }
+  const auto listed = [&](std::size_t cases, std::size_t named) {
+    ReportInput part{.studies = {{"many", "?", {}, 0, {}}}};
+    part.studies[0].records.assign(records.begin(),
+                                   records.begin() + static_cast<std::ptrdiff_t>(cases));
+    CaseList list(part);
+    std::set<std::string> keys, expected;
+    for (std::size_t i = 0; i < named; ++i) {
+      list.key(records[cases - 1 - i].key);
+      expected.insert(records[cases - 1 - i].key);
+    }
+    std::vector<std::size_t> places;  // of others
+    for (const Record* r : list.listed())
+      if (keys.insert(r->key).second && !expected.contains(r->key))
+        places.push_back(static_cast<std::size_t>(r - part.studies[0].records.data()));
+    for (const std::string& key : expected) EXPECT_TRUE(keys.contains(key)) << key;
+    for (std::size_t k = 1; k < places.size(); ++k) {  // evenly, in the study's order
+      const double way = static_cast<double>(cases - named - 1) /
+                         static_cast<double>(std::max<std::size_t>(1, places.size() - 1));
+      EXPECT_NEAR(static_cast<double>(places[k] - places[k - 1]), way, 1) << k;
+    }
+    return keys.size();
+  };
+  EXPECT_EQ(listed(kMostCases, 0), kMostCases);
+  EXPECT_EQ(listed(kMostCases, 100), kMostCases);
+  EXPECT_EQ(listed(3 * kMostCases, 0), kMostCases);
+  EXPECT_EQ(listed(3 * kMostCases, 1500), kMostCases);
+  EXPECT_EQ(listed(3 * kMostCases, kMostCases + 7), kMostCases + 7);
 }
 
 TEST(Model, SolversStandInTheOrderOfTheStudy) {

@@ -61,6 +61,13 @@ TEST_F(Requirements, DropWhatDoesNothingKeepWhatMattersAndNameWhatCannotBe) {
   EXPECT_EQ(found.values[1], store_.find(found.full.key)->value("stretch.max"));
   ASSERT_EQ(found.noise.size(), 2u);
   for (const double noise : found.noise) EXPECT_TRUE(noise > 0 && noise < 0.1) << noise;
+  const auto ran = [&](const CaseSpec& spec) {
+    return store_.find(make_case(spec).key).has_value();
+  };
+  const Perturbations other = perturbations(found.full, scratch_.path() / "made");
+  for (std::size_t i = 0; i < other.rounding.size(); ++i)
+    EXPECT_EQ(ran(other.rounding[i]), i < 2) << "two are enough where chaos does not show";
+  for (const CaseSpec& spec : other.order) EXPECT_TRUE(ran(spec));
 
   const EffectTrial& wind = effect(found, "wind");
   ASSERT_EQ(wind.trials.size(), 1u);

@@ -2,6 +2,7 @@
 import ast
 import contextlib
 import csv
+import json
 import os
 import pathlib
 import re
@@ -9,6 +10,7 @@ import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
@@ -28,23 +30,29 @@ class Check:
 
 
 def checks_of(build):
-    """Every check, with the seconds that it took when ctest last ran it in BUILD, or more than most take. One of a script,
-    or a truth, counts as the mean of all that ctest runs with it."""
+    """Every check, with the seconds that it took when ctest last ran it in BUILD; unit tests that it has not run are run once,
+    for a few slow ones first would use up what an error's checks may take. One of a script, or a truth, counts as the mean of
+    all that ctest runs with it, or more than most take."""
     took = {}
     with contextlib.suppress(OSError):
         took = {words[0]: float(words[2]) for line in (build / "Testing/Temporary/CTestCostData.txt").read_text().splitlines()
                 if len(words := line.split()) == 3 and int(words[1])}
-    file_of = {suite: file for file in (ROOT / "tests").rglob("*_test.cpp")
-               for suite in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", file.read_text(), re.MULTILINE)}
+    file_of = {".".join(test): file for file in (ROOT / "tests").rglob("*_test.cpp")  # several may have a suite of that name
+               for test in re.findall(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", file.read_text(), re.MULTILINE)}
     listed = subprocess.run([build / UNIT, "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
                             text=True, capture_output=True).stdout
-    checks, suite = [], ""
+    units, suite = [], ""
     for line in listed.splitlines():
         name = line.split("#")[0].strip()
         if line.startswith(" "):
-            checks.append(Check(UNIT, suite + name, took.get(suite + name, 15), file_of.get(suite[:-1].split("/")[-1])))
+            units.append(suite + name)
         elif name.endswith("."):
             suite = name
+    took |= timed(build, [name for name in units if name not in took])
+    checks = []
+    for name in units:
+        suite, test = name.split(".")
+        checks.append(Check(UNIT, name, took.get(name, 15), file_of.get(f"{suite.split('/')[-1]}.{test.split('/')[0]}")))
     truths = subprocess.run([build / TAUT, "verify", "--list", "--csv"], check=True, text=True, capture_output=True).stdout
     names = [truth["name"] for truth in csv.DictReader(truths.splitlines())]
     # On two cores.
@@ -54,6 +62,20 @@ def checks_of(build):
                  for test in of.body if getattr(test, "name", "").startswith("test")]
         checks += [Check(TAUT, name, took[script.stem] / len(names) if script.stem in took else 30, script) for name in names]
     return checks
+
+
+def timed(build, names):
+    """The seconds that unit tests take, each run once."""
+    with tempfile.TemporaryDirectory() as where:
+        environment = {**os.environ, "TMPDIR": where, "TEST_TMPDIR": where,
+                       "GTEST_FILTER": ":".join(names), "GTEST_OUTPUT": f"json:{where}/took.json"}
+        if names:
+            subprocess.run([build / UNIT], cwd=where, env=environment, check=False, capture_output=True)
+        with contextlib.suppress(OSError):
+            suites = json.loads(pathlib.Path(where, "took.json").read_text())["testsuites"]
+            return {f"{test['classname']}.{test['name']}": float(test["time"].rstrip("s")) for suite in suites
+                    for test in suite["testsuite"]}
+    return {}
 
 
 def cpu_seconds(pid):

@@ -202,6 +202,12 @@ TEST(ShippedData, AreFoundByNameAndFilesByPath) {
   EXPECT_EQ(refused([] { find_scene("aa"); }),
             "unknown scene 'aa'; did you mean 'a'? (`taut list scenes` names all; a path has a '/' "
             "or ends in .toml)");
+  EXPECT_EQ(refused([] { find_scene("a:cloth.span=0.7"); }),
+            "unknown scene 'a:cloth.span=0.7'; settings of a scene stand alone: a --set "
+            "cloth.span=0.7");
+  EXPECT_EQ(refused([] { find_study("s:x"); }),
+            "unknown study 's:x'; did you mean 's'? (`taut list studies` names all; a path has a "
+            "'/' or ends in .toml)");
   EXPECT_EQ(references_folder(), scratch.path() / "results/references") << "beside the tree";
   make_folder(data / "references");
   EXPECT_EQ(references_folder(), data / "references") << "installed";

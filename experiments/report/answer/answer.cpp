@@ -147,17 +147,12 @@ class Questions {
       if (quoted.question.dt > 0) steps.insert(quoted.question.dt);
     const std::string work = compared_.common_work();
     return "Equal work: " + (work.empty() ? "unequal, in each cell" : work) +
-           (steps.empty() ? "" : ", time step " + range_text(steps)) +
+           (steps.empty() ? "" : ", time step " + range_text(steps, quantity("dt"))) +
            (input_.bench ? ". CPU times are per simulated second" : "") +
            ". Means are geometric where all values are positive. Marked: better than every other "
            "by more than " +
            shown(kShare, kTolerance, 1) +
            ", of CPU times also beyond what identical code differed by.";
-  }
-  static std::string range_text(const std::set<double>& steps) {
-    const Quantity dt = quantity("dt");
-    return dt.text(*steps.begin(), 3) +
-           (steps.size() > 1 ? " to " + dt.text(*steps.rbegin(), 3) : "");
   }
 
   /// The cases at equal work, scene by scene.
@@ -184,7 +179,7 @@ class Questions {
     mark_best(table.rows.back(), better, nothing);
     table.caption = std::string(to_string(q.window)) + (q.window == Window::none ? "" : "; ") +
                     (work.empty() ? "unequal work, in each cell" : work) + "; time step " +
-                    range_text(steps) +
+                    range_text(steps, quantity("dt")) +
                     (over == Over::mean && nothing > 0
                          ? "; less than " + q.text(nothing, 1) + " counts as " + q.text(nothing, 1)
                          : "");

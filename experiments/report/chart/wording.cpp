@@ -174,6 +174,11 @@ Quantity quantity(std::string_view name) {
           std::string(value->help), value->window};
 }
 
+std::string range_text(const std::set<double>& values, const Quantity& q) {
+  const std::string least = q.text(*values.begin(), 3), most = q.text(*values.rbegin(), 3);
+  return values.size() > 1 ? least + " to " + most : least;
+}
+
 std::vector<std::string> quantity_names() {
   std::vector<std::string> names = value_names();
   for (const Titled& known : kTitles) names.emplace_back(known.name);

@@ -51,6 +51,9 @@ struct Quantity {
 /// As the metric's own file declares it; unknown names are shown as they are.
 Quantity quantity(std::string_view name);
 
+/// "4 ms" of one value, "4 ms to 17 ms" of several; of at least one.
+std::string range_text(const std::set<double>& values, const Quantity&);
+
 /// What quantity() has a title for, beside the axes of a study.
 std::vector<std::string> quantity_names();
 

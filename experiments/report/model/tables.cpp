@@ -256,9 +256,7 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
       sweeps.insert(work.sweeps), substeps.insert(work.substeps);
   }
   const auto range = [](const std::set<double>& values, const char* name) {
-    const Quantity q = quantity(name);
-    return q.text(*values.begin(), 3) +
-           (values.size() > 1 ? " to " + q.text(*values.rbegin(), 3) : "");
+    return range_text(values, quantity(name));
   };
   std::vector<std::string> points{
       "Other scenes than " + joined(scenes) + ", simulated for " + range(ends, "t") + ".",
