@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -180,10 +181,33 @@ SampledCase start_case(const CaseToTime& timed, const TimingOptions& options) {
     one.worker = std::make_unique<TimingWorker>(timed.spec);
     if (options.deadline != SteadyClock::time_point::max())
       one.worker->give_up_at(options.deadline);
-    const int all = std::max(1, timed.steps);
-    one.steps = times_within(options.seconds, one.worker->pilot_run(all).cpu, all);
   });
   return one;
+}
+
+/// Its whole run, once: from what it costs follows how many steps make a sample.
+void see_run(SampledCase& one, const CaseToTime& timed, const TimingOptions& options) {
+  const int all = std::max(1, timed.steps);
+  one.guard(
+      [&] { one.steps = times_within(options.seconds, one.worker->pilot_run(all).cpu, all); });
+}
+
+/// Ready to be sampled. Their whole runs go on all cores at once, for no time of these is kept:
+/// beside another one a run looks dearer, and its samples have a few steps fewer.
+std::vector<SampledCase> start_cases(const std::vector<CaseToTime>& all,
+                                     const TimingOptions& options) {
+  std::vector<SampledCase> cases;
+  for (const CaseToTime& one : all) cases.push_back(start_case(one, options));
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < all.size(); i = next++) see_run(cases[i], all[i], options);
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (unsigned j = 1; j < std::thread::hardware_concurrency(); ++j) threads.emplace_back(work);
+    work();
+  }
+  return cases;
 }
 
 /// The A/A control: a second worker of the first case that can be timed, and of the next one if
@@ -202,6 +226,7 @@ class Control {
       started_ = true;
       if (of_ == cases.size()) break;
       twin_ = start_case(all_[of_], options_);
+      see_run(twin_, all_[of_], options_);
       twin_.steps = cases[of_].steps;
       skipped_ = cases[of_].timing.samples.size() / 2 * 2;  // those of the rounds that are over
     }
@@ -258,8 +283,7 @@ Interval TimingSession::ratio(std::size_t i, std::size_t j) const {
 }
 
 TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions& options) {
-  std::vector<SampledCase> cases;
-  for (const CaseToTime& one : all) cases.push_back(start_case(one, options));
+  std::vector<SampledCase> cases = start_cases(all, options);
   Control control(all, options);
   const auto sample = [](SampledCase& one) {
     if (!one.worker) return;  // of a control that no case can have

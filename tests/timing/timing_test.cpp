@@ -188,7 +188,11 @@ TEST(Benches, GoForthAndBackAndTheFirstCaseIsItsOwnControl) {
   for (int round = 0; round < 2; ++round)
     expected += "0 time 25\n1 time 7\n2 time 25\n2 time 25\n1 time 7\n0 time 25\n";
   for (const char* w : {"0", "1"}) expected += w + std::string(" memory \n") + w + " remark \n";
-  EXPECT_EQ(scripted.told(".log"), expected);
+  std::string log = scripted.told(".log");
+  const std::string first_run = "0 pilot_run 100\n", second_run = "1 pilot_run 7\n";
+  if (const std::string swapped = second_run + first_run; log.starts_with(swapped))
+    log.replace(0, swapped.size(), first_run + second_run);  // they go at once
+  EXPECT_EQ(log, expected);
   EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{1, 2}, {2, 2}}));
   ASSERT_EQ(bench.timings.size(), 2u);
   const Timing &first = bench.timings[0], &second = bench.timings[1];

@@ -116,7 +116,25 @@ class NeighbourGrid {
   template <class Visit>
   void find(const Points<Real>& x, const Points<Real>* previous, Real within, Real reach,
             const Visit& visit) {
+    const NeighbourSearch<Real> search = prepared(x, previous, within, reach);
+    pool_.run(parts(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n) {
+        const std::size_t begin = parts_[n].begin, end = begin_of(n + 1), next = begin_of(n + 2);
+        find_part(search, n, begin, end);
+        for (std::size_t f = 0; f < parts_[n].count; ++f) {
+          const auto [a, b] = parts_[n].found[f];
+          const std::size_t kind = b >= begin && b < end ? 0 : b >= end && b < next ? 1 : 2;
+          visit(kind * parts() + n, particles_[a], particles_[b]);
+        }
+      }
+    });
+  }
+
+  /// Sorts the particles and cuts them into parts. Not in find(): compiled once for all visits.
+  NeighbourSearch<Real> prepared(const Points<Real>& x, const Points<Real>* previous, Real within,
+                                 Real reach) {
     x.read([&](const auto& at) { sort(x, previous, reach, at); });
+    cut_into_parts();
     const auto point_to = [](const Coordinates& c, const Real*(&to)[3]) {
       for (std::size_t axis = 0; axis < 3; ++axis) to[axis] = c[axis].data();
     };
@@ -130,18 +148,7 @@ class NeighbourGrid {
                                  .ignored = ignored_,
                                  .moving = previous != nullptr};
     point_to(now_, search.now), point_to(moved_, search.moved), point_to(at_rest_, search.rest);
-    cut_into_parts();
-    pool_.run(parts(), [&](std::size_t first, std::size_t last) {
-      for (std::size_t n = first; n < last; ++n) {
-        const std::size_t begin = parts_[n].begin, end = begin_of(n + 1), next = begin_of(n + 2);
-        find_part(search, n, begin, end);
-        for (std::size_t f = 0; f < parts_[n].count; ++f) {
-          const auto [a, b] = parts_[n].found[f];
-          const std::size_t kind = b >= begin && b < end ? 0 : b >= end && b < next ? 1 : 2;
-          visit(kind * parts() + n, particles_[a], particles_[b]);
-        }
-      }
-    });
+    return search;
   }
 
   std::size_t begin_of(std::size_t part) const {

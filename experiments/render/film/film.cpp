@@ -114,6 +114,7 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   options.duration = kSeconds * film.speed;
   const std::size_t panels = std::max<std::size_t>(2, runs + film.refused.size());
   options.width = 960, options.height = 400, options.crf = 28;
+  options.quality.finest_sheet = 33;  // quads of three to eight pixels
   if (!film.studied) {
     options.width = 704, options.height = 320;
     options.fps = 16;
