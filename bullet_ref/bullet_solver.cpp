@@ -3,8 +3,10 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include "core/model/input_error.hpp"
 
@@ -102,8 +104,7 @@ int waiting_links(const btSoftBody& body) {
   int waiting = 0;
   for (int i = 1; i < body.m_links.size(); ++i) {
     const auto &before = body.m_links[i - 1].m_n, &now = body.m_links[i].m_n;
-    waiting +=
-        now[0] == before[0] || now[0] == before[1] || now[1] == before[0] || now[1] == before[1];
+    waiting += std::ranges::find_first_of(now, before) != std::end(now);
   }
   return waiting;
 }

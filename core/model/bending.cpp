@@ -105,7 +105,7 @@ BendingElement element(const Patch& p, const Eigen::RowVectorXd& weights, double
 bool merged(BendingElement& a, const BendingElement& b) {
   if (a.size != b.size || a.vertex != b.vertex) return false;
   const double factor = b.weight[0] / a.weight[0];
-  for (std::size_t i = 0; i < a.size; ++i)
+  for (std::size_t i = 1; i < a.size; ++i)
     if (std::abs(b.weight[i] - factor * a.weight[i]) > 1e-9 * std::abs(b.weight[i])) return false;
   a.stiffness += factor * factor * b.stiffness;
   return true;

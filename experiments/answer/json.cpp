@@ -70,7 +70,7 @@ Cell read_cell(const JsonReader& json) {
 void read_notes(Cell& cell, const JsonReader& json) {
   if (const auto note = json.find("note")) cell.note = note->text();
   if (const auto key = json.find("key")) cell.key = key->text();
-  cell.best = json.find("best").has_value();
+  if (const auto best = json.find("best")) cell.best = best->flag();
 }
 
 Column read_column(std::string name, const JsonReader& json) {
@@ -80,7 +80,7 @@ Column read_column(std::string name, const JsonReader& json) {
   if (const auto shown = json.find("shown")) column.shown = shown->text();
   if (const auto scale = json.find("scale")) column.scale = scale->number();
   if (const auto digits = json.find("digits")) column.digits = digits->integer(1, 17);
-  column.detail = json.find("detail").has_value();
+  if (const auto detail = json.find("detail")) column.detail = detail->flag();
   return column;
 }
 

@@ -203,7 +203,7 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   scene.pin_motions = {{{3}, moving}};
   Box box;
   box.center = Vec3(1, 2, 3), box.half_extents = Vec3(4, 5, 6);
-  box.rotation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5);
+  box.rotation = Eigen::Quaterniond(2.0 / 9, 4.0 / 9, -5.0 / 9, 6.0 / 9);
   scene.colliders = {{Plane{Vec3(0, 0.6, 0.8), -2}, {}, 0.5},
                      {Ball{Vec3(1, 2, 3), 4}, moving, 0.25},
                      {box, {}, 0}};
@@ -283,7 +283,7 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
                        {{"type", "box"},
                         {"center", {1, 2, 3}},
                         {"half_extents", {4, 5, 6}},
-                        {"rotation", {0.5, 0.5, -0.5, 0.5}},
+                        {"rotation", {2.0 / 9, 4.0 / 9, -5.0 / 9, 6.0 / 9}},
                         {"friction", 0},
                         {"motion", nullptr}}});
   expect("wind", {{"velocity", {3, 2, 1}}, {"strength", 0.5}, {"law", "literal"}});

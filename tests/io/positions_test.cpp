@@ -210,6 +210,7 @@ TEST_F(Positions, ObjHoldsWhatAModellingProgramWants) {
   EXPECT_NE(sheet.find("# t = 0.5 s"), std::string::npos);
   EXPECT_NE(sheet.find("vt 0 1\nvt 1 1\nvt 0 0\nvt 1 0\nf "), std::string::npos) << sheet;
   EXPECT_NE(sheet.find("f 1/1 "), std::string::npos) << sheet;
+  EXPECT_EQ(sheet.find("\nl "), std::string::npos) << sheet;
   const std::string chain = written({.nu = 3, .nv = 1, .width = 1, .height = 0, .mass = 1});
   EXPECT_NE(chain.find("\nl 1 2 3\n"), std::string::npos) << chain;
   EXPECT_EQ(chain.find("vt "), std::string::npos) << chain;

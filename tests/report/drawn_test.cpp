@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/model/input_error.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
@@ -235,6 +236,24 @@ TEST(Drawn, OfTwoCasesInOneCellTheWorseIsShown) {
                 any ? Status::Kind::crash : Status::Kind::ok);
     }
   }
+}
+
+// A solver that has no sweeps has no place over them, nor has another scene.
+TEST(Drawn, AMapIsOfTheCasesThatHaveBothOfItsSettings) {
+  std::vector<Record> records;
+  for (const int sweeps : {1, 2})
+    records.push_back(synthetic::record("hang", "jakobsen", sweeps, 0.01));
+  records.push_back(synthetic::record("ball", "jakobsen", 4, 0.01));
+  Record without = synthetic::record("hang", "jakobsen", 4, 0.01);
+  without.params.erase("iterations");
+  records.push_back(without);
+  for (const auto& [x, y] : {std::pair{"dt", "iterations"}, {"iterations", "dt"}}) {
+    const auto maps = make_maps(records, "hang", x, y);
+    ASSERT_EQ(maps.size(), 1u);
+    EXPECT_EQ(maps[0].cells.size(), 2u) << x;
+    EXPECT_EQ(maps[0].rows.size() * maps[0].columns.size(), 2u) << x;
+  }
+  EXPECT_THROW(make_maps(records, "box", "dt", "iterations"), InputError);
 }
 
 TEST(Drawn, NoPointBeatsTheFrontAndNoneOfTheFrontBeatsAnother) {

@@ -220,6 +220,27 @@ TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) 
                    "theory: slope -1'\nunset multiplot\n"));
 }
 
+// Twelve in a plot of its own, eight in one of several panels.
+TEST_F(Plots, EverySettingIsNamedOnTheAxisUnlessTheyWouldNotFit) {
+  const auto named = [&](std::size_t panels, int settings) {
+    std::vector<std::vector<Record>> all(panels);
+    std::vector<PlotPanel> shown;
+    for (std::vector<Record>& records : all) {
+      for (int k = 1; k <= settings; ++k) {
+        records.push_back(synthetic::record("hang", "jakobsen", k, 1.0 / 64));
+        records.back().values["stretch.rms"] = 0.1 / k;
+      }
+      shown.push_back({std::to_string(shown.size()), records});
+    }
+    const PlotFiles plot = make_plot({.kind = "convergence", .file = "ticks"}, shown, dir_);
+    return count(read_text(plot.gp), "'" + std::to_string(settings) + "' ") > 0;
+  };
+  EXPECT_TRUE(named(1, 12));
+  EXPECT_FALSE(named(1, 13));
+  EXPECT_TRUE(named(2, 8));
+  EXPECT_FALSE(named(2, 9));
+}
+
 TEST_F(Plots, AxesAreAsTheirUnitsSayAndAFloorAndAFrontAreDrawnInThem) {
   std::vector<Record> all;
   for (const auto& [dt, y] : {std::pair{0.002, 0.05}, {0.004, 0.1}, {0.008, 0.25}}) {

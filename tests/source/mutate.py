@@ -267,7 +267,8 @@ class Batch:
     """Checks of one program and folder that run in one process."""
 
     def __init__(self, checks):
-        self.checks, self.folder, self.seconds = checks, checks[0].folder, sum(check.seconds for check in checks)
+        self.checks, self.folder = checks, checks[0].folder
+        self.seconds = sum(check.seconds for check in checks) / len(checks)  # of one
         self.reached = None  # by number of an error: whether they run its function; None: unknown
 
 

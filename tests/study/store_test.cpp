@@ -313,12 +313,14 @@ TEST_F(StoreTest, ManyCommitsTogetherAreAllOrNone) {
   store_.prepare();
   Record a = some_record(), b = some_record();
   b.key[0] = 'b', b.values["only here"] = 1;
-  EXPECT_THROW(store_.together([&] {
-    store_.commit(a), store_.commit(b);
-    throw InputError("no");
-  }),
-               InputError);
-  EXPECT_TRUE(store_.keys().empty());
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_THROW(store_.together([&] {
+      store_.commit(a), store_.commit(b);
+      throw InputError("no");
+    }),
+                 InputError);
+    EXPECT_TRUE(store_.keys().empty()) << again << ": one that failed is over";
+  }
   store_.together([&] { store_.commit(a), store_.commit(b); });
   EXPECT_EQ(store_.keys(), (std::vector{a.key, b.key}));
   EXPECT_EQ(to_json(*store_.find(b.key)), to_json(b));
