@@ -245,13 +245,15 @@ TEST(Drawn, AMapIsOfTheCasesThatHaveBothOfItsSettings) {
     records.push_back(synthetic::record("hang", "jakobsen", sweeps, 0.01));
   records.push_back(synthetic::record("ball", "jakobsen", 4, 0.01));
   Record without = synthetic::record("hang", "jakobsen", 4, 0.01);
-  without.params.erase("iterations");
+  without.params.erase("iterations"), without.status.kind = Status::Kind::crash;
   records.push_back(without);
   for (const auto& [x, y] : {std::pair{"dt", "iterations"}, {"iterations", "dt"}}) {
     const auto maps = make_maps(records, "hang", x, y);
     ASSERT_EQ(maps.size(), 1u);
     EXPECT_EQ(maps[0].cells.size(), 2u) << x;
     EXPECT_EQ(maps[0].rows.size() * maps[0].columns.size(), 2u) << x;
+    for (const StatusMap::Cell& cell : maps[0].cells)
+      EXPECT_EQ(cell.record->status.kind, Status::Kind::ok) << x;
   }
   EXPECT_THROW(make_maps(records, "box", "dt", "iterations"), InputError);
 }
