@@ -6,7 +6,11 @@
 //     x from the factored system of weights k [N/m] with z - u in the place of d
 //
 // so the matrix is that of Projective Dynamics (pd.cpp) with k in the place of K. k is a
-// parameter of the method alone: it decides how fast, not where to, the iterations go.
+// parameter of the method alone: it decides how fast, not where to, the iterations go. Links of
+// families that the scene leaves rigid are so beside springs.
+#include <cmath>
+#include <limits>
+
 #include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
 
@@ -38,10 +42,9 @@ bool is_rigid(const Scene& scene, const Params& params) {
 class AdmmPass final : public Pass<double> {
  public:
   explicit AdmmPass(const loop::Setup& s)
-      : rigid_(is_rigid(s.scene, s.params)),
-        keep_(s.params.is("multipliers", "keep")),
-        ratio_(s.params.real("penalty-ratio")),
-        system_(weights(s), make_bending(s.scene), s.w, s.scene.dt / s.params.integer("substeps")),
+      : keep_(s.params.is("multipliers", "keep")),
+        system_(weights(s, ratios_), make_bending(s.scene), s.w,
+                s.scene.dt / s.params.integer("substeps")),
         u_(system_.springs().size(), Vec3::Zero()),
         wanted_(u_.size()) {}
 
@@ -57,8 +60,8 @@ class AdmmPass final : public Pass<double> {
       const auto& [a, b, rest, k] = system_.springs()[j];
       const Vec3 sum = p.x[b] - p.x[a] + u_[j];
       const double length = sum.norm();
-      // K = k / ratio: (K r + k |p|)/(K + k)
-      const double to = rigid_ ? rest : (rest + ratio_ * length) / (1 + ratio_);
+      // (K r + k |p|)/(K + k) with the ratio k/K, 0 of rigid links
+      const double to = (rest + ratios_[j] * length) / (1 + ratios_[j]);
       const Vec3 z = length > 0 ? Vec3(to / length * sum) : Vec3(Vec3::Zero());
       u_[j] = sum - z;
       wanted_[j] = z - u_[j];
@@ -67,22 +70,28 @@ class AdmmPass final : public Pass<double> {
   }
 
   std::vector<PassCost> cost() const override {
-    return system_.cost("links", 2 * u_.size() * sizeof(Vec3));
+    return system_.cost("links", u_.size() * (2 * sizeof(Vec3) + sizeof(double)));
   }
 
  private:
-  static std::vector<Spring> weights(const loop::Setup& s) {
-    if (is_rigid(s.scene, s.params)) {
-      const double k = s.params.real("penalty");
-      return make_springs(s.scene, s.w, {k, k, k});
+  /// The links with k in the place of K, and k/K of each.
+  static std::vector<Spring> weights(const loop::Setup& s, std::vector<double>& ratios) {
+    constexpr double kHard = std::numeric_limits<double>::infinity();
+    std::vector<Spring> springs =
+        make_springs(s.scene, s.w,
+                     is_rigid(s.scene, s.params) ? std::array{kHard, kHard, kHard}
+                                                 : stiffnesses(s.scene, s.params));
+    for (Spring& spring : springs) {
+      const bool rigid = std::isinf(spring.stiffness);
+      ratios.push_back(rigid ? 0 : s.params.real("penalty-ratio"));
+      spring.stiffness =
+          rigid ? s.params.real("penalty") : spring.stiffness * s.params.real("penalty-ratio");
     }
-    std::vector<Spring> springs = make_springs(s.scene, s.w, stiffnesses(s.scene, s.params));
-    for (Spring& spring : springs) spring.stiffness *= s.params.real("penalty-ratio");
     return springs;
   }
 
-  bool rigid_, keep_;
-  double ratio_;
+  bool keep_;
+  std::vector<double> ratios_;
   GlobalSystem system_;
   std::vector<Vec3> u_;       ///< m, scaled multipliers
   std::vector<Vec3> wanted_;  ///< m, z - u

@@ -6,6 +6,7 @@
 //     sweep:    F = k (C - alpha C_0) + l,    f = -m/h^2 (x - y) + sum F u
 //               H = m/h^2 I + sum k u u^T + diag |columns of F (I - u u^T)/n|,    x += H^-1 f
 //     then:     l = k (C - alpha C_0) + l;    k = min(k + beta |C - alpha C_0|, k_max)
+#include "core/solver/contact_impulses.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 #include "core/solver/vertex_blocks.hpp"
@@ -42,6 +43,8 @@ class AugmentedPass final : public Pass<double> {
         links_(springs_.size()) {
     restart();
   }
+
+  std::vector<Vec3>& targets() { return y_; }
 
   void restart() override {
     start_.restart();
@@ -110,8 +113,10 @@ class AugmentedPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
+  auto augmented = std::make_unique<AugmentedPass>(s);
+  std::vector<Vec3>& y = augmented->targets();
   return {.layout = Layout::packed(s.w.size()),
-          .pass = std::make_unique<AugmentedPass>(s),
+          .pass = with_contact_impulses(std::move(augmented), y, s),
           .bends = true};
 }
 

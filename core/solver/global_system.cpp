@@ -1,12 +1,13 @@
 #include "core/solver/global_system.hpp"
 
 #include <Eigen/SparseCholesky>
+#include <limits>
 
 namespace taut {
 
 struct GlobalSystem::Factor {
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> llt;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> fixed;  ///< M/h^2 y + k x_pin, of this substep
+  Eigen::Matrix<double, Eigen::Dynamic, 3> bends;  ///< N, of bending at y; empty: none
 };
 
 GlobalSystem::GlobalSystem(std::vector<Spring> springs, std::vector<BendingElement> bending,
@@ -48,34 +49,33 @@ void GlobalSystem::factor(double h) {
 
 void GlobalSystem::begin(const Particles<double>& p, double h) {
   if (h != factored_for_) factor(h);
-  auto& fixed = factor_->fixed;
-  fixed.resize(static_cast<Eigen::Index>(mass_.size()), 3);
-  for (std::size_t i = 0; i < row_.size(); ++i)
-    if (const int r = row_[i]; r >= 0) fixed.row(r) = mass_[to_index(r)] / (h * h) * p.x[i];
-  for (const auto& [a, b, rest, k] : springs_) {
-    if (row_[a] < 0) fixed.row(row_[b]) += k * p.x[a];
-    if (row_[b] < 0) fixed.row(row_[a]) += k * p.x[b];
+  y_ = positions(p);
+  if (bending_.empty()) return;
+  auto& bends = factor_->bends;
+  bends.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
+  for (const BendingElement& e : bending_) {
+    const Vec3 pull = -e.stiffness * e.value([&](std::size_t v) { return y_[v]; });
+    for (std::size_t i = 0; i < e.size; ++i)
+      if (const int r = row_[to_index(e.vertex[i])]; r >= 0) bends.row(r) += e.weight[i] * pull;
   }
-  for (const BendingElement& e : bending_)
-    for (std::size_t j = 0; j < e.size; ++j) {
-      if (row_[to_index(e.vertex[j])] >= 0) continue;
-      const Vec3 pull = -e.stiffness * e.weight[j] * p.x[to_index(e.vertex[j])];
-      for (std::size_t i = 0; i < e.size; ++i)
-        if (const int r = row_[to_index(e.vertex[i])]; r >= 0) fixed.row(r) += e.weight[i] * pull;
-    }
 }
 
 void GlobalSystem::solve(std::span<const Vec3> q, Particles<double>& p) {
   if (mass_.empty()) return;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> right = factor_->fixed;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> right = factor_->bends;
+  if (bending_.empty()) right.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
   for (std::size_t j = 0; j < springs_.size(); ++j) {
     const auto& [a, b, rest, k] = springs_[j];
-    if (row_[a] >= 0) right.row(row_[a]) -= k * q[j];
-    if (row_[b] >= 0) right.row(row_[b]) += k * q[j];
+    const Vec3 pull = k * (q[j] - (y_[b] - y_[a]));
+    if (row_[a] >= 0) right.row(row_[a]) -= pull;
+    if (row_[b] >= 0) right.row(row_[b]) += pull;
   }
-  right = factor_->llt.solve(right).eval();
+  if (factor_->llt.info() == Eigen::Success)
+    right = factor_->llt.solve(right).eval();
+  else
+    right.setConstant(std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < row_.size(); ++i)
-    if (row_[i] >= 0) p.x.set(i, right.row(row_[i]));
+    if (row_[i] >= 0) p.x.set(i, y_[i] + right.row(row_[i]).transpose());
 }
 
 std::size_t GlobalSystem::factor_entries() const {
@@ -84,14 +84,15 @@ std::size_t GlobalSystem::factor_entries() const {
 }
 
 std::vector<PassCost> GlobalSystem::cost(std::string_view local, std::size_t bytes) const {
-  return {{.pass = std::string(local),
-           .items = springs_.size(),
-           .bytes = springs_.size() * sizeof(Spring) + bytes},
-          {.pass = "global system, entries of its factor",
-           .items = factor_entries(),
-           .bytes = factor_entries() * (sizeof(double) + sizeof(int)) +
-                    mass_.size() * (7 * sizeof(double) + 3 * sizeof(int)) +
-                    bending_.size() * sizeof(BendingElement)}};
+  return {
+      {.pass = std::string(local),
+       .items = springs_.size(),
+       .bytes = springs_.size() * sizeof(Spring) + bytes},
+      {.pass = "global system, entries of its factor",
+       .items = factor_entries(),
+       .bytes = factor_entries() * (sizeof(double) + sizeof(int)) +
+                mass_.size() * ((bending_.empty() ? 7 : 10) * sizeof(double) + 3 * sizeof(int)) +
+                bending_.size() * sizeof(BendingElement)}};
 }
 
 }  // namespace taut

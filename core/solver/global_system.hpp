@@ -15,6 +15,9 @@ namespace taut {
 ///
 ///     sum m/(2 h^2) |x - y|^2 + sum k/2 |(x_b - x_a) - q|^2 + bending,     pins where they are.
 ///
+/// It is solved for x - y, with k (q - (y_b - y_a)) on the right-hand side: rounding in stiff
+/// links, however stiff, is a force between their ends, which moves no centre of mass.
+///
 /// Its matrix, M/h^2 + sum k (e_b - e_a)(e_b - e_a)^T + sum k c c^T of the bending elements
 /// (core/model/bending.hpp) over the vertices that move, is the same for
 /// the three coordinates and from step to step: a sparse LLT, factored when made and again only if
@@ -30,7 +33,8 @@ class GlobalSystem {
   const std::vector<BendingElement>& bending() const { return bending_; }
   /// A substep of h [s] begins: p.x is y, pins are where they have to be.
   void begin(const Particles<double>& p, double h);
-  /// Moves the vertices that are no pins. q: [springs] m.
+  /// Moves the vertices that are no pins. q: [springs] m. Places are NaN, which ends a case as
+  /// exploded, if in double precision the matrix is not positive definite.
   void solve(std::span<const Vec3> q, Particles<double>& p);
 
   std::size_t factor_entries() const;
@@ -44,6 +48,7 @@ class GlobalSystem {
   std::vector<BendingElement> bending_;
   std::vector<int> row_;      ///< of each vertex; -1: a pin
   std::vector<double> mass_;  ///< [rows] kg
+  std::vector<Vec3> y_;       ///< m, of this substep
   double factored_for_ = 0;   ///< s
   std::unique_ptr<Factor> factor_;
 };

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/model/bending.hpp"
@@ -31,12 +32,15 @@ using Vector = Eigen::VectorXd;
 using Matrix = Eigen::SparseMatrix<double>;
 using Eigen::Matrix3d;
 
-constexpr double kTolerance = 1e-9;  ///< N, of |g|
+/// Iterations end where |g| [N] is below this share of |M/h^2 (y - x_t)|, all that drives the step,
+/// or below what rounding of the places makes of the springs: the first one only if that, too, is
+/// below a share, for a light cloth is moved by less.
+constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
 /// Beyond so many vertices that move, conjugate gradients take less time than a factor.
 constexpr std::size_t kFactorPays = 20000;
 
 constexpr ParamSpec kOwn[] = {
-    loop::iterations("50", "Newton iterations, at most; they end at a gradient of 1e-9 N"),
+    loop::iterations("50", "Newton iterations, at most; they end at 1e-9 of the forces of inertia"),
     loop::substeps("1", "each step is this many steps of dt / substeps"),
     kStiffness[0],
     kStiffness[1],
@@ -90,6 +94,27 @@ class Hessian {
     if (ldlt_.info() != Eigen::Success || !(ldlt_.vectorD().minCoeff() > 0)) return false;
     p = ldlt_.solve(right);
     return true;
+  }
+
+  /// H v without the masses' part.
+  Vector elastic_times(const Vector& v) const {
+    Vector out = Vector::Zero(v.size());
+    const auto at = [&](std::size_t vertex) -> Vec3 {
+      return column_[vertex] < 0 ? Vec3(Vec3::Zero()) : Vec3(v.segment<3>(column_[vertex]));
+    };
+    for (std::size_t j = 0; j < springs_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 pull = blocks_[j].times(at(b) - at(a));
+      if (column_[a] >= 0) out.segment<3>(column_[a]) -= pull;
+      if (column_[b] >= 0) out.segment<3>(column_[b]) += pull;
+    }
+    for (const BendingElement& e : bending_) {
+      const Vec3 pull = e.stiffness * e.value(at);
+      for (std::size_t i = 0; i < e.size; ++i)
+        if (const int c = column_[to_index(e.vertex[i])]; c >= 0)
+          out.segment<3>(c) += e.weight[i] * pull;
+    }
+    return out;
   }
 
   std::size_t factor_entries() const {
@@ -169,25 +194,10 @@ class Hessian {
   }
 
   Vector times(double h, const Vector& v) const {
-    Vector out(v.size());
+    Vector out = elastic_times(v);
     for (std::size_t i = 0; i < mass_.size(); ++i)
-      out.segment<3>(3 * static_cast<int>(i)) =
+      out.segment<3>(3 * static_cast<int>(i)) +=
           mass_[i] / (h * h) * v.segment<3>(3 * static_cast<int>(i));
-    const auto at = [&](std::size_t vertex) -> Vec3 {
-      return column_[vertex] < 0 ? Vec3(Vec3::Zero()) : Vec3(v.segment<3>(column_[vertex]));
-    };
-    for (std::size_t j = 0; j < springs_.size(); ++j) {
-      const auto& [a, b, rest, stiffness] = springs_[j];
-      const Vec3 pull = blocks_[j].times(at(b) - at(a));
-      if (column_[a] >= 0) out.segment<3>(column_[a]) -= pull;
-      if (column_[b] >= 0) out.segment<3>(column_[b]) += pull;
-    }
-    for (const BendingElement& e : bending_) {
-      const Vec3 pull = e.stiffness * e.value(at);
-      for (std::size_t i = 0; i < e.size; ++i)
-        if (const int c = column_[to_index(e.vertex[i])]; c >= 0)
-          out.segment<3>(c) += e.weight[i] * pull;
-    }
     return out;
   }
 
@@ -248,15 +258,24 @@ class NewtonPass final : public Pass<double> {
         line_search_(s.params.is("line-search", "on")),
         hessian_(springs_, bending_, s.w,
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
-                                       s.w, [](double w) { return w > 0; }))))) {}
+                                       s.w, [](double w) { return w > 0; }))))),
+        stiffness_(s.w.size()) {
+    for (const Spring& spring : springs_)
+      stiffness_[spring.a] += spring.stiffness, stiffness_[spring.b] += spring.stiffness;
+    for (const BendingElement& e : bending_)
+      for (std::size_t i = 0; i < e.size; ++i)
+        for (std::size_t j = 0; j < e.size; ++j)
+          stiffness_[to_index(e.vertex[i])] += e.stiffness * std::abs(e.weight[i] * e.weight[j]);
+  }
 
-  void begin(Particles<double>& p, double, double) override {
+  void begin(Particles<double>& p, double, double h) override {
     y_.resize(p.size());
     for (std::size_t i = 0; i < p.size(); ++i) {
       y_[i] = p.x[i];
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
     }
-    clamped_ = true, ended_at_.clear();
+    clamped_ = first_ = true, ended_at_.clear();
+    set_tolerances(p, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {
@@ -264,7 +283,8 @@ class NewtonPass final : public Pass<double> {
     for (std::size_t i = 0; i < p.size(); ++i) x[i] = p.x[i];
     if (x == ended_at_) return;
     const Vector g = gradient(x, h);
-    if (g.norm() < kTolerance || !iterate(x, g, h)) {
+    const bool first = std::exchange(first_, false);
+    if (g.norm() <= (first ? enough_at_first_ : enough_) || !iterate(x, g, h, first)) {
       ended_at_ = std::move(x);
       return;
     }
@@ -282,18 +302,28 @@ class NewtonPass final : public Pass<double> {
   }
 
  private:
-  /// One Newton step; false: rounding does not let the energy fall any further.
-  bool iterate(std::vector<Vec3>& x, const Vector& g, double h) {
+  /// One Newton step; false: rounding does not let the energy fall any further. The first one, from
+  /// x_t, is solved for x - y, so that rounding in stiff links moves no centre of mass; where a
+  /// factor breaks down in double precision its places are NaN, which ends a case as exploded.
+  bool iterate(std::vector<Vec3>& x, const Vector& g, double h, bool first) {
     linearise(x, clamped_);
     Vector direction;
-    if (!hessian_.solve(h, -g, direction)) {
+    if (first && hessian_.factored()) {
+      const Vector to_y = way_to_y(x);
+      if (!hessian_.solve(h, -elastic(x) - hessian_.elastic_times(to_y), direction)) {
+        x.assign(x.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+        return true;
+      }
+      direction += to_y;
+    } else if (!hessian_.solve(h, -g, direction)) {
       linearise(x, clamped_ = true);
       if (!hessian_.solve(h, -g, direction)) return false;
     }
     if (!line_search_) return x = moved(x, direction, 1), true;
     const double energy_before = energy(x, h), slope = g.dot(direction);
     double step = 1;
-    for (int halvings = 0; halvings < 50; ++halvings, step /= 2) {
+    const int most_halvings = g.norm() <= enough_ ? 1 : 50;
+    for (int halvings = 0; halvings < most_halvings; ++halvings, step /= 2) {
       std::vector<Vec3> trial = moved(x, direction, step);
       const double now = energy(trial, h);
       const Vector g_now = gradient(trial, h);
@@ -306,6 +336,20 @@ class NewtonPass final : public Pass<double> {
       return true;
     }
     return false;
+  }
+
+  /// p.x is x_t.
+  void set_tolerances(const Particles<double>& p, double h) {
+    double inertia2 = 0, rounding2 = 0;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (hessian_.column(i) >= 0) {
+        const double m = hessian_.mass(i) / (h * h);
+        inertia2 += m * m * (y_[i] - p.x[i]).squaredNorm();
+        rounding2 += std::pow((stiffness_[i] + m) * p.x[i].cwiseAbs().maxCoeff(), 2);
+      }
+    enough_ = std::max(kTolerance * std::sqrt(inertia2),
+                       std::numeric_limits<double>::epsilon() * std::sqrt(rounding2));
+    enough_at_first_ = std::min(enough_, kFirstTolerance * std::sqrt(inertia2));
   }
 
   void linearise(const std::vector<Vec3>& x, bool clamped) {
@@ -335,11 +379,25 @@ class NewtonPass final : public Pass<double> {
     return sum;
   }
 
+  /// y - x of the vertices that move [m].
+  Vector way_to_y(const std::vector<Vec3>& x) const {
+    Vector way(hessian_.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (const int c = hessian_.column(i); c >= 0) way.segment<3>(c) = y_[i] - x[i];
+    return way;
+  }
+
   Vector gradient(const std::vector<Vec3>& x, double h) const {
-    Vector g(hessian_.size());
+    Vector g = elastic(x);
     for (std::size_t i = 0; i < x.size(); ++i)
       if (const int c = hessian_.column(i); c >= 0)
-        g.segment<3>(c) = hessian_.mass(i) / (h * h) * (x[i] - y_[i]);
+        g.segment<3>(c) += hessian_.mass(i) / (h * h) * (x[i] - y_[i]);
+    return g;
+  }
+
+  /// The part of links and bending.
+  Vector elastic(const std::vector<Vec3>& x) const {
+    Vector g = Vector::Zero(hessian_.size());
     for (const auto& [a, b, rest, stiffness] : springs_) {
       const Vec3 d = x[b] - x[a];
       const double length = d.norm();
@@ -367,8 +425,10 @@ class NewtonPass final : public Pass<double> {
   std::vector<BendingElement> bending_;
   bool line_search_;
   Hessian hessian_;
-  bool clamped_ = true;
-  std::vector<Vec3> y_;         ///< m, where they would go without links
+  std::vector<double> stiffness_;  ///< N/m, of all links and bending at each vertex
+  bool clamped_ = true, first_ = true;
+  double enough_ = 0, enough_at_first_ = 0;  ///< N, of |g| in this substep
+  std::vector<Vec3> y_;                      ///< m, where they would go without links
   std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere
 };
 
@@ -403,7 +463,7 @@ TAUT_SOLVER(implicit) = {
     .source = "Baraff, Witkin 1998; Choi, Ko 2002",
     .params = taut::solver::implicit::kParams,
     .make = taut::solver::implicit::make,
-    .unsupported = taut::loop::unsupported,
+    .unsupported = taut::unsupported_of_springs,
     .resolved_settings = taut::solver::implicit::resolved_settings,
     .accuracy = {
         .substeps = "substeps", .sweeps = "iterations", .labelled = "substeps|iterations"}};

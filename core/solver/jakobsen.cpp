@@ -84,6 +84,8 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsolvable_lines(const Scene& scene, const Params& params) {
   if (!scene.mesh.grid) return {"method=lines needs a cloth that is a grid"};
+  if (params.real("omega") != 1)
+    return {"method=lines solves its links at once, without omega: leave it at 1"};
   const int substeps = params.integer("substeps");
   const double tension = line_tension(scene, scene.dt / substeps);
   if (tension <= kLargestLineTension) return {};
@@ -131,7 +133,7 @@ constexpr OptionalEffect kOptionalEffects[] = {
 LinearModel linear_model(const Scene&, const Params& params) {
   const bool jacobi = params.is("method", "jacobi");
   if ((!jacobi && !params.is("method", "gauss-seidel")) || !params.is("order", "mesh") ||
-      params.real("chebyshev") > 0)
+      params.real("chebyshev") > 0 || params.integer("levels") > 1 || params.is("tethers", "on"))
     return {};
   return LinearSweeps{jacobi, params.real("omega"), params.integer("iterations"),
                       params.integer("substeps")};

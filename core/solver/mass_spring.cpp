@@ -139,7 +139,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
-  std::vector<std::string> reasons = loop::unsupported(scene, params);
+  std::vector<std::string> reasons = unsupported_of_springs(scene, params);
   if (params.is("drag-at", "central") && !params.is("integrator", "verlet"))
     reasons.emplace_back("drag-at=central needs integrator=verlet");
   return reasons;

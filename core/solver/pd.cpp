@@ -155,7 +155,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
-  std::vector<std::string> reasons = loop::unsupported(scene, params);
+  std::vector<std::string> reasons = unsupported_of_springs(scene, params);
   if (params.real("chebyshev") > 0 && params.integer("anderson") > 0)
     reasons.emplace_back("chebyshev and anderson are two ways to accelerate: take one");
   return reasons;

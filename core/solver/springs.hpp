@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/model/index.hpp"
@@ -9,6 +12,7 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/solver/layout/order.hpp"
+#include "core/solver/loop.hpp"
 
 namespace taut {
 
@@ -27,7 +31,8 @@ inline constexpr std::array kStiffness{
                     "spring constant of shear links; 0: no spring"),
     ParamSpec::real("bend", "N/m", "100", 0, 1e12, "spring constant of bend links; 0: no spring")};
 
-/// Spring constants [N/m] by family: the scene's, or the solver's parameters.
+/// Spring constants [N/m] by family: the scene's, infinite where it leaves links rigid, or the
+/// solver's parameters.
 inline std::array<double, kFamilies.size()> stiffnesses(const Scene& scene, const Params& params) {
   if (takes_stiffness(scene, params)) return scene.stiffness;
   std::array<double, kFamilies.size()> all{};
@@ -47,12 +52,26 @@ inline std::vector<Spring> make_springs(const Scene& scene, std::span<const doub
   return springs;
 }
 
+/// What the loop would get wrong, and links that are rigid in the scene where others have a
+/// stiffness: of solvers that take every K as a number (SolverEntry::unsupported).
+inline std::vector<std::string> unsupported_of_springs(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons = loop::unsupported(scene, params);
+  const auto k = stiffnesses(scene, params);
+  for (const Family family : kFamilies)
+    if (std::isinf(k[static_cast<std::size_t>(family)]) &&
+        std::ranges::any_of(scene.links, [&](const Link& l) { return l.family == family; }))
+      reasons.push_back(std::string(to_string(family)) +
+                        " links are rigid: springs need their stiffness in [links] stiffness");
+  return reasons;
+}
+
 /// For the resolved settings.
 inline std::string describe_springs(const Scene& scene, const Params& params) {
   const auto k = stiffnesses(scene, params);
   return "Hooke springs: " + join(kFamilies, ", ", [&](Family family) {
+           const double of_family = k[static_cast<std::size_t>(family)];
            return std::string(to_string(family)) + " " +
-                  shortest(k[static_cast<std::size_t>(family)]) + " N/m";
+                  (std::isinf(of_family) ? "rigid" : shortest(of_family) + " N/m");
          });
 }
 

@@ -7,6 +7,7 @@
 //
 // with damping k_d: H gains k_d/h times the springs' part, f loses that times x - x_t.
 #include "core/solver/chebyshev.hpp"
+#include "core/solver/contact_impulses.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 #include "core/solver/vertex_blocks.hpp"
@@ -36,6 +37,8 @@ class DescentPass final : public Pass<double> {
         blocks_(springs_, make_bending(s.scene), s.w, s.params.is("order", "coloured"), s.pool),
         start_(s.scene, s.params.is("start", "adaptive")),
         damping_(s.params.real("damping")) {}
+
+  std::vector<Vec3>& targets() { return y_; }
 
   void restart() override { start_.restart(); }
 
@@ -83,9 +86,12 @@ class DescentPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
+  auto descent = std::make_unique<DescentPass>(s);
+  std::vector<Vec3>& y = descent->targets();
+  auto pass =
+      with_chebyshev<double>(std::move(descent), s.params.real("chebyshev"), s.w.size(), s.pool);
   return {.layout = Layout::packed(s.w.size()),
-          .pass = with_chebyshev<double>(std::make_unique<DescentPass>(s),
-                                         s.params.real("chebyshev"), s.w.size(), s.pool),
+          .pass = with_contact_impulses(std::move(pass), y, s),
           .bends = true};
 }
 
@@ -113,7 +119,7 @@ TAUT_SOLVER(vbd) = {.name = "vbd",
                     .source = "Chen, Liu, Yang, Yuksel 2024; Wang 2015",
                     .params = taut::solver::vbd::kParams,
                     .make = taut::solver::vbd::make,
-                    .unsupported = taut::loop::unsupported,
+                    .unsupported = taut::unsupported_of_springs,
                     .resolved_settings = taut::solver::vbd::resolved_settings,
                     .accuracy = {.substeps = "substeps",
                                  .sweeps = "iterations",

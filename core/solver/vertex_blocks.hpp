@@ -133,37 +133,29 @@ inline Vec3 solve_symmetric(const Eigen::Matrix3d& a, const Vec3& b) {
 }
 
 /// Where a substep's iterations start (VBD, section 3.7): y without that part of gravity that did
-/// not act in the last substep because something held the vertex.
+/// not act in the last substep because something held the vertex, which then fell short of its y.
 class AdaptiveStart {
  public:
   AdaptiveStart(const Scene& scene, bool on)
-      : gravity_(scene.gravity), damping_(scene.damping), on_(on && gravity_.norm() > 0) {}
-  void restart() { velocity_.clear(); }
+      : gravity_(scene.gravity), on_(on && gravity_.norm() > 0) {}
+  void restart() { y_.clear(); }
 
   /// p.x is y, p.previous x_t.
   void begin(Particles<double>& p, double h) {
     if (!on_) return;
-    const double g = gravity_.norm(), keep = std::exp(-damping_ * h);
+    const double g = gravity_.norm();
     const Vec3 down = gravity_ / g;
-    const bool first = velocity_.empty();
-    velocity_.resize(p.size(), Vec3::Zero());
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      if (p.w[i] == 0) continue;
-      Vec3 way = p.x[i] - p.previous[i] - h * h * gravity_;  // damped velocity, wind
-      if (!p.a.empty()) way -= h * h * p.a[i];
-      const Vec3 before = std::exchange(velocity_[i], way / (keep * h));
-      if (first) continue;
-      const double acted = std::clamp((velocity_[i] - before).dot(down) / h, 0.0, g);
-      p.x.add(i, (acted - g) * h * h * down);
-    }
+    const std::vector<Vec3> before = std::exchange(y_, positions(p));
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (p.w[i] > 0)
+        p.x.add(i, std::clamp((p.previous[i] - before[i]).dot(down), -g * h * h, 0.0) * down);
   }
-  std::size_t bytes() const { return velocity_.size() * sizeof(Vec3); }
+  std::size_t bytes() const { return y_.size() * sizeof(Vec3); }
 
  private:
   Vec3 gravity_;
-  double damping_;
   bool on_;
-  std::vector<Vec3> velocity_;  ///< m/s, at the last substep's start; empty: there was none
+  std::vector<Vec3> y_;  ///< m, of the last substep; empty: there was none
 };
 
 inline constexpr ParamSpec kVertexOrder =

@@ -97,6 +97,21 @@ TAUT_TRUTH(incline_friction, 7, 2,
     findings.equal(solver, "stopping distance from 2 m/s, v0^2/(2 mu g)", "m", skid.x(0).x(),
                    stopping, 2 * level.dt);
   }
+  // Links make a vertex stiffer along the plane than across it.
+  Scene sheet = under_gravity(bare::sheet(9, 9));
+  for (Vec3& x : sheet.start.x) x = x.x() * downhill + x.y() * Vec3::UnitZ();
+  sheet.colliders.push_back({Plane{normal, 0}, {}, mu});
+  for (const std::string& solver :
+       {jakobsen(3), xpbd(1), mass_spring("verlet", 1), std::string("implicit"), std::string("pd"),
+        std::string("admm"), std::string("avbd:iterations=100"),
+        std::string("vbd:start=inertia")}) {
+    if (!can_run(findings, solver, sheet)) continue;
+    const Simulation sim(sheet, solver, 64);
+    const double expected =
+        kG * (std::sin(slope) - mu * std::cos(slope)) * sheet.dt * sheet.dt * 64 * 65 / 2;
+    findings.equal(solver, "way of a sheet of 9 x 9 in 64 steps", "m",
+                   (sim.x(40) - sheet.start.x[40]).norm(), expected, 1e-5);
+  }
 }
 
 TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of the particles",

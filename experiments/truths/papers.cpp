@@ -145,14 +145,20 @@ TAUT_TRUTH(vbd_bounded, 8, 20,
     const Scene s = elastic(swinging_sheet(16), k);
     const std::string solver = "vbd:iterations=1,substeps=1,order=coloured";
     if (!can_run(findings, solver, s)) return;
-    Simulation sim(s, solver);
-    double gained = 0;
-    const double farthest = sim.worst(64 * 20, [&](int) {
-      gained = std::max(gained, energy(s, sim.state()) - energy(s, s.start));
-      double far = 0;
-      for (const Vec3& x : sim.state().x) far = std::max(far, x.norm());
-      return far;
-    });
+    // Far from converged, what it gains hangs on last digits: eight masses that differ in the
+    // tenth.
+    double gained = 0, farthest = 0;
+    for (int start = 0; start < 8; ++start) {
+      Scene other = s;
+      for (double& m : other.mesh.mass) m *= 1 + 1e-10 * start;
+      Simulation sim(other, solver);
+      farthest = std::max(farthest, sim.worst(64 * 20, [&](int) {
+        gained = std::max(gained, energy(s, sim.state()) - energy(s, s.start));
+        double far = 0;
+        for (const Vec3& x : sim.state().x) far = std::max(far, x.norm());
+        return far;
+      }));
+    }
     const std::string at = ", K " + shortest(k) + " N/m";
     findings.below(solver, "farthest vertex from the pins' middle in 20 s, side 1 m" + at, "m",
                    farthest, 2.5);

@@ -150,12 +150,12 @@ TEST(Hierarchy, OfAChainIsThis) {
             "6 with 5*538 7*462\n");
   EXPECT_EQ(make_hierarchy(scene, inverse_masses(scene), 2).size(), 2u);
   const SolverChoice choice = parse_solver("jakobsen:order=mesh,levels=9,iterations=4,substeps=3");
-  for (const PassCost& cost : choice.entry->make(scene, choice.params)->step_cost())
-    if (cost.pass == "hierarchy") {
-      EXPECT_EQ(cost.items, 1u + 2 + 4);
-      EXPECT_EQ(cost.repeats, 12u);
-      EXPECT_TRUE(cost.projections);
-    }
+  const std::vector<PassCost> costs = choice.entry->make(scene, choice.params)->step_cost();
+  const auto cost = std::ranges::find(costs, "hierarchy", &PassCost::pass);
+  ASSERT_NE(cost, costs.end());
+  EXPECT_EQ(cost->items, 1u + 2 + 4);
+  EXPECT_EQ(cost->repeats, 12u);
+  EXPECT_TRUE(cost->projections);
 }
 
 TEST(Hierarchy, StiffensAHangingSheetAtFewSweeps) {

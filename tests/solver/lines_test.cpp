@@ -176,5 +176,29 @@ TEST(Lines, AndChebyshevHaveTheSameBitsForThreadsAndInstructionSets) {
     }
 }
 
+TEST(Lines, TakeNoOmega) {
+  const Scene s = hanging_sheet(9, 9);
+  const auto reasons = [&](const std::string& solver) {
+    const SolverChoice choice = parse_solver(solver);
+    return choice.entry->unsupported(s, choice.params);
+  };
+  EXPECT_TRUE(reasons("jakobsen:method=lines,substeps=50").empty());
+  EXPECT_EQ(reasons("jakobsen:method=lines,substeps=50,omega=1.3"),
+            std::vector<std::string>{
+                "method=lines solves its links at once, without omega: leave it at 1"});
+}
+
+/// Of accelerators the theory of linear stability knows nothing, and says so.
+TEST(Accelerators, HaveNoTheory) {
+  const Scene s = hanging_sheet(9, 9);
+  const auto known = [&](const std::string& more) {
+    const SolverChoice choice = parse_solver("jakobsen:order=mesh" + more);
+    return !std::holds_alternative<std::monostate>(choice.entry->linear_model(s, choice.params));
+  };
+  EXPECT_TRUE(known(""));
+  for (const char* more : {",levels=3", ",tethers=on", ",chebyshev=0.9", ",method=lines"})
+    EXPECT_FALSE(known(more)) << more;
+}
+
 }  // namespace
 }  // namespace taut::lines_test
