@@ -4,6 +4,7 @@
 
 #include "experiments/report/answer/answer.hpp"
 #include "experiments/report/input.hpp"
+#include "experiments/study/study.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::answers_test {
@@ -81,7 +82,8 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   Reported made;
   const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
   const Record cheap = ours;
-  const Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
+  Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
+  dear.params["iterations"] = "1";  // nothing is cheaper: its cost is no upper bound
   const auto price = [&](double ratio, double noise) {
     const std::vector<double> one(12, 1e-3), other(12, 1e-3 * ratio);
     made.input.bench =
@@ -96,6 +98,92 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   EXPECT_FALSE(price(1.3, 0.4)[1].best) << "noise";
   EXPECT_FALSE(price(1.03, 0.001)[1].best) << "the tolerance";
   EXPECT_NEAR(price(1.3, 0.02)[2].number(), 1.3e-3 * 64, 1e-9);
+}
+
+/// A bench of hang: solver, substeps, sweeps, error, CPU time of a step [s].
+struct Timed {
+  const char *scene, *solver;
+  int substeps, sweeps;
+  double error, cpu;
+};
+StudyBench bench_of(const std::vector<Timed>& all) {
+  StudyBench bench{"one", "a machine", {}};
+  for (const auto& [scene, solver, substeps, sweeps, error, cpu] : all) {
+    if (bench.scenes.empty() || bench.scenes.back().scene != scene)
+      bench.scenes.push_back({scene, {0.99, 1, 1.01}, {}});
+    Record r = synthetic::record(scene, solver, sweeps, 1.0 / 64);
+    r.params["substeps"] = std::to_string(substeps);
+    r.spec.solver += ",substeps=" + std::to_string(substeps);
+    r.id += r.spec.solver, r.key += std::to_string(substeps) + "x" + std::to_string(sweeps);
+    r.values = {{"stretch.rms", error}};
+    const std::vector<double> samples(12, cpu);
+    bench.scenes.back().cases.push_back({r, {samples, samples, 0, "", ""}});
+  }
+  return bench;
+}
+
+TEST(PageAnswers, SayThatACostIsAnUpperBoundWhereNothingCheaperWasTried) {
+  Reported made;
+  made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
+  made.add("hang", "pd", {{"stretch.rms", 0.005}});
+  std::vector<Timed> timed{{"hang", "jakobsen", 1, 1, 0.5, 1e-5},
+                           {"hang", "jakobsen", 20, 1, 0.005, 1e-4},
+                           {"hang", "pd", 8, 1, 0.0003, 1e-3},
+                           {"hang", "pd", 16, 1, 0.0001, 2e-3}};
+  const auto cells = [&](const char* table) {
+    made.input.bench = bench_of(timed);
+    return made.answer().table(table).rows[0];
+  };
+  EXPECT_EQ(cells("price")[2].note, "8 × 1; at most: its cheapest setting tried");
+  EXPECT_FALSE(cells("price")[1].best) << "PD may be cheaper than this";
+  EXPECT_EQ(cells("setting")[2].note, "at most 64\u00A0ms");
+  EXPECT_FALSE(cells("setting")[1].best);
+  timed.push_back({"hang", "pd", 1, 1, 0.5, 1.1e-3});
+  EXPECT_EQ(cells("price")[2].note, "8 × 1; at most: its cheapest setting tried") << "dearer";
+  timed.back().cpu = 5e-4;
+  EXPECT_EQ(cells("price")[2].note, "8 × 1");
+  EXPECT_TRUE(cells("price")[1].best);
+  timed.back().error = 0.003;
+  EXPECT_EQ(cells("price")[2].note, "1 × 1") << "nothing is cheaper";
+}
+
+TEST(PageAnswers, MarkNoSettingOfSolversThatReachTheErrorOnDifferentScenes) {
+  Reported made;
+  for (const char* solver : {"jakobsen", "bullet"})
+    made.add("hang", solver, {{"stretch.rms", 0.1}});
+  std::vector<Timed> timed{{"hang", "jakobsen", 1, 1, 0.005, 1e-5},
+                           {"hang", "bullet", 1, 1, 0.005, 1e-3},
+                           {"ball", "jakobsen", 1, 1, 0.005, 1e-5},
+                           {"ball", "bullet", 1, 1, 0.005, 1e-3}};
+  const auto last = [&] {
+    made.input.bench = bench_of(timed);
+    return made.answer().table("setting").rows.back();
+  };
+  EXPECT_TRUE(last()[1].best);
+  timed[3].error = 0.5;
+  EXPECT_FALSE(last()[1].best) << "Bullet reaches it on one scene alone";
+  EXPECT_NE(last()[2].note.find("1 of 2"), std::string::npos);
+}
+
+TEST(TheStudyOfTrade, BeginsWithTheCheapestSettingOfEverySolverAndHasAsManyOfEach) {
+  for (const char* preset : {"quick", ""}) {
+    std::map<std::string, int> settings, cheapest;
+    for (const std::string& text : load_study("trade", preset).solvers) {
+      const SolverChoice choice = parse_solver(text);
+      const std::string solver(choice.entry->name);
+      const auto one = [&](std::string_view name) {
+        return name.empty() || !choice.params.has(name) || choice.params.integer(name) <= 1;
+      };
+      ++settings[solver];
+      cheapest[solver] +=
+          one(choice.entry->accuracy.substeps) && one(choice.entry->accuracy.sweeps);
+    }
+    for (const auto& [solver, n] : settings) {
+      if (solver == "bullet-deformable") continue;  // its Newton iterations are not varied
+      EXPECT_GE(cheapest[solver], 1) << solver << ", preset " << preset;
+      EXPECT_TRUE(!*preset || n == settings.at("jakobsen")) << solver;
+    }
+  }
 }
 
 }  // namespace

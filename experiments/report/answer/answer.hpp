@@ -25,6 +25,13 @@ SceneBench with_shared_parameters(SceneBench);
 /// "4 × 2, coloured": of cases of one scene those parameters that take several values.
 std::string setting_text(const SceneBench&, std::size_t at);
 
+/// Whether a cheaper setting of the same solver may reach what case `at` reaches: none was tried,
+/// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is then
+/// an upper bound.
+bool is_upper_bound(const SceneBench&, const std::vector<Candidate>&, std::size_t at);
+/// "; at most: its cheapest setting tried": behind the setting of an upper bound.
+inline constexpr const char* kUpperBound = "; at most: its cheapest setting tried";
+
 /// Geometric mean of independent ratios: their errors add as squares of logarithms.
 Interval geometric_mean(const std::vector<Interval>&);
 

@@ -6,6 +6,7 @@
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/system/text.hpp"
 #include "experiments/timing/profile.hpp"
 #include "experiments/timing/recommendation.hpp"
 
@@ -19,10 +20,12 @@ struct CostScene {
   CaseList& refs;
   std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
 
+  bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
   /// The cell of a case: its note is the setting, and what a small strain may have cost.
   Cell of(std::size_t at, Cell cell) const {
     const Record& r = bench.cases[at].record;
     cell.note = setting_text(bench, at), cell.key = refs.key(r);
+    if (bounds(at)) cell.note += kUpperBound;
     for (const ValueSpec* value : values_with_role()) {
       const Quantity q = quantity(value->name);
       if (const double v = value_of(r, value->name);
@@ -65,7 +68,8 @@ Table levels_table(const CostScene& scene) {
         continue;
       }
       if (r.times && r.times->mid > 1)
-        cheaper = cheaper && is_difference(judge(*r.times, scene.bench.control));
+        cheaper =
+            cheaper && !scene.bounds(*r.at) && is_difference(judge(*r.times, scene.bench.control));
       else
         least = row.size();
       row.push_back(scene.of(*r.at, Cell(scene.candidates[*r.at].cost)));
@@ -74,6 +78,21 @@ Table levels_table(const CostScene& scene) {
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+/// "1 of XPBD, 3 of PD": problems that the cheapest setting tried of a solver reaches already.
+std::string upper_bounds(const std::vector<SceneBench>& scenes) {
+  std::map<std::string, int> bounds;
+  for (const SceneBench& scene : scenes) {
+    const std::vector<Candidate> candidates = scene.candidates(kErrorMetric);
+    for (const std::string& solver : solvers_of(scene))
+      for (const double level : kErrorLevels)
+        if (const auto at = best_for({.error = level}, candidates, solver))
+          bounds[solver_title(solver)] += is_upper_bound(scene, candidates, *at);
+  }
+  std::erase_if(bounds, [](const auto& one) { return one.second == 0; });
+  return join(bounds, ", ",
+              [](const auto& one) { return std::to_string(one.second) + " of " + one.first; });
 }
 
 /// Dolan and More's performance profiles at a few factors.
@@ -88,6 +107,11 @@ Table profile_table(const std::vector<SceneBench>& scenes) {
                   quantity(kErrorMetric).title +
                   " to be reached on a scene. Every solver has equally many settings of a scene, "
                   "with what all of its solvers have."};
+  if (const std::string bounds = upper_bounds(scenes); !bounds.empty())
+    table.caption +=
+        " Problems that the cheapest setting tried reaches already, whose solver may "
+        "stand higher: " +
+        bounds + ".";
   constexpr std::pair<double, const char*> kFactors[] = {
       {1, "the cheapest"}, {1.5, "within 1.5 ×"},
       {2, "within 2 ×"},   {4, "within 4 ×"},
