@@ -4,7 +4,10 @@
 #include <limits>
 #include <set>
 
+#include "core/model/text.hpp"
 #include "experiments/report/answer/answer.hpp"
+#include "experiments/system/distinct.hpp"
+#include "experiments/timing/hardly_moves.hpp"
 #include "experiments/timing/recommendation.hpp"
 
 namespace taut::report {
@@ -24,8 +27,27 @@ std::string setting_text(const SceneBench& bench, std::size_t at) {
   Records records;
   for (const BenchedCase& c : bench.cases) records.push_back(&c.record);
   const Record& one = bench.cases[at].record;
-  const std::string label = SettingLabels(records).of(one);
-  return label.empty() ? work_of(one).text() : label;
+  std::string label = SettingLabels(records).of(one);
+  if (label.empty()) label = work_of(one).text();
+  const std::string order = link_order(one);
+  return label + (order.empty() || label.find(order) != std::string::npos ? "" : ", " + order);
+}
+
+std::string link_orders(const std::vector<SceneBench>& scenes) {
+  std::vector<std::string> all;
+  for (const SceneBench& scene : scenes)
+    for (const BenchedCase& c : scene.cases)
+      if (const std::string order = link_order(c.record); !order.empty())
+        push_unique(all, solver_title(c.record.solver) + " " + order);
+  return join(all, ", ");
+}
+
+std::string only_still(const std::vector<Candidate>& candidates, const std::string& solver,
+                       double error) {
+  for (const Candidate& one : candidates)
+    if (one.solver == solver && one.error <= error && one.failure.starts_with(kHardlyMoves))
+      return one.failure;
+  return "";
 }
 
 bool is_upper_bound(const SceneBench& bench, const std::vector<Candidate>& candidates,
@@ -37,7 +59,7 @@ bool is_upper_bound(const SceneBench& bench, const std::vector<Candidate>& candi
   if (work(at) == 1) return false;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].solver != candidates[at].solver) continue;
-    const bool timed = bench.cases[i].stable();
+    const bool timed = bench.cases[i].stable();  // a cheaper one may have failed
     if (timed ? candidates[i].cost.mid < candidates[at].cost.mid : work(i) < work(at)) return false;
   }
   return true;
@@ -59,6 +81,8 @@ struct Timed {
   bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
   /// "at best 0.12 %": why no setting reaches an error.
   std::string nearest(const std::string& solver) const {
+    if (const std::string still = only_still(candidates, solver, kPricedError); !still.empty())
+      return still;
     const auto at = best({.budget = std::numeric_limits<double>::infinity()}, solver);
     if (!at) return "no case completed";
     return std::string("at best ") + quantity(kErrorMetric).text(candidates[*at].error) +
@@ -126,8 +150,8 @@ class Costs {
                 {},
                 std::string(to_string(q.window)) + "; least of the settings timed within " +
                     significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/60\u00A0s (" +
-                    quantity("cpu.per_second").text(budget / kFrame) +
-                    " per simulated second), with what all solvers of the scene have"};
+                    quantity("cpu.per_second").text(budget / kFrame) + " per simulated second), " +
+                    kWithoutExtras + orders()};
     for (const Timed& scene : shared_) {
       std::vector<Cell> row{scene.bench.scene};
       for (const Column& solver : solvers_) {
@@ -178,8 +202,8 @@ class Costs {
                 "CPU time of " + priced(),
                 columns_of(solvers_, quantity("cpu.per_second").unit),
                 {},
-                "per simulated second, 95\u00A0% interval; each at the cheapest setting timed with "
-                "what all solvers of the scene have"};
+                "per simulated second, 95\u00A0% interval; each at its cheapest setting timed, " +
+                    std::string(kWithoutExtras) + orders()};
     std::vector<std::vector<std::vector<Interval>>> ratios;
     std::vector<std::vector<bool>> bounds;
     for (const Timed& scene : shared_) {
@@ -201,6 +225,14 @@ class Costs {
     table.caption +=
         "; two runs of identical code differed by up to " + shown(kShare, noise(shared_));
     answer.add(std::move(table));
+  }
+
+  /// What is not the same for all.
+  std::string orders() const {
+    std::vector<SceneBench> scenes;
+    for (const Timed& scene : shared_) scenes.push_back(scene.bench);
+    const std::string all = link_orders(scenes);
+    return all.empty() ? "" : "; links in each solver's own order: " + all;
   }
 
   static double noise(const std::vector<Timed>& scenes) {

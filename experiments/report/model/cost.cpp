@@ -3,10 +3,10 @@
 #include <limits>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
-#include "experiments/system/text.hpp"
 #include "experiments/timing/profile.hpp"
 #include "experiments/timing/recommendation.hpp"
 
@@ -48,14 +48,12 @@ Table levels_table(const CostScene& scene) {
                                                   : scene.bench.cases.front().record.spec;
   std::string again = "taut advise " + spec.scene + " --error 1%";
   for (const std::string& value : spec.overrides) again += " --set '" + value + "'";
-  Table table{
-      "cost-levels-" + slug(scene.bench.scene),
-      "CPU time of an error, per simulated second",
-      scene.columns(Column("level", q.title, q.unit, 1), quantity("cpu.per_second").unit),
-      {},
-      "95\u00A0% interval and setting of the cheapest that was timed, with what all solvers "
-      "of the scene have. More accurate ones are searched by: " +
-          again};
+  Table table{"cost-levels-" + slug(scene.bench.scene),
+              "CPU time of an error, per simulated second",
+              scene.columns(Column("level", q.title, q.unit, 1), quantity("cpu.per_second").unit),
+              {},
+              "95\u00A0% interval and setting of the cheapest that was timed, " +
+                  std::string(kWithoutExtras) + ". More accurate ones are searched by: " + again};
   for (const double level : kErrorLevels) {
     std::vector<Cell> row{level};
     bool cheaper = true;
@@ -65,6 +63,7 @@ Table levels_table(const CostScene& scene) {
       if (!r.at) {
         row.emplace_back(scene.bench.searched_to_the_end(r.solver) ? "never reached"
                                                                    : "not reached");
+        row.back().note = only_still(scene.candidates, r.solver, level);
         continue;
       }
       if (r.times && r.times->mid > 1)
@@ -105,8 +104,8 @@ Table profile_table(const std::vector<SceneBench>& scenes) {
               {},
               "Share of " + std::to_string(problems) + " problems: an error of " +
                   quantity(kErrorMetric).title +
-                  " to be reached on a scene. Every solver has equally many settings of a scene, "
-                  "with what all of its solvers have."};
+                  " to be reached on a scene. Every solver has equally many settings of a scene, " +
+                  kWithoutExtras + "."};
   if (const std::string bounds = upper_bounds(scenes); !bounds.empty())
     table.caption +=
         " Problems that the cheapest setting tried reaches already, whose solver may "
@@ -138,9 +137,9 @@ Json json_of_cost(const StudyBench& study, CaseList& refs, Json& charts, Answer&
     shared.push_back(with_shared_parameters(bench));
     const CostScene scene{shared.back(), refs};
     Json one{{"scene", bench.scene},
-             {"noisy", spread(bench.control) > kTolerance},
              {"noise", "Timing noise: two runs of identical code differed by up to " +
-                           shown(kShare, spread(bench.control)) + "."}};
+                           shown(kShare, spread(bench.control)) +
+                           "; the best is marked only where it is cheaper by more."}};
     try {
       add_by_id(one, "charts", json_of(cost_chart(bench, records), refs), charts);
     } catch (const InputError&) {
