@@ -100,9 +100,10 @@ struct Differences {
 /// Everything that a report is made of. Empty parts become a line that says which command makes
 /// them.
 struct ReportInput {
-  std::string question = {};            ///< that heads the page; "": none
-  std::string title;                    ///< "": from the solvers' names
-  std::string command;                  ///< the command line that made it all
+  std::string question = {};  ///< that heads the page; "": none
+  std::string title;          ///< "": from the solvers' names
+  std::string command;        ///< the command line that made it all
+  std::string vectors = {};   ///< what simd=auto stands for where the page is made: "avx2"
   std::vector<std::string> cost_hosts;  ///< where this study's cost was measured, and what is shown
   std::vector<std::pair<std::string, std::string>> provenance;  ///< "compiler" -> "g++ 12.2.0"
   std::vector<SolverInfo> solvers;

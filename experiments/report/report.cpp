@@ -1,10 +1,12 @@
 #include "experiments/report/report.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 #include <stdexcept>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/answer/answer.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -54,7 +56,7 @@ class Builder {
     Json method = this->method();
     Json cases = this->cases();
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
-    Json model{{"schema", "taut-report/4"},
+    Json model{{"schema", "taut-report/5"},
                {"meta", meta(cases.size())},
                {"solvers", solvers()},
                {"statuses", statuses()},
@@ -151,11 +153,35 @@ class Builder {
         if (compared.name == solver)
           for (const auto& [key, value] : compared.cases.front()->params)
             if (key != parameter_of(solver, kSweeps) && key != parameter_of(solver, kSubsteps))
-              settings += (settings.empty() ? "" : ", ") + key + "=" + value;
+              settings += (settings.empty() ? "" : ", ") + key + "=" + retyped(value);
       one["settings"] = settings;
+      add_if(one, "arithmetic", arithmetic_of(solver));
       all.push_back(std::move(one));
     }
     return all;
+  }
+
+  /// Of the compared cases and, if otherwise, of the timed ones: "double; timed: float".
+  std::string arithmetic_of(const std::string& solver) const {
+    std::vector<std::string> compared, timed;
+    for (const ComparedSolver& one : compared_.all)
+      if (one.name == solver)
+        for (const Record* r : one.cases) push_unique(compared, arithmetic(*r, input_.vectors));
+    if (input_.bench)
+      for (const SceneBench& scene : input_.bench->scenes)
+        for (const BenchedCase& c : scene.cases)
+          if (c.record.solver == solver) push_unique(timed, arithmetic(c.record, input_.vectors));
+    const std::string one = join(compared, " or "), other = join(timed, " or ");
+    return one == other || other.empty() ? one : one.empty() ? other : one + "; timed: " + other;
+  }
+  /// A number of a setting as people type it: "1e+09" -> "1e9".
+  static std::string retyped(const std::string& value) {
+    double number = 0;
+    const char* const end = value.data() + value.size();
+    const auto [stop, error] = std::from_chars(value.data(), end, number);
+    return error == std::errc() && stop == end && value.find('e') != std::string::npos
+               ? as_typed(number)
+               : value;
   }
 
   Json statuses() const {

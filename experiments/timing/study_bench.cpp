@@ -14,6 +14,7 @@
 #include "experiments/study/database.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/timing/hardly_moves.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -103,9 +104,12 @@ Interval BenchedCase::cost() const { return bootstrap_median(timing.samples) * (
 
 std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
   std::vector<Candidate> all;
+  const ValueSpec* value = find_value(metric).second;
+  const bool of_strain = value && value->role == Role::error;
   for (const BenchedCase& c : cases) {
     std::string failure = c.timing.failure;
     if (failure.empty() && !c.stable()) failure = describe(c.record.status);
+    if (failure.empty() && of_strain) failure = hardly_moves(c.record);
     all.push_back({c.record.solver, c.record.spec.solver, c.cost(),
                    std::abs(c.record.value(metric)), failure});
   }

@@ -435,7 +435,32 @@ def without_script(checks):
     checks.true("JavaScript is off" in text and "taut report --json" in text, "and what is missing is said", text[:300])
 
 
-ALL = {f.__name__: f for f in (drawn, answer, charts, layout, permalinks, table, points, switches, keyboard, films, prints, hostile, without_script)}
+def compared(checks):
+    """Heads say in what arithmetic a solver computes; a film says who is not in it; of two folders what differs comes first."""
+    model, _, _ = checks.model()
+    solver = model["solvers"][0]
+    page = checks.open()
+    head = page.run(f"document.querySelector('#answer thead [data-s=\"0\"]').innerText")
+    checks.true(solver["arithmetic"].split(" (")[0] in head, "the head of a column has its arithmetic", head)
+    with_film = next((s for s in model["scenes"] if s.get("film")), None)
+    if with_film:
+        film = next(f for f in model["films"] if f["id"] == with_film["film"])
+        film["panels"] = film["panels"][:1]
+        page = checks.open(model, f"scene={with_film['id']}")
+        said = page.run(f"{VISIBLE}('.player')[0].innerText")
+        columns = len(next(iter(model["answer"]["tables"].values()))["columns"]) - 1
+        checks.true(f"1 of {columns} solvers compared" in said or columns == 1, "a film says who is not in it", said[:300])
+    model, _, _ = checks.model()
+    model["differences"] = {"a": "before", "b": "after", "matched": "by names", "tables": []}
+    page = checks.open(model)
+    order = page.run("[...document.querySelectorAll('#main > section')].slice(0, 2).map(s => s.id)")
+    checks.true(order == ["differences", "answer"], "what differs comes first", order)
+    heads = page.run("[...document.querySelectorAll('#main > section > h1, #answer h2')].map(h => h.textContent)")
+    checks.true(len(heads) == 2 and heads[1] == "B alone: after", "the values of B say that they are its alone", heads)
+    checks.quiet("with differences")
+
+
+ALL = {f.__name__: f for f in (drawn, answer, compared, charts, layout, permalinks, table, points, switches, keyboard, films, prints, hostile, without_script)}
 
 
 def use(report, out, every, names=()):

@@ -4,6 +4,7 @@
 
 #include "experiments/report/answer/answer.hpp"
 #include "experiments/report/input.hpp"
+#include "experiments/study/study.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::answers_test {
@@ -56,6 +57,7 @@ TEST(PageAnswers, HaveAValueOrWhyThereIsNoneAndMarkWhatIsBetterByMoreThanTheTole
   EXPECT_EQ(failures.rows.back()[1].number(), 0);
   EXPECT_EQ(failures.rows.back()[2].number(), 1);
   EXPECT_EQ(failures.rows.back()[2].note, "of 4: 1 exploded");
+  EXPECT_EQ(failures.rows.back()[0].text(), "sum of 4 scenes") << "Bullet did not run swing";
 }
 
 TEST(PageAnswers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
@@ -100,7 +102,8 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   Reported made;
   const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
   const Record cheap = ours;
-  const Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
+  Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
+  dear.params["iterations"] = "1";  // nothing is cheaper: its cost is no upper bound
   const auto price = [&](double ratio, double noise) {
     const std::vector<double> one(12, 1e-3), other(12, 1e-3 * ratio);
     made.input.bench =
@@ -115,6 +118,197 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   EXPECT_FALSE(price(1.3, 0.4)[1].best) << "noise";
   EXPECT_FALSE(price(1.03, 0.001)[1].best) << "the tolerance";
   EXPECT_NEAR(price(1.3, 0.02)[2].number(), 1.3e-3 * 64, 1e-9);
+}
+
+/// A bench of hang: solver, substeps, sweeps, error, CPU time of a step [s].
+struct Timed {
+  const char *scene, *solver;
+  int substeps, sweeps;
+  double error, cpu;
+};
+StudyBench bench_of(const std::vector<Timed>& all) {
+  StudyBench bench{"one", "a machine", {}};
+  for (const auto& [scene, solver, substeps, sweeps, error, cpu] : all) {
+    if (bench.scenes.empty() || bench.scenes.back().scene != scene)
+      bench.scenes.push_back({scene, {0.99, 1, 1.01}, {}});
+    Record r = synthetic::record(scene, solver, sweeps, 1.0 / 64);
+    r.params["substeps"] = std::to_string(substeps);
+    r.spec.solver += ",substeps=" + std::to_string(substeps);
+    r.id += r.spec.solver, r.key += std::to_string(substeps) + "x" + std::to_string(sweeps);
+    r.values = {{"stretch.rms", error}};
+    const std::vector<double> samples(12, cpu);
+    bench.scenes.back().cases.push_back({r, {samples, samples, 0, "", ""}});
+  }
+  return bench;
+}
+
+TEST(PageAnswers, SayThatACostIsAnUpperBoundWhereNothingCheaperWasTried) {
+  Reported made;
+  made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
+  made.add("hang", "pd", {{"stretch.rms", 0.005}});
+  std::vector<Timed> timed{{"hang", "jakobsen", 1, 1, 0.5, 1e-5},
+                           {"hang", "jakobsen", 20, 1, 0.005, 1e-4},
+                           {"hang", "pd", 8, 1, 0.0003, 1e-3},
+                           {"hang", "pd", 16, 1, 0.0001, 2e-3}};
+  const auto cells = [&](const char* table) {
+    made.input.bench = bench_of(timed);
+    return made.answer().table(table).rows[0];
+  };
+  EXPECT_EQ(cells("price")[2].note, "8 × 1; at most: its cheapest setting tried");
+  EXPECT_FALSE(cells("price")[1].best) << "PD may be cheaper than this";
+  EXPECT_EQ(cells("setting")[2].note, "at most 64\u00A0ms");
+  EXPECT_FALSE(cells("setting")[1].best);
+  timed.push_back({"hang", "pd", 1, 1, 0.5, 1.1e-3});
+  EXPECT_EQ(cells("price")[2].note, "8 × 1; at most: its cheapest setting tried") << "dearer";
+  timed.back().cpu = 5e-4;
+  EXPECT_EQ(cells("price")[2].note, "8 × 1");
+  EXPECT_TRUE(cells("price")[1].best);
+  timed.back().error = 0.003;
+  EXPECT_EQ(cells("price")[2].note, "1 × 1") << "nothing is cheaper";
+}
+
+TEST(PageAnswers, MarkNoSettingOfSolversThatReachTheErrorOnDifferentScenes) {
+  Reported made;
+  for (const char* solver : {"jakobsen", "bullet"})
+    made.add("hang", solver, {{"stretch.rms", 0.1}});
+  std::vector<Timed> timed{{"hang", "jakobsen", 1, 1, 0.005, 1e-5},
+                           {"hang", "bullet", 1, 1, 0.005, 1e-3},
+                           {"ball", "jakobsen", 1, 1, 0.005, 1e-5},
+                           {"ball", "bullet", 1, 1, 0.005, 1e-3}};
+  const auto last = [&] {
+    made.input.bench = bench_of(timed);
+    return made.answer().table("setting").rows.back();
+  };
+  EXPECT_TRUE(last()[1].best);
+  timed[3].error = 0.5;
+  EXPECT_FALSE(last()[1].best) << "Bullet reaches it on one scene alone";
+  EXPECT_NE(last()[2].note.find("1 of 2"), std::string::npos);
+}
+
+TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
+  Reported made;
+  const auto add = [&](const char* scene, const char* solver, double stretch, double share) {
+    made.add(scene, solver, {{"stretch.rms", stretch}, {"motion.share", share}});
+  };
+  add("swing", "jakobsen", 0.03, 0.9), add("swing", "bullet", 0.02, 0.51),
+      add("swing", "pd", 0.001, 0.49);
+  add("hang", "jakobsen", 0.05, std::nan("")), add("hang", "bullet", 0.04, std::nan("")),
+      add("hang", "pd", 0.03, std::nan(""));
+  Answer answer = made.answer();
+  const Table& table = answer.table("stretch.rms");
+  EXPECT_EQ(table.rows[0][3].note, "hardly moves: 49\u00A0% of the way");
+  EXPECT_FALSE(table.rows[0][3].best);
+  EXPECT_TRUE(table.rows[0][2].best) << "the best of those that move";
+  EXPECT_TRUE(table.rows[1][3].best);
+  EXPECT_EQ(table.rows[2][0].note, "without swing");
+  EXPECT_EQ(table.rows[2][3].number(), 0.03);
+  EXPECT_TRUE(answer.table("motion.share").rows[0][3].note.empty());
+
+  made.input.bench = bench_of({{"swing", "jakobsen", 1, 1, 0.005, 1e-3},
+                               {"swing", "pd", 1, 1, 0.005, 1e-5},
+                               {"swing", "pd", 8, 1, 0.004, 1e-4}});
+  auto& cases = made.input.bench->scenes[0].cases;
+  cases[1].record.values["motion.share"] = 0.4;
+  answer = made.answer();
+  EXPECT_EQ(answer.table("price").rows[0][3].note, "8 × 1") << "the cheapest that moves";
+  EXPECT_TRUE(answer.table("price").rows[0][3].best);
+  cases[2].record.values["motion.share"] = -0.05;
+  answer = made.answer();
+  EXPECT_EQ(answer.table("price").rows[0][3].text(), "not reached");
+  EXPECT_EQ(answer.table("price").rows[0][3].note, "hardly moves: 40\u00A0% of the way");
+  EXPECT_FALSE(answer.table("price").rows[0][1].best) << "alone";
+}
+
+TEST(PageAnswers, CountFailuresOfWhatAllSolversRanAlone) {
+  Reported made;
+  const auto add = [&](const char* solver, int sweeps, bool fails) {
+    Record r = synthetic::record("hang", solver, sweeps, 1.0 / 64);
+    if (fails) synthetic::fail(r, Status::Kind::exploded, "energy");
+    made.input.studies.front().records.push_back(r);
+  };
+  add("jakobsen", 1, true), add("jakobsen", 2, true), add("jakobsen", 16, false);
+  add("bullet", 1, true), add("bullet", 16, false);
+  const Answer answer = made.answer();
+  const auto& row = answer.table("failures").rows[0];
+  EXPECT_EQ(row[1].number(), 1) << "not those that Bullet was not asked";
+  EXPECT_EQ(row[1].note, "of 2: 1 exploded");
+  EXPECT_EQ(row[2].note, "of 2: 1 exploded");
+  EXPECT_NE(answer.table("failures").caption.find("of all 5 cases of this page, 3 failed"),
+            std::string::npos);
+}
+
+TEST(PageAnswers, TheLargestStepSaysAtWhichWork) {
+  Reported made;
+  for (const char* solver : {"jakobsen", "bullet"})
+    for (const int sweeps : {1, 4, 16})
+      for (const double dt : {0.001, 0.01, 0.1})
+        made.input.studies.front().records.push_back(synthetic::record("hang", solver, sweeps, dt));
+  const Answer answer = made.answer();
+  for (const auto& row : answer.table("largest_step").rows)
+    EXPECT_EQ(row[0].note, "at 1, 4 and 16 sweeps");
+}
+
+TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
+  Record r = synthetic::record("hang", "jakobsen", 1, 1.0 / 64);
+  EXPECT_EQ(arithmetic(r, "avx2"), "double");
+  r.params = {{"precision", "float"}, {"simd", "scalar"}};
+  EXPECT_EQ(arithmetic(r, "avx2"), "float, scalar");
+  r.params["simd"] = "auto";
+  EXPECT_EQ(arithmetic(r, "avx2"), "float × 8 (avx2)");
+  EXPECT_EQ(arithmetic(r, ""), "float, vectors");
+  r.params["precision"] = "double";
+  EXPECT_EQ(arithmetic(r, "avx512"), "double × 8 (avx512)");
+  r.params = {{"simd", "auto"}};
+  EXPECT_EQ(arithmetic(r, "avx2"), "double") << "no kernels of its own precision";
+  EXPECT_EQ(link_order(r), "");
+  r.resolved_settings.emplace_back("link order", "the scene's");
+  EXPECT_EQ(link_order(r), "mesh order");
+  r.resolved_settings.back().second = "coloured, of the links on no line";
+  EXPECT_EQ(link_order(r), "coloured");
+
+  Reported made;
+  made.add("hang", "jakobsen", {{"stretch.rms", 0.1}}), made.add("hang", "bullet", {});
+  made.input.bench =
+      bench_of({{"hang", "jakobsen", 20, 1, 0.005, 1e-3}, {"hang", "bullet", 1, 1, 0.005, 1e-3}});
+  auto& cases = made.input.bench->scenes[0].cases;
+  cases[0].record.resolved_settings = {{"link order", "coloured"}};
+  cases[1].record.resolved_settings = {{"link order", "the scene's"}};
+  const Answer answer = made.answer();
+  const Table& price = answer.table("price");
+  EXPECT_NE(price.caption.find("Jakobsen coloured, Bullet mesh order"), std::string::npos);
+  EXPECT_EQ(price.rows[0][1].note, "20 × 1, coloured; at most: its cheapest setting tried");
+  EXPECT_EQ(price.rows[0][2].note, "1 × 1, mesh order");
+}
+
+TEST(PageAnswers, APenetrationSaysWhenItIsMeasuredAndHowHardBulletPushes) {
+  Reported made;
+  made.add("ball", "jakobsen", {{"penetration.peak", 0.001}});
+  made.add("ball", "bullet", {{"penetration.peak", 0.01}}).params["hardness"] = "0.1";
+  const Answer answer = made.answer();
+  const std::string& caption = answer.table("penetration.peak").caption;
+  EXPECT_NE(caption.find("after the last pass of a step"), std::string::npos);
+  EXPECT_NE(caption.find("Bullet at contact hardness 0.1"), std::string::npos) << caption;
+}
+
+TEST(TheStudyOfTrade, BeginsWithTheCheapestSettingOfEverySolverAndHasAsManyOfEach) {
+  for (const char* preset : {"quick", ""}) {
+    std::map<std::string, int> settings, cheapest;
+    for (const std::string& text : load_study("trade", preset).solvers) {
+      const SolverChoice choice = parse_solver(text);
+      const std::string solver(choice.entry->name);
+      const auto one = [&](std::string_view name) {
+        return name.empty() || !choice.params.has(name) || choice.params.integer(name) <= 1;
+      };
+      ++settings[solver];
+      cheapest[solver] +=
+          one(choice.entry->accuracy.substeps) && one(choice.entry->accuracy.sweeps);
+    }
+    for (const auto& [solver, n] : settings) {
+      if (solver == "bullet-deformable") continue;  // its Newton iterations are not varied
+      EXPECT_GE(cheapest[solver], 1) << solver << ", preset " << preset;
+      EXPECT_TRUE(!*preset || n == settings.at("jakobsen")) << solver;
+    }
+  }
 }
 
 }  // namespace

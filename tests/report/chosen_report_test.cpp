@@ -225,6 +225,9 @@ TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
   EXPECT_EQ(
       model["differences"]["a"].get<std::string>() + model["differences"]["b"].get<std::string>(),
       "xy");
+  EXPECT_NE(model["differences"]["matched"].get<std::string>().find("not by what is in"),
+            std::string::npos);
+  EXPECT_TRUE(model["answer"]["subject"].get<std::string>().starts_with("B alone, y."));
 }
 
 // Two builds of one solver in sessions of their own: the geometric mean, and never more than

@@ -168,6 +168,7 @@ TEST(TheorySlope, IsThatOfPinnedClothInNothingButGravity) {
   EXPECT_TRUE(spoiled([](Scene& s) { s.wind.emplace(); }));
   EXPECT_TRUE(spoiled([](Scene& s) { s.self_collision.emplace(); }));
   EXPECT_TRUE(spoiled([](Scene& s) { s.links[0].family = Family::bend; }));
+  EXPECT_TRUE(spoiled([](Scene& s) { s.stiffness[0] = 500; })) << "the links' own stretch stays";
 }
 
 TEST(ShownSeries, AreTheColumnsOfTheTableThatAFilmShows) {

@@ -4,6 +4,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
+#include "core/solver/simd/kernels.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/cli/calls.hpp"
@@ -94,10 +95,11 @@ int compare_folders(const Options& options) {
   if (input.differences->pairs.empty())
     throw InputError("no case is in both " + options.studies[0] + " and " + options.studies[1]);
   input.question =
-      "What differs between A, " + options.studies[0] + ", and B, " + options.studies[1] + "?";
-  input.title = "B, " + options.studies[1];
+      "What differs between " + options.studies[0] + " and " + options.studies[1] + "?";
+  input.title = options.studies[0] + " and " + options.studies[1];
   input.command = "./taut report " + options.studies[0] + " " + options.studies[1];
   input.solvers = introductions();
+  input.vectors = to_string(widest());
   input.provenance = {{"program", program_digest().substr(0, 10)},
                       {"made", readable(utc_stamp())},
                       {"toolchain", std::string(toolchain())}};
@@ -141,6 +143,7 @@ int run(Options options) {
   report::add_stored_maps(input, load_all(maps, options.preset), store);
   input.command = command;
   input.solvers = introductions();
+  input.vectors = to_string(widest());
   const std::string program = program_digest();
   if (studies.size() == 1) input.question = studies.front().question;
   input.provenance = {{"program", program.substr(0, 10)},

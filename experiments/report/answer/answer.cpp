@@ -7,6 +7,7 @@
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/timing/hardly_moves.hpp"
 
 namespace taut::report {
 
@@ -29,6 +30,37 @@ std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit& u
   return columns;
 }
 
+std::string arithmetic(const Record& r, const std::string& vectors) {
+  const auto param = [&](const char* name) {
+    const auto at = r.params.find(name);
+    return at == r.params.end() ? std::string() : at->second;
+  };
+  const std::string precision = param("precision");
+  if (precision.empty()) return "double";  // its links have no kernels of vectors
+  const std::string simd = param("simd") == "auto" ? vectors : param("simd");
+  if (simd.empty()) return precision + (param("simd").empty() ? "" : ", vectors");
+  for (const auto& [name, bytes] :
+       {std::pair<const char*, int>{"sse2", 16}, {"avx2", 32}, {"avx512", 64}})
+    if (simd == name)
+      return precision + " × " + std::to_string(bytes / (precision == "float" ? 4 : 8)) + " (" +
+             simd + ")";
+  return precision + ", " + simd;
+}
+
+std::string link_order(const Record& r) {
+  if (const auto reorder = r.params.find("reorder");
+      reorder != r.params.end() && reorder->second == "on")
+    return "reordered";
+  for (const auto& [line, text] : r.resolved_settings)
+    if (line == "link order")
+      return text == "the scene's" ? "mesh order" : text.substr(0, text.find_first_of(",:;"));
+  return "";
+}
+
+bool is_compared(const Cell& cell) {
+  return !std::isnan(cell.number()) && !cell.note.starts_with(kHardlyMoves);
+}
+
 void mark_best(std::vector<Cell>& row, Better better, double nothing) {
   Cell *best = nullptr, *second = nullptr;
   const auto value = [&](const Cell& cell) { return std::max(cell.number(), nothing); };
@@ -36,7 +68,7 @@ void mark_best(std::vector<Cell>& row, Better better, double nothing) {
     return better == Better::less ? value(a) < value(b) : value(a) > value(b);
   };
   for (Cell& cell : row) {
-    if (std::isnan(cell.number())) continue;
+    if (!is_compared(cell)) continue;
     if (!best || beats(cell, *best))
       second = std::exchange(best, &cell);
     else if (!second || beats(cell, *second))
@@ -51,13 +83,11 @@ void mark_best(std::vector<Cell>& row, Better better, double nothing) {
 Common common_of(const Table& table, double nothing) {
   Common common;
   for (std::size_t c = 1; c < table.columns.size(); ++c)
-    if (std::ranges::any_of(table.rows,
-                            [&](const auto& row) { return !std::isnan(row[c].number()); }))
+    if (std::ranges::any_of(table.rows, [&](const auto& row) { return is_compared(row[c]); }))
       common.columns.push_back(c);
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const auto& row = table.rows[r];
-    if (std::ranges::all_of(common.columns,
-                            [&](std::size_t c) { return !std::isnan(row[c].number()); }) &&
+    if (std::ranges::all_of(common.columns, [&](std::size_t c) { return is_compared(row[c]); }) &&
         (nothing <= 0 || std::ranges::any_of(common.columns, [&](std::size_t c) {
            return row[c].number() >= nothing;
          })))
@@ -67,7 +97,7 @@ Common common_of(const Table& table, double nothing) {
 }
 
 Cell Common::label(const Table& table, const std::string& what) const {
-  if (rows.size() == 1 && table.rows.size() == 1) return table.rows[0][0].text();
+  if (rows.size() == 1 && table.rows.size() == 1) return table.rows[0][0];
   std::string without;
   for (std::size_t r = 0; r < table.rows.size(); ++r)
     if (std::ranges::find(rows, r) == rows.end())
@@ -78,7 +108,8 @@ Cell Common::label(const Table& table, const std::string& what) const {
 
 Cell why_empty(const Table& table, std::size_t column) {
   std::set<std::string> all;
-  for (const auto& row : table.rows) all.insert(row[column].text());
+  for (const auto& row : table.rows)
+    all.insert(std::isnan(row[column].number()) ? row[column].text() : "hardly moves");
   return all.size() == 1 ? *all.begin() : Cell("no value");
 }
 
@@ -146,13 +177,15 @@ class Questions {
     for (const QuotedScene& quoted : compared_.scenes)
       if (quoted.question.dt > 0) steps.insert(quoted.question.dt);
     const std::string work = compared_.common_work();
-    return "Equal work: " + (work.empty() ? "unequal, in each cell" : work) +
+    return (input_.differences ? "B alone, " + input_.differences->b + ". " : std::string()) +
+           "Equal work: " + (work.empty() ? "unequal, in each cell" : work) +
            (steps.empty() ? "" : ", time step " + range_text(steps, quantity("dt"))) +
            (input_.bench ? ". CPU times are per simulated second" : "") +
-           ". Means are geometric where all values are positive. Marked: better than every other "
-           "by more than " +
+           ". Means are geometric where all values are positive. Marked: best by more than " +
            shown(kShare, kTolerance, 1) +
-           ", of CPU times also beyond what identical code differed by.";
+           ", of CPU times beyond their noise and against no upper bound; no "
+           "stretch of cloth that goes less than " +
+           shown(kShare, kLeastMotion, 1) + " of the way.";
   }
 
   /// The cases at equal work, scene by scene.
@@ -165,7 +198,8 @@ class Questions {
     for (const QuotedScene& quoted : compared_.scenes) {
       std::vector<Cell> row{quoted.title};
       for (std::size_t i = 0; i < solvers_.size(); ++i)
-        row.push_back(value_cell(i < quoted.cases.size() ? quoted.cases[i] : nullptr, metric));
+        row.push_back(value_cell(i < quoted.cases.size() ? quoted.cases[i] : nullptr, metric,
+                                 spec.role == Role::error));
       if (std::ranges::all_of(row, [](const Cell& c) { return std::isnan(c.number()); })) continue;
       steps.insert(quoted.question.dt);
       table.rows.push_back(std::move(row));
@@ -182,16 +216,35 @@ class Questions {
                     range_text(steps, quantity("dt")) +
                     (over == Over::mean && nothing > 0
                          ? "; less than " + q.text(nothing, 1) + " counts as " + q.text(nothing, 1)
-                         : "");
+                         : "") +
+                    (is_depth(spec.role) ? contact_text() : "");
     answer_.add(std::move(table));
   }
 
-  Cell value_cell(const Record* r, const std::string& metric) {
+  /// When depths are measured, and who does not end a step by projecting contact.
+  std::string contact_text() const {
+    std::string text = "; measured after the last pass of a step, in which contact is projected";
+    for (std::size_t i = 0; i < compared_.all.size(); ++i) {
+      std::set<std::string> values;
+      for (const QuotedScene& quoted : compared_.scenes)
+        if (const Record* r = quoted.cases[i]; r && r->params.contains("hardness"))
+          values.insert(r->params.at("hardness"));
+      if (!values.empty())
+        text += "; but by " + solver_title(compared_.all[i].name) + " at contact hardness " +
+                join(values, " and ") + ", the share of a depth that it corrects";
+    }
+    return text;
+  }
+
+  /// Of an error of strain a note says whether the cloth moves at all.
+  Cell value_cell(const Record* r, const std::string& metric, bool of_strain) {
     const double value = r && completed(r->status) ? value_of(*r, metric) : std::nan("");
     Cell cell = std::isfinite(value) ? Cell(value) : Cell(why_none(r));
     if (!r) return cell;
     cell.key = list_.key(*r);
-    if (compared_.common_work().empty()) cell.note = work_of(*r).text();
+    if (of_strain && std::isfinite(value)) cell.note = hardly_moves(*r);
+    if (compared_.common_work().empty())
+      cell.note += (cell.note.empty() ? "" : "; ") + work_of(*r).text();
     return cell;
   }
 
@@ -241,7 +294,8 @@ class Questions {
                 "Largest stable time step",
                 columns_of(solvers_, quantity("dt").unit, 3),
                 {},
-                "up to it every case completed, at every work that all of the row's solvers tried"};
+                "up to it every case completed, at the least work of a row, too: the worst of the "
+                "substeps × sweeps that all of its solvers tried"};
     std::map<std::pair<std::string, std::vector<std::string>>, std::vector<Tried>> scenes;
     for (std::size_t i = 0; i < compared_.all.size(); ++i)
       for (const Record* r : compared_.all[i].cases) {
@@ -292,13 +346,26 @@ class Questions {
     });
     const std::set<double> steps = steps_of(shared);
     if (steps.size() < kLeastSteps || *steps.rbegin() < kLeastRange * *steps.begin()) return;
-    std::vector<Cell> row{compared_.title({scene.first, scene.second, 0})};
+    std::vector<Cell> row{
+        Cell(compared_.title({scene.first, scene.second, 0})).with("at " + works_text(shared))};
     for (std::size_t i = 0; i < solvers_.size(); ++i) {
       const bool ran = i < tried.size() && std::ranges::find(here, &tried[i]) != here.end();
       row.push_back(ran ? largest_stable(tried[i], shared, steps) : Cell("not run"));
     }
     mark_best(row, Better::more, 0);
     table.rows.push_back(std::move(row));
+  }
+
+  /// "1, 4 and 16 sweeps", with their substeps where these are not 1.
+  static std::string works_text(const Tried& tried) {
+    std::set<Work> works;
+    bool one = true;
+    for (const auto& [at, record] : tried)
+      works.insert(at.first), one = one && at.first.substeps <= 1;
+    std::vector<std::string> names;
+    for (const Work& work : works) names.push_back(one ? std::to_string(work.sweeps) : work.text());
+    return joined(names) + (one ? names == std::vector<std::string>{"1"} ? " sweep" : " sweeps"
+                                : " substeps × sweeps");
   }
 
   /// The largest step up to which (itself included) every case completed.
@@ -332,47 +399,68 @@ class Questions {
       ++kinds[fails ? std::string(to_string(r.status.kind)) : "unsupported"];
       if (fails && key.empty()) key = r.key;
     }
-  };
-
-  /// Of all cases of the page, whatever ran them.
-  void add_failures() {
-    Table table{"failures",
-                "Cases that failed",
-                columns_of(solvers_, kErrorCount),
-                {},
-                "all cases of this page: studies, maps and timed ones"};
-    std::map<std::string, std::vector<Count>> scenes;
-    std::vector<Count> all(solvers_.size());
-    std::map<std::string, Count> others;  ///< solvers of maps alone
-    std::vector<std::string> order;
-    for (const Record* r : list_.cases()) {
-      const auto at = std::ranges::find(solvers_, r->solver, &Column::name);
-      if (at == solvers_.end()) {
-        others[r->solver].add(*r);
-        continue;
-      }
-      const auto i = static_cast<std::size_t>(at - solvers_.begin());
-      const auto [scene, fresh] = scenes.try_emplace(r->scene, solvers_.size());
-      if (fresh) order.push_back(r->scene);
-      scene->second[i].add(*r), all[i].add(*r);
+    void add(const Count& other) {
+      cases += other.cases, failed += other.failed;
+      for (const auto& [kind, n] : other.kinds) kinds[kind] += n;
+      if (key.empty()) key = other.key;
     }
-    for (const std::string& scene : order)
-      table.rows.push_back(failure_row(scene, scenes.at(scene)));
-    for (const auto& [solver, count] : others)
-      table.caption += "; " + solver_title(solver) + ", in maps alone, " +
-                       std::to_string(count.failed) + " of " + std::to_string(count.cases);
+  };
+  using Asked = std::map<std::pair<Question, Work>, const Record*>;
+
+  /// Of the cases that all solvers of a scene ran; how many fail of what is not shared depends on
+  /// what was asked of whom.
+  void add_failures() {
+    Table table{
+        "failures",
+        "Cases that failed",
+        columns_of(solvers_, kErrorCount),
+        {},
+        "of those that all solvers of the scene ran: same settings of the scene, substeps × "
+        "sweeps and time step"};
+    std::vector<std::string> order;
+    std::map<std::string, std::vector<Asked>> scenes;
+    for (std::size_t i = 0; i < compared_.all.size(); ++i)
+      for (const Record* r : compared_.all[i].cases) {
+        const auto [scene, fresh] = scenes.try_emplace(r->scene, solvers_.size());
+        if (fresh) order.push_back(r->scene);
+        scene->second[i].try_emplace({question_of(*r), work_of(*r)}, r);
+      }
+    std::vector<Count> all(solvers_.size());
+    for (const std::string& scene : order) {
+      const std::vector<Count> counts = shared_counts(scenes.at(scene));
+      if (std::ranges::all_of(counts, [](const Count& one) { return one.cases == 0; })) continue;
+      table.rows.push_back(failure_row(scene, counts));
+      const bool whole = std::ranges::all_of(counts, [](const Count& c) { return c.cases > 0; });
+      for (std::size_t i = 0; whole && i < all.size(); ++i) all[i].add(counts[i]);
+      if (!whole) table.rows.back()[0].note = "not in the sum: not all ran it";
+    }
+    if (table.rows.empty()) return;
+    const auto summed =
+        std::ranges::count_if(table.rows, [](const auto& row) { return row[0].note.empty(); });
     table.rows.push_back(failure_row(
-        "sum of " + std::to_string(order.size()) + (order.size() == 1 ? " scene" : " scenes"),
-        all));
+        "sum of " + std::to_string(summed) + (summed == 1 ? " scene" : " scenes"), all));
+    int cases = 0, failed = 0;
+    for (const Record* r : list_.cases()) ++cases, failed += is_failure(r->status);
+    table.caption += "; of all " + std::to_string(cases) + " cases of this page, " +
+                     std::to_string(failed) + " failed";
     answer_.add(std::move(table));
   }
 
-  /// Counts are compared only where all solvers had equally many cases.
+  /// Of what every solver that ran anything here ran.
+  static std::vector<Count> shared_counts(const std::vector<Asked>& here) {
+    std::vector<Count> counts(here.size());
+    for (std::size_t i = 0; i < here.size(); ++i)
+      for (const auto& [asked, record] : here[i])
+        if (std::ranges::all_of(here, [&, &asked = asked](const Asked& other) {
+              return other.empty() || other.contains(asked);
+            }))
+          counts[i].add(*record);
+    return counts;
+  }
+
   std::vector<Cell> failure_row(const std::string& label, const std::vector<Count>& counts) {
     std::vector<Cell> row{label};
-    std::set<int> tried;
     for (const Count& count : counts) {
-      if (count.cases > 0) tried.insert(count.cases);
       const std::string kinds = join(count.kinds, ", ", [](const auto& kind) {
         return std::to_string(kind.second) + " " + kind.first;
       });
@@ -382,7 +470,7 @@ class Questions {
                                                  (kinds.empty() ? "" : ": " + kinds)));
       if (!count.key.empty()) row.back().key = list_.key(count.key);
     }
-    if (tried.size() == 1) mark_best(row, Better::less, 0);
+    mark_best(row, Better::less, 0);
     return row;
   }
 

@@ -20,10 +20,31 @@ Answer answer_of(const ReportInput&, const ComparedSolvers&, CaseList&);
 /// The questions of costs; none without a bench.
 void add_costs(Answer&, const ReportInput&, const std::vector<Column>& solvers, CaseList&);
 
+inline constexpr const char* kWithoutExtras =
+    "without accelerators that another solver of the scene lacks";
 /// Without the cases that use a parameter which another solver of the scene lacks.
 SceneBench with_shared_parameters(SceneBench);
 /// "4 × 2, coloured": of cases of one scene those parameters that take several values.
 std::string setting_text(const SceneBench&, std::size_t at);
+
+/// Of a solver that does not reach the error: "hardly moves: 5 % of the way", if its cloth keeps
+/// its lengths where it stands; else "".
+std::string only_still(const std::vector<Candidate>&, const std::string& solver, double error);
+
+/// Whether a cheaper setting of the same solver may reach what case `at` reaches: none was tried,
+/// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is then
+/// an upper bound.
+bool is_upper_bound(const SceneBench&, const std::vector<Candidate>&, std::size_t at);
+/// "; at most: its cheapest setting tried": behind the setting of an upper bound.
+inline constexpr const char* kUpperBound = "; at most: its cheapest setting tried";
+
+/// In what a solver computes its links: "float × 8 (avx2)", "double". `vectors`: what simd=auto is,
+/// "avx2"; "": not known.
+std::string arithmetic(const Record&, const std::string& vectors);
+/// "coloured", "mesh order", Bullet's "reordered"; "": its links have no order.
+std::string link_order(const Record&);
+/// "Jakobsen coloured, Bullet reordered": of each solver in any of these scenes.
+std::string link_orders(const std::vector<SceneBench>&);
 
 /// Geometric mean of independent ratios: their errors add as squares of logarithms.
 Interval geometric_mean(const std::vector<Interval>&);
@@ -34,8 +55,10 @@ Interval geometric_mean(const std::vector<Interval>&);
 std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit&, int digits = 2);
 
 enum class Better { less, more, neither };
-/// Marks the best number of the row if the second is worse by more than kTolerance; numbers below
-/// `nothing` count as that.
+/// A number that is compared with others of its row: none that hardly_moves() speaks of.
+bool is_compared(const Cell&);
+/// Marks the best number compared of the row if the second is worse by more than kTolerance;
+/// numbers below `nothing` count as that.
 void mark_best(std::vector<Cell>& row, Better, double nothing);
 
 /// Scenes whose values make up the last row, and who has values at all.
@@ -44,11 +67,11 @@ struct Common {
   /// "mean of 3 scenes", with the others and why in its note.
   Cell label(const Table&, const std::string& what) const;
 };
-/// Rows that have a number in every column that has one somewhere; rows with all numbers below
-/// `nothing` are none.
+/// Rows that have a number that is compared in every column that has one somewhere; rows with all
+/// numbers below `nothing` are none.
 Common common_of(const Table&, double nothing);
 
-/// What a column without a number says: the same in all rows, else "no value".
+/// What a column without a number that is compared says: the same in all rows, else "no value".
 Cell why_empty(const Table&, std::size_t column);
 
 }  // namespace taut::report

@@ -4,7 +4,10 @@
 #include <limits>
 #include <set>
 
+#include "core/model/text.hpp"
 #include "experiments/report/answer/answer.hpp"
+#include "experiments/system/distinct.hpp"
+#include "experiments/timing/hardly_moves.hpp"
 #include "experiments/timing/recommendation.hpp"
 
 namespace taut::report {
@@ -24,8 +27,42 @@ std::string setting_text(const SceneBench& bench, std::size_t at) {
   Records records;
   for (const BenchedCase& c : bench.cases) records.push_back(&c.record);
   const Record& one = bench.cases[at].record;
-  const std::string label = SettingLabels(records).of(one);
-  return label.empty() ? work_of(one).text() : label;
+  std::string label = SettingLabels(records).of(one);
+  if (label.empty()) label = work_of(one).text();
+  const std::string order = link_order(one);
+  return label + (order.empty() || label.find(order) != std::string::npos ? "" : ", " + order);
+}
+
+std::string link_orders(const std::vector<SceneBench>& scenes) {
+  std::vector<std::string> all;
+  for (const SceneBench& scene : scenes)
+    for (const BenchedCase& c : scene.cases)
+      if (const std::string order = link_order(c.record); !order.empty())
+        push_unique(all, solver_title(c.record.solver) + " " + order);
+  return join(all, ", ");
+}
+
+std::string only_still(const std::vector<Candidate>& candidates, const std::string& solver,
+                       double error) {
+  for (const Candidate& one : candidates)
+    if (one.solver == solver && one.error <= error && one.failure.starts_with(kHardlyMoves))
+      return one.failure;
+  return "";
+}
+
+bool is_upper_bound(const SceneBench& bench, const std::vector<Candidate>& candidates,
+                    std::size_t at) {
+  const auto work = [&](std::size_t i) {
+    const Work one = work_of(bench.cases[i].record);
+    return std::max(1, one.substeps) * std::max(1, one.sweeps);
+  };
+  if (work(at) == 1) return false;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].solver != candidates[at].solver) continue;
+    const bool timed = bench.cases[i].stable();  // a cheaper one may have failed
+    if (timed ? candidates[i].cost.mid < candidates[at].cost.mid : work(i) < work(at)) return false;
+  }
+  return true;
 }
 
 namespace {
@@ -41,8 +78,11 @@ struct Timed {
   bool has(const std::string& solver) const {
     return std::ranges::find(candidates, solver, &Candidate::solver) != candidates.end();
   }
+  bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
   /// "at best 0.12 %": why no setting reaches an error.
   std::string nearest(const std::string& solver) const {
+    if (const std::string still = only_still(candidates, solver, kPricedError); !still.empty())
+      return still;
     const auto at = best({.budget = std::numeric_limits<double>::infinity()}, solver);
     if (!at) return "no case completed";
     return std::string("at best ") + quantity(kErrorMetric).text(candidates[*at].error) +
@@ -52,15 +92,17 @@ struct Timed {
 
 using Chosen = std::vector<std::optional<std::size_t>>;  ///< case of each solver
 
-/// Marks the cheapest if it is cheaper than each other by a difference that can be told.
+/// Marks the cheapest if it is cheaper than each other by a difference that can be told. `bounds`:
+/// whose costs are upper bounds; than these nothing is known to be cheaper.
 void mark_cheapest(std::vector<Cell>& row, const std::vector<std::vector<Interval>>& over,
-                   const Interval& control) {
+                   const std::vector<bool>& bounds, const Interval& control) {
   for (std::size_t i = 0; i < over.size(); ++i) {
     bool any = false, cheapest = true;
     for (std::size_t j = 0; j < over.size(); ++j) {
       if (i == j || over[i][j].mid == 0) continue;
       any = true;
-      cheapest = cheapest && over[i][j].mid < 1 && is_difference(judge(over[i][j], control));
+      cheapest =
+          cheapest && !bounds[j] && over[i][j].mid < 1 && is_difference(judge(over[i][j], control));
     }
     row[i + 1].best = any && cheapest;
   }
@@ -108,8 +150,8 @@ class Costs {
                 {},
                 std::string(to_string(q.window)) + "; least of the settings timed within " +
                     significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/60\u00A0s (" +
-                    quantity("cpu.per_second").text(budget / kFrame) +
-                    " per simulated second), with what all solvers of the scene have"};
+                    quantity("cpu.per_second").text(budget / kFrame) + " per simulated second), " +
+                    kWithoutExtras + orders()};
     for (const Timed& scene : shared_) {
       std::vector<Cell> row{scene.bench.scene};
       for (const Column& solver : solvers_) {
@@ -149,32 +191,48 @@ class Costs {
     return over;
   }
 
+  static std::vector<bool> bounds_of(const Timed& scene, const Chosen& chosen) {
+    std::vector<bool> bounds;
+    for (const auto& at : chosen) bounds.push_back(at && scene.bounds(*at));
+    return bounds;
+  }
+
   void add_price(Answer& answer) {
     Table table{"price",
                 "CPU time of " + priced(),
                 columns_of(solvers_, quantity("cpu.per_second").unit),
                 {},
-                "per simulated second, 95\u00A0% interval; each at the cheapest setting timed with "
-                "what all solvers of the scene have"};
-    std::vector<Chosen> chosen;
+                "per simulated second, 95\u00A0% interval; each at its cheapest setting timed, " +
+                    std::string(kWithoutExtras) + orders()};
     std::vector<std::vector<std::vector<Interval>>> ratios;
+    std::vector<std::vector<bool>> bounds;
     for (const Timed& scene : shared_) {
       std::vector<Cell> row{scene.bench.scene};
-      Chosen& own = chosen.emplace_back();
+      Chosen own;
       for (const Column& solver : solvers_) {
         own.push_back(scene.best({.error = kPricedError}, solver.name));
         row.push_back(
             own.back() ? cell_of(scene, *own.back(), Cell(scene.candidates[*own.back()].cost))
             : scene.has(solver.name) ? Cell("not reached").with(scene.nearest(solver.name))
                                      : Cell("not timed"));
+        if (own.back() && scene.bounds(*own.back())) row.back().note += kUpperBound;
       }
-      mark_cheapest(row, ratios.emplace_back(ratios_of(scene, own)), scene.bench.control);
+      mark_cheapest(row, ratios.emplace_back(ratios_of(scene, own)),
+                    bounds.emplace_back(bounds_of(scene, own)), scene.bench.control);
       table.rows.push_back(std::move(row));
     }
-    table.rows.push_back(mean_price(table, ratios));
+    table.rows.push_back(mean_price(table, ratios, bounds));
     table.caption +=
         "; two runs of identical code differed by up to " + shown(kShare, noise(shared_));
     answer.add(std::move(table));
+  }
+
+  /// What is not the same for all.
+  std::string orders() const {
+    std::vector<SceneBench> scenes;
+    for (const Timed& scene : shared_) scenes.push_back(scene.bench);
+    const std::string all = link_orders(scenes);
+    return all.empty() ? "" : "; links in each solver's own order: " + all;
   }
 
   static double noise(const std::vector<Timed>& scenes) {
@@ -185,23 +243,28 @@ class Costs {
   Interval control() const { return {1 / (1 + noise(shared_)), 1, 1 + noise(shared_)}; }
 
   std::vector<Cell> mean_price(const Table& table,
-                               const std::vector<std::vector<std::vector<Interval>>>& ratios) {
+                               const std::vector<std::vector<std::vector<Interval>>>& ratios,
+                               const std::vector<std::vector<bool>>& bounds) {
     const Common common = common_of(table, 0);
     std::vector<Cell> last{common.label(table, "mean of")};
     const std::size_t n = solvers_.size();
     std::vector<std::vector<Interval>> over(n, std::vector<Interval>(n));
+    std::vector<bool> bounded(n, false);
     for (std::size_t i = 0; i < n; ++i) {
       if (std::ranges::find(common.columns, i + 1) == common.columns.end()) {
         last.push_back(why_empty(table, i + 1));
         continue;
       }
       std::vector<Interval> costs;
-      for (const std::size_t r : common.rows)
+      for (const std::size_t r : common.rows) {
         costs.push_back(std::get<Interval>(table.rows[r][i + 1].value));
+        bounded[i] = bounded[i] || bounds[r][i];
+      }
       last.push_back(costs.empty()       ? Cell("no scene that all have")
                      : costs.size() == 1 ? table.rows[common.rows[0]][i + 1]
                                          : Cell(geometric_mean(costs)));
       last.back().best = false;
+      if (bounded[i] && costs.size() > 1) last.back().note = "at most";
       for (std::size_t j = 0; j < n && !common.rows.empty(); ++j) {
         std::vector<Interval> both;
         for (const std::size_t r : common.rows)
@@ -209,7 +272,7 @@ class Costs {
         if (both.size() == common.rows.size()) over[i][j] = geometric_mean(both);
       }
     }
-    mark_cheapest(last, over, control());
+    mark_cheapest(last, over, bounded, control());
     return last;
   }
 
@@ -234,21 +297,23 @@ class Costs {
       for (const Column& solver : solvers_) {
         chosen.push_back(scene.best({.error = kPricedError}, solver.name));
         row.push_back(chosen.back()            ? setting_cell(scene, *chosen.back(),
-                                                              scene.candidates[*chosen.back()].cost.mid, "")
+                                                              scene.candidates[*chosen.back()].cost.mid,
+                                                              scene.bounds(*chosen.back()), "")
                       : scene.has(solver.name) ? Cell("none").with(scene.nearest(solver.name))
                                                : Cell("not timed"));
       }
-      mark_cheapest(row, ratios_of(scene, chosen), scene.bench.control);
+      mark_cheapest(row, ratios_of(scene, chosen), bounds_of(scene, chosen), scene.bench.control);
       table.rows.push_back(std::move(row));
     }
     table.rows.push_back(overall_setting(table));
     answer.add(std::move(table));
   }
 
-  Cell setting_cell(const Timed& scene, std::size_t at, double cost, const std::string& on) {
+  Cell setting_cell(const Timed& scene, std::size_t at, double cost, bool bound,
+                    const std::string& on) {
     Cell cell(setting_text(scene.bench, at));
     cell.key = list_.key(scene.bench.cases[at].record);
-    return cell.with(quantity("cpu.per_second").text(cost) + on);
+    return cell.with((bound ? "at most " : "") + quantity("cpu.per_second").text(cost) + on);
   }
 
   /// A setting of a solver with the cases that reach the error, by scene.
@@ -278,39 +343,43 @@ class Costs {
     const std::string of = " of " + std::to_string(all_.size());
     std::vector<Cell> last{all_.size() == 1 ? table.rows[0][0] : Cell("on most" + of + " scenes")};
     std::vector<Reached> reached;
+    std::vector<bool> bounds;
     for (std::size_t s = 0; s < solvers_.size(); ++s) {
       const Reached& own = reached.emplace_back(most_reaching(solvers_[s].name));
+      bounds.push_back(std::ranges::any_of(
+          own.cases, [&](const auto& one) { return all_[one.first].bounds(one.second); }));
       if (own.cases.empty()) {
         last.push_back(why_empty(table, s + 1));
         continue;
       }
       const auto& [scene, at] = *own.cases.begin();
       last.push_back(
-          setting_cell(all_[scene], at, std::exp(own.mean_log_cost(all_)),
+          setting_cell(all_[scene], at, std::exp(own.mean_log_cost(all_)), bounds.back(),
                        all_.size() == 1 ? "" : ", " + std::to_string(own.cases.size()) + of));
     }
-    mark_cheapest(last, ratios_of(reached), {1 / (1 + noise(all_)), 1, 1 + noise(all_)});
+    if (const auto over = ratios_of(reached))
+      mark_cheapest(last, *over, bounds, {1 / (1 + noise(all_)), 1, 1 + noise(all_)});
     return last;
   }
 
-  /// One that reaches the error on more scenes is the cheaper one.
-  std::vector<std::vector<Interval>> ratios_of(const std::vector<Reached>& reached) const {
+  /// Means over the same scenes; nothing if the solvers reach the error on different ones.
+  std::optional<std::vector<std::vector<Interval>>> ratios_of(
+      const std::vector<Reached>& reached) const {
     const std::size_t n = reached.size();
     std::vector<std::vector<Interval>> over(n, std::vector<Interval>(n));
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) {
         const auto &a = reached[i].cases, &b = reached[j].cases;
         if (i == j || a.empty() || b.empty()) continue;
-        if (a.size() != b.size()) {
-          over[i][j] = a.size() > b.size() ? Interval{1e-9, 1e-9, 1e-9} : Interval{1e9, 1e9, 1e9};
-          continue;
-        }
+        if (!std::ranges::equal(
+                a, b, {}, [](const auto& one) { return one.first; },
+                [](const auto& one) { return one.first; }))
+          return std::nullopt;
         std::vector<Interval> both;
         for (const auto& [scene, at] : a)
-          if (const auto other = b.find(scene); other != b.end())
-            if (const auto ratio = all_[scene].bench.ratio(at, other->second))
-              both.push_back(*ratio);
-        over[i][j] = both.empty() ? Interval{1, 1, 1} : geometric_mean(both);
+          if (const auto ratio = all_[scene].bench.ratio(at, b.at(scene))) both.push_back(*ratio);
+        if (both.size() != a.size()) return std::nullopt;
+        over[i][j] = geometric_mean(both);
       }
     return over;
   }

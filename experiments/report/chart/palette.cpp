@@ -38,7 +38,10 @@ constexpr Colour kWhite{"#FFFFFE", "#FFFFFE"}, kBlack{"#1A1A19", "#1A1A19"};
 /// In the order of the enumeration, up to the last that is stored.
 constexpr StatusStyle kStatuses[] = {
     {{"#2F9E77", "#2C8F6C"}, "✓", "settled or ran to the end", kWhite},
-    {{"#C9423B", "#C9473F"}, "×", "non-finite or gained energy", kWhite},
+    {{"#C9423B", "#C9473F"},
+     "×",
+     "not finite, far outside the scene, or moving with 10 × the energy that the scene supplies",
+     kWhite},
     {{"#F2BF4B", "#DDA83A"}, "~", "still moving at the end", kBlack},
     {{"#E8894A", "#D97B3C"},
      "^",

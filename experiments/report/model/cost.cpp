@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
@@ -19,10 +20,12 @@ struct CostScene {
   CaseList& refs;
   std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
 
+  bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
   /// The cell of a case: its note is the setting, and what a small strain may have cost.
   Cell of(std::size_t at, Cell cell) const {
     const Record& r = bench.cases[at].record;
     cell.note = setting_text(bench, at), cell.key = refs.key(r);
+    if (bounds(at)) cell.note += kUpperBound;
     for (const ValueSpec* value : values_with_role()) {
       const Quantity q = quantity(value->name);
       if (const double v = value_of(r, value->name);
@@ -45,14 +48,12 @@ Table levels_table(const CostScene& scene) {
                                                   : scene.bench.cases.front().record.spec;
   std::string again = "taut advise " + spec.scene + " --error 1%";
   for (const std::string& value : spec.overrides) again += " --set '" + value + "'";
-  Table table{
-      "cost-levels-" + slug(scene.bench.scene),
-      "CPU time of an error, per simulated second",
-      scene.columns(Column("level", q.title, q.unit, 1), quantity("cpu.per_second").unit),
-      {},
-      "95\u00A0% interval and setting of the cheapest that was timed, with what all solvers "
-      "of the scene have. More accurate ones are searched by: " +
-          again};
+  Table table{"cost-levels-" + slug(scene.bench.scene),
+              "CPU time of an error, per simulated second",
+              scene.columns(Column("level", q.title, q.unit, 1), quantity("cpu.per_second").unit),
+              {},
+              "95\u00A0% interval and setting of the cheapest that was timed, " +
+                  std::string(kWithoutExtras) + ". More accurate ones are searched by: " + again};
   for (const double level : kErrorLevels) {
     std::vector<Cell> row{level};
     bool cheaper = true;
@@ -62,10 +63,12 @@ Table levels_table(const CostScene& scene) {
       if (!r.at) {
         row.emplace_back(scene.bench.searched_to_the_end(r.solver) ? "never reached"
                                                                    : "not reached");
+        row.back().note = only_still(scene.candidates, r.solver, level);
         continue;
       }
       if (r.times && r.times->mid > 1)
-        cheaper = cheaper && is_difference(judge(*r.times, scene.bench.control));
+        cheaper =
+            cheaper && !scene.bounds(*r.at) && is_difference(judge(*r.times, scene.bench.control));
       else
         least = row.size();
       row.push_back(scene.of(*r.at, Cell(scene.candidates[*r.at].cost)));
@@ -74,6 +77,21 @@ Table levels_table(const CostScene& scene) {
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+/// "1 of XPBD, 3 of PD": problems that the cheapest setting tried of a solver reaches already.
+std::string upper_bounds(const std::vector<SceneBench>& scenes) {
+  std::map<std::string, int> bounds;
+  for (const SceneBench& scene : scenes) {
+    const std::vector<Candidate> candidates = scene.candidates(kErrorMetric);
+    for (const std::string& solver : solvers_of(scene))
+      for (const double level : kErrorLevels)
+        if (const auto at = best_for({.error = level}, candidates, solver))
+          bounds[solver_title(solver)] += is_upper_bound(scene, candidates, *at);
+  }
+  std::erase_if(bounds, [](const auto& one) { return one.second == 0; });
+  return join(bounds, ", ",
+              [](const auto& one) { return std::to_string(one.second) + " of " + one.first; });
 }
 
 /// Dolan and More's performance profiles at a few factors.
@@ -86,8 +104,13 @@ Table profile_table(const std::vector<SceneBench>& scenes) {
               {},
               "Share of " + std::to_string(problems) + " problems: an error of " +
                   quantity(kErrorMetric).title +
-                  " to be reached on a scene. Every solver has equally many settings of a scene, "
-                  "with what all of its solvers have."};
+                  " to be reached on a scene. Every solver has equally many settings of a scene, " +
+                  kWithoutExtras + "."};
+  if (const std::string bounds = upper_bounds(scenes); !bounds.empty())
+    table.caption +=
+        " Problems that the cheapest setting tried reaches already, whose solver may "
+        "stand higher: " +
+        bounds + ".";
   constexpr std::pair<double, const char*> kFactors[] = {
       {1, "the cheapest"}, {1.5, "within 1.5 ×"},
       {2, "within 2 ×"},   {4, "within 4 ×"},
@@ -114,9 +137,9 @@ Json json_of_cost(const StudyBench& study, CaseList& refs, Json& charts, Answer&
     shared.push_back(with_shared_parameters(bench));
     const CostScene scene{shared.back(), refs};
     Json one{{"scene", bench.scene},
-             {"noisy", spread(bench.control) > kTolerance},
              {"noise", "Timing noise: two runs of identical code differed by up to " +
-                           shown(kShare, spread(bench.control)) + "."}};
+                           shown(kShare, spread(bench.control)) +
+                           "; the best is marked only where it is cheaper by more."}};
     try {
       add_by_id(one, "charts", json_of(cost_chart(bench, records), refs), charts);
     } catch (const InputError&) {

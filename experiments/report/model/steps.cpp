@@ -6,6 +6,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/report/chart/one_step.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/system/distinct.hpp"
 
 namespace taut::report {
 
@@ -52,6 +53,13 @@ std::vector<Cell> row_of(const OneStep& step, const std::vector<Cell>& own) {
           below(1e-4)};
 }
 
+/// The solver, if kLooked iterations leave it farther from the exact step than one, by more than
+/// the tolerance; else "".
+std::string leaving(const OneStep& step, const std::vector<Cell>& own) {
+  const std::vector<Cell> row = row_of(step, own);
+  return row[4].number() > (1 + kTolerance) * row[3].number() ? row[1].text() : "";
+}
+
 }  // namespace
 
 Json json_of_steps(const ReportInput& input, CaseList& refs, Json& charts, Answer& tables) {
@@ -71,14 +79,23 @@ Json json_of_steps(const ReportInput& input, CaseList& refs, Json& charts, Answe
       "- G*)/(G0 - G*), of rigid links the squared distance over that of the prediction. "
       "Links of a solver are its own: the exact step of springs is implicit Euler's, that "
       "of rigid links the nearest placement that keeps all lengths."};
+  std::vector<std::string> away;
   for (const Answer& found : input.steps) {
     const OneStep step(found);
     try {
       add_by_id(steps, "charts", json_of(step_chart(step, "distance"), refs), charts);
     } catch (const InputError&) {  // no exact step
     }
+    for (const auto& own : found.table("solvers").rows)
+      if (const std::string solver = leaving(step, own); !solver.empty())
+        push_unique(away, solver + " on " + step.scene());
     for (const auto& own : found.table("solvers").rows) table.rows.push_back(row_of(step, own));
   }
+  if (!away.empty())
+    table.caption +=
+        " Farther from the exact step after more iterations: " + joined(away) +
+        ". An iteration there lowers the step's objective, whose gap the table has, not "
+        "the distance.";
   add_table(steps, std::move(table), tables);
   return steps;
 }

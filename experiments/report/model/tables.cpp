@@ -209,7 +209,12 @@ Json json_of_limits(const ReportInput& input, Answer& tables) {
 }
 
 Json json_of(const Differences& differences, CaseList& refs, Answer& tables) {
-  Json one{{"a", differences.a}, {"b", differences.b}};
+  Json one{
+      {"a", differences.a},
+      {"b", differences.b},
+      {"matched",
+       "Cases are matched by the names of scene and solver and by their settings, not by what is "
+       "in a scene's file: one that was changed between A and B differs here as a solver does."}};
   add_table(one, ends_table(differences), tables);
   add_table(one, compared_table(differences, refs), tables);
   add_table(one, costs_table(differences), tables);
@@ -270,6 +275,33 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
                              ", or at settings between those timed (taut advise searches them)."
                        : "Cost: no CPU time was measured; equal sweeps are equal work, not equal "
                          "time.");
+  std::map<std::string, std::vector<std::string>> computing;  // by arithmetic
+  std::set<std::string> shown;
+  for (const Record* r : refs.cases()) {
+    shown.insert(r->solver);
+    push_unique(computing[arithmetic(*r, input.vectors)], solver_title(r->solver));
+  }
+  if (computing.size() > 1)
+    points.push_back(
+        "Equal arithmetic: links are computed in " +
+        join(computing, "; in ",
+             [](const auto& one) { return one.first + " by " + joined(one.second); }) +
+        ". CPU times compare programs, not algorithms (simd=scalar and precision=double "
+        "make Jakobsen and XPBD alike).");
+  std::vector<std::string> absent;
+  for (const SolverEntry* entry : solvers())
+    if (!shown.contains(std::string(entry->name))) absent.push_back(solver_title(entry->name));
+  if (!absent.empty())
+    points.push_back(
+        "Solvers that were not run here: " + joined(absent) + "." +
+        (shown.contains("implicit")
+             ? ""
+             : " Implicit Euler is not among the main job's solvers: each of its iterations "
+               "factors the "
+               "whole system anew, so that 16 of them are equal work to nothing here; its "
+               "converged "
+               "step is what Projective Dynamics and VBD approach (Inside one step), and taut run "
+               "elastic compares it where links are elastic."));
   points.emplace_back(
       "Real cloth: errors are distances from constraints, a reference or a closed form, not from a "
       "measured fabric.");

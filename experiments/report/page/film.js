@@ -8,6 +8,9 @@ function blobUrl(uri) {
   return URL.createObjectURL(new Blob([bytes], {type: head.slice(5).split(';')[0]}));
 }
 
+/** Solvers that the answer has a column of. */
+const compared = Object.values(model.answer?.tables ?? {})[0]?.columns.slice(1).map(({name}) => name) ?? [];
+
 const seconds = (t) => t.toFixed(2) + '\u00A0s';
 
 /** Lines over time with a cursor and the values at it; `seek` is told where the reader points. */
@@ -95,6 +98,13 @@ function panels(film) {
         statusOf(cases.get(key).status).title]))));
 }
 
+/** Who of the solvers compared is not in a film. */
+function filmed(film) {
+  const seen = film.panels.map(({solver}) => solver), others = compared.filter((id) => !seen.includes(id));
+  return others.length ? note(`${film.panels.length} of ${compared.length} solvers compared, the first that run the scene; `,
+    `not filmed: ${others.map((id) => solverOf(id).title).join(', ')}.`) : null;
+}
+
 /** The film of a scene with its controls, and its tracks beside it. */
 function player(scene, film) {
   const moves = film.src && film.type.startsWith('video/');
@@ -160,7 +170,7 @@ function player(scene, film) {
         el('button', {type: 'button', className: 'play', onclick: toggle}, label),
         button('◂', 'One frame back', () => step(-1)), button('▸', 'One frame forward', () => step(1)), slider, clock,
         el('span', {className: 'hint'}, film.speed < 1 && `${number(film.speed, 2)} of real time · `, 'space, ← →'))),
-    el('div', {className: 'beside'}, tracks.map((track) => track.node)));
+    el('div', {className: 'beside'}, filmed(film), tracks.map((track) => track.node)));
   if (video) {
     slider.max = film.duration;
     slider.step = film.frame;

@@ -3,7 +3,7 @@
 
 /** The contents, which stay in sight, and the solvers' switches. */
 function contents(sections) {
-  const name = (part) => part.id === 'answer' ? 'Answer' : part.querySelector('h2').textContent;
+  const name = (part) => part.id === 'answer' && !model.differences ? 'Answer' : part.querySelector('h2').textContent;
   const links = sections.map((part) => choice({at: part.id}, {}, name(part)));
   const seen = new IntersectionObserver(() => {
     const now = sections.findLastIndex((part) => part.getBoundingClientRect().top < 140);
@@ -50,7 +50,7 @@ const placeOf = (id) => document.getElementById(id) ??
 
 function start() {
   paint();
-  const sections = [answerSection(), differencesSection(), chartsSection(), sceneSection(), costSection(), stepsSection(), limitsSection(),
+  const sections = [differencesSection(), answerSection(), chartsSection(), sceneSection(), costSection(), stepsSection(), limitsSection(),
                     truthsSection(),
                     regressionSection(), casesSection(), methodSection()].filter(Boolean);
   document.getElementById('main').append(...sections);

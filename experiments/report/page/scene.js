@@ -27,7 +27,7 @@ function scenePart(scene) {
     series.length ? el('div', {className: 'grid'}, series.map(seriesFigure)) : null,
     mapsOf(scene),
     priced && el('section', {className: 'part'}, el('h3', {}, `What accuracy costs on ${short(scene.title)}`),
-      note(priced.noise, priced.noisy && el('b', {}, ' No difference here is called clear.')),
+      note(priced.noise),
       all(priced.tables, tables).map((table) => tableNode(table))),
     all(scene.tables, tables).map(foldedTable),
     scene.facts?.length ? folded('The scene in numbers', factList(scene.facts)) : null);

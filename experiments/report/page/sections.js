@@ -4,10 +4,11 @@
 const section = (id, title, ...content) => el('section', {id}, el('h2', {}, title), content);
 const list = (title, items) => items?.length ? [el('h3', {}, title), el('ul', {}, items)] : null;
 
+/** Of two folders: it heads the page, above what the second one has. */
 function differencesSection() {
   const both = model.differences;
-  return both?.tables ? section('differences', 'What differs', note(`A: ${both.a}; B: ${both.b}`),
-    all(both.tables, tables).map((table) => tableNode(table, 'h3'))) : null;
+  return both ? el('section', {id: 'differences'}, pageHead(), el('h2', {}, 'What differs'), note(`A: ${both.a}; B: ${both.b}`),
+    note(both.matched), all(both.tables, tables).map((table) => tableNode(table, 'h3'))) : null;
 }
 
 function costSection() {

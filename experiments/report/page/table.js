@@ -53,7 +53,7 @@ function cellContent(cell, column, most, brief) {
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
   const failed = entry && entry.status !== 'ok' && !/^\d/.test(text) && glyphBox(entry.status);
   return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
-    spread, note && el('small', {title: note}, ' ', short(brief ? note.split(':')[0] : note, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
+    spread, note && el('small', {title: note}, ' ', short(brief || note.startsWith('hardly moves') ? note.split(':')[0] : note, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
     most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
       el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
 }
@@ -70,7 +70,7 @@ function tableRow(table, cells, props, head, bars, brief) {
 }
 const tableHeads = (table, first) => el('tr', {}, table.columns.map((column, i) => el('th', {scope: 'col',
   'data-s': solvers.get(column.name)?.order}, i === 0 && first !== undefined ? first :
-  [solvers.has(column.name) && i > 0 ? named(column.name, column.heading) : column.heading,
+  [solvers.has(column.name) && i > 0 ? [named(column.name, column.heading), solverOf(column.name).arithmetic && el('small', {className: 'arithmetic', title: solverOf(column.name).arithmetic}, solverOf(column.name).arithmetic.replace(/ \(\w+\)/g, ''))] : column.heading,
    column.shown && first === undefined && ` [${column.shown}]`])));
 
 /** What is copied: the table for a spreadsheet, numbers in SI. */
@@ -119,7 +119,7 @@ function questionRows(table) {
     if (cells === shown) return;
     head?.remove();
     head = tableRow(table, shown = cells, {className: 'question'},
-                    [button, el('small', {title: cells[0].note ?? ''}, cells[0].value)], true, true);
+                    [button, el('small', {title: cells[0].note ?? ''}, cells[0].value, cells[0].note?.startsWith('at ') && ` ${cells[0].note}`)], true, true);
     body.prepend(head);
   });
   return body;
@@ -135,13 +135,18 @@ function sceneChooser() {
   return box;
 }
 
+/** What the page is and what it asks. */
+function pageHead() {
+  const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '';
+  return [note(el('b', {}, 'taut'), ' report · ',
+       [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean).join(' · ')),
+    el('h1', {}, meta.question || meta.title)];
+}
+
 /** The first screen: a row for each question. */
 function answerSection() {
-  const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '', asked = [...questions.values()];
-  return el('section', {id: 'answer'},
-    note(el('b', {}, 'taut'), ' report · ',
-         [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean).join(' · ')),
-    el('h1', {}, meta.question || meta.title),
+  const asked = [...questions.values()];
+  return el('section', {id: 'answer'}, model.differences ? el('h2', {}, `B alone: ${model.differences.b}`) : pageHead(),
     asked.length ? el('div', {className: `card scroll answer ${asked[0].columns.length < 5 ? 'few' : ''}`, tabIndex: 0, role: 'region', 'aria-label': 'The answer'},
       el('table', {}, el('caption', {}, model.answer.subject),
          el('thead', {}, tableHeads(asked[0], answered.length > 1 ? sceneChooser() : 'question')), asked.map(questionRows))) : null);

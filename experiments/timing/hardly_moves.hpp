@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/case/record.hpp"
+
+namespace taut {
+
+/// Cloth that goes less than this share of the dynamic reference's way is not compared by strain:
+/// links keep their lengths where nothing moves.
+inline constexpr double kLeastMotion = 0.5;
+
+/// How what hardly_moves() says begins.
+inline constexpr const char* kHardlyMoves = "hardly moves: ";
+
+/// "hardly moves: 5 % of the way"; "": it moves, or the scene has no reference in motion.
+std::string hardly_moves(const Record&);
+
+}  // namespace taut
