@@ -211,6 +211,12 @@ const Value* Value::find(const std::string& key) const {
   return nullptr;
 }
 
+int Value::latest_override() const {
+  int latest = place.override;
+  for (const Value& item : items) latest = std::max(latest, item.latest_override());
+  return latest;
+}
+
 std::string describe(const Value& value) {
   using enum Value::Kind;
   if (value.kind == boolean) return value.boolean ? "true" : "false";

@@ -42,6 +42,8 @@ struct Value {
   bool is_string() const { return kind == Kind::string; }
   bool is_number() const { return kind == Kind::integer || kind == Kind::real; }
   const Value* find(const std::string& key) const;  ///< nullptr: a table without it, or no table
+  /// The last override that a part of it comes from; -1: all is from the file.
+  int latest_override() const;
 };
 
 /// "a table", "a whole number", ...

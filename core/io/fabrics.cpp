@@ -32,8 +32,8 @@ const Fabric* find_fabric(const std::string& name, std::string& problem) {
   if (found != std::end(kFabrics)) return found;
   std::vector<std::string> names;
   for (const Fabric& fabric : kFabrics) names.emplace_back(fabric.name);
-  problem =
-      "must be one of " + join(names, ", ") + ", not '" + name + "'" + suggestion(name, names);
+  problem = "must be one of " + join(names, ", ") + ", not '" + name + "'" +
+            suggestion(name, names) + " (to add one: experiments/scenes/README.md)";
   return nullptr;
 }
 

@@ -189,6 +189,23 @@ const Fabric* read_fabric(Section& root) {
   return fabric;
 }
 
+/// A fabric that a study or the command line names stands in the place of what the scene's file
+/// says. What is set beside the fabric, in the same place or after it, contradicts it.
+void judge_fabric(Section& root) {
+  const Value* fabric = root.find("fabric");
+  if (!fabric) return;
+  for (const auto& [name, keys] : {std::pair("cloth", std::vector{"mass", "area_density"}),
+                                   std::pair("bending", std::vector{"stiffness"})})
+    for (const char* key : keys) {
+      const Value* table = root.table(name);
+      const Value* value = table ? table->find(key) : nullptr;
+      if (!value || (fabric->place.override >= 0 && value->latest_override() < 0)) continue;
+      root.diagnostics().report(value->place, std::string("'") + key + "' in [" + name +
+                                                  "] is what fabric = \"" + fabric->string +
+                                                  "\" sets: leave out one of them");
+    }
+}
+
 /// One stiffness [N m], or those of warp and weft, unless the fabric's; the warp's direction is a
 /// grid's v unless given.
 Bending read_bending(Section& section, const Fabric* fabric) {
@@ -357,6 +374,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
 
   root.need({"cloth"});
   const Fabric* fabric = read_fabric(root);
+  if (fabric) judge_fabric(root);
   FileKeys said;
   const auto read = [&](const char* name, auto&... parts) {
     Section section(diagnostics, part(root, name), "[" + std::string(name) + "]");

@@ -101,7 +101,10 @@ std::vector<ParamItem> param_items(std::string_view text) {
     }
     const auto end = std::min(text.find(',', at), text.size());
     if (item.key.empty())
-      item.problem = "expected key=value, got " + in_quotes(text.substr(start, end - start));
+      item.problem = "expected key=value, got " + in_quotes(text.substr(start, end - start)) +
+                     (text.substr(start, end - start).find(']') == text.npos
+                          ? ""
+                          : "; a value with a comma stands in quotes: key='[12, 12]'");
     else if (at > item.at + item.key.size() + 1 && at != end && item.problem.empty())
       item.problem = item.key + ": a comma has to follow the quote";
     else

@@ -188,9 +188,9 @@ const SceneKey kKeys[] = {
         .limited("1e9 steps at most"),
 
     other("fabric", "string", "", "`taut list fabrics`", "none", "\"petrak-m3\"",
-          "mass by area and bending stiffness of a fabric as it was measured, in place of "
-          "`cloth.mass`, `cloth.area_density` and `bending.stiffness`; on the command line "
-          "`--fabric`"),
+          "mass by area and bending stiffness of a fabric as it was measured; `--fabric` and a "
+          "study's put them in place of the `cloth.mass`, `cloth.area_density` and "
+          "`bending.stiffness` of the scene's file; set beside a fabric these are an error"),
     other("summary", "string", "", "", "\"\"", "\"A flag\"",
           "one sentence; a label, not part of what is simulated"),
 };

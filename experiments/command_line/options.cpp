@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
+#include <set>
 #include <thread>
 
 #include "core/model/solver.hpp"
@@ -67,6 +69,18 @@ CLI::Option* add_preset(CLI::App& app, std::string& preset) {
   return app.add_option("--preset", preset, "A smaller or larger version that the study defines");
 }
 
+/// Throws InputError that names both, if two settings of a scene are of the same key.
+static void refuse_same_key(const std::vector<std::string>& settings) {
+  std::map<std::string, std::string> by_key;
+  for (const std::string& setting : settings) {
+    std::string key = setting.substr(0, setting.find('='));
+    std::erase(key, ' ');
+    if (const auto [at, is_new] = by_key.emplace(key, setting); !is_new)
+      throw InputError("'" + at->second + "' and '" + setting + "' both set " + key +
+                       ": leave out one of them");
+  }
+}
+
 CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
   app.add_option_function<std::string>(
       "--fabric",
@@ -78,6 +92,7 @@ CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
           "--set",
           [&settings](const std::vector<std::string>& all) {  // beside what --fabric has set
             settings.insert(settings.end(), all.begin(), all.end());
+            refuse_same_key(settings);
           },
           "Replace a key of the scene, e.g. 'cloth.grid=[16, 16]'; repeat it for each")
       ->expected(1)
@@ -167,6 +182,24 @@ Study load_study_to_plot(const std::string& name, const std::string& preset) {
   return study;
 }
 
+std::string where_else(const Study& study, const Store& store) {
+  const std::vector<std::string> stored = store.keys();
+  const std::set<std::string> keys(stored.begin(), stored.end());
+  std::vector<std::string> presets = study.presets;
+  presets.insert(presets.begin(), "");
+  std::vector<std::string> whole;
+  for (const std::string& preset : presets) {
+    if (preset == study.preset) continue;
+    bool all = true;
+    each_case(load_study(study.file.string(), preset),
+              [&](Case&& one) { all = all && keys.contains(one.key); });
+    if (all) whole.push_back(preset);
+  }
+  if (whole.empty()) return "";
+  if (whole.front().empty()) return "; without --preset all results are there";
+  return "; preset " + whole.front() + " has all of its results: --preset " + whole.front();
+}
+
 void check_solvers(const std::vector<std::string>& texts) {
   read_all(texts, [](const std::string& text) { parse_solver(text); });
 }
@@ -183,6 +216,7 @@ CaseSpec CaseOptions::spec() const {
   CaseSpec spec{scene_, settings_, solver_};
   if (!dt_.empty()) spec.overrides.push_back("time.dt=\"" + dt_ + "\"");
   if (!duration_.empty()) spec.overrides.push_back("time.duration=\"" + duration_ + "\"");
+  refuse_same_key(spec.overrides);
   return spec;
 }
 

@@ -75,6 +75,10 @@ void read_all(const All& all, const Read& read) {
 Study load_study_to_plot(const std::string& name_or_path, const std::string& preset);
 
 /// Throws InputError with everything that is wrong with any of these solvers' texts.
+/// "; preset quick has all of its results: --preset quick", of the presets of a study of which
+/// every case is stored; "" if there is none.
+std::string where_else(const Study&, const Store&);
+
 void check_solvers(const std::vector<std::string>& texts);
 
 /// How verbs name one case: SCENE SOLVER [--dt] [--duration] [--set key=value ...].

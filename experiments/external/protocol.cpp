@@ -223,7 +223,9 @@ std::unique_ptr<const Hello> read_hello(const Json& answer) {
   const JsonReader j = reader(answer, "hello");
   const std::string protocol = j.at("protocol").text();
   if (protocol != kProtocol && protocol != kSecond)
-    j.at("protocol").fail("'" + protocol + "' is not '" + std::string(kProtocol) + "'");
+    j.at("protocol")
+        .fail("'" + protocol + "' is neither '" + std::string(kProtocol) + "' nor '" +
+              std::string(kSecond) + "'");
   auto hello = std::make_unique<Hello>();
   hello->second = protocol == kSecond;
   hello->name = j.at("name").text();

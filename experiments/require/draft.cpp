@@ -1,6 +1,8 @@
 #include <algorithm>
 
+#include "core/io/fabrics.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/require/require.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -44,7 +46,22 @@ Draft::Draft(const CaseSpec& spec)
     : spec_(spec),
       file_(find_scene(spec.scene)),
       scene_(read_document(file_, spec.overrides)),
-      solver_(parse_solver(spec.solver).entry->name) {}
+      solver_(parse_solver(spec.solver).entry->name) {
+  unfold_fabric();
+  scene_changed_ = false;
+}
+
+void Draft::unfold_fabric() {
+  const Value* name = scene_.root.find("fabric");
+  std::string problem;
+  const Fabric* fabric = name ? find_fabric(name->string, problem) : nullptr;
+  if (!fabric) return;
+  remove("cloth", "mass");
+  set("cloth", "area_density", shortest(fabric->mass));
+  set("bending", "stiffness",
+      "{ warp = " + shortest(fabric->warp) + ", weft = " + shortest(fabric->weft) + " }");
+  remove("fabric");
+}
 
 Value& Draft::section(const std::string& name) {
   scene_changed_ = true;

@@ -47,6 +47,8 @@ class Draft {
 
  private:
   Value& section(const std::string& name);
+  /// What a fabric sets, key by key, so that each may go.
+  void unfold_fabric();
   CaseSpec spec_;
   std::filesystem::path file_;  ///< of the scene
   Document scene_;

@@ -53,7 +53,11 @@ fs::path find_file(const std::string& kind, const std::string& one, const std::s
     return data_folder() / kind / (text + ".toml");  // "torture/wind": a folder of shipped files
   if (text.find('/') != std::string::npos || text.ends_with(".toml")) {
     if (fs::is_directory(text)) throw InputError(text + " is a folder, not a " + one + " file");
-    if (!fs::is_regular_file(text)) throw InputError(text + ": no such " + one + " file");
+    if (!fs::is_regular_file(text)) {
+      const bool from_here = fs::path(text).is_relative();
+      throw InputError(text + ": no such " + one + " file" +
+                       (from_here ? ", seen from " + fs::current_path().string() : ""));
+    }
     return text;
   }
   if (const std::size_t colon = text.find(':'); kind == "scenes" && colon != text.npos)

@@ -65,8 +65,8 @@ std::string random_digits() {
 void replace_file(const fs::path& path, std::string_view bytes, bool durable) {
   std::error_code error;
   const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
-  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
-    File(target, O_WRONLY | O_CLOEXEC).write_all(bytes);
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {  // by its name: of a pipe
+    File(path, O_WRONLY | O_CLOEXEC).write_all(bytes);                 // the target has no path
     return;
   }
   const fs::path beside =
@@ -139,6 +139,11 @@ void write_durably(const fs::path& path, std::string_view bytes) {
 
 void test_writable(const fs::path& path) {
   if (fs::is_directory(path)) throw InputError(path.string() + " is a folder; name a file in it");
+  std::error_code none;
+  if (fs::exists(path, none) && !fs::is_regular_file(path, none)) {  // a device, a pipe
+    if (access(path.c_str(), W_OK) != 0) fail(path, "write");
+    return;
+  }
   if (path.has_parent_path()) make_folder(path.parent_path());
   const fs::path probe = path.string() + "." + unique_suffix();
   write_durably(probe, "");

@@ -76,7 +76,7 @@ class SettingSearch {
                 std::vector<Candidate> known)
       : solver_(solver), target_(target), run_(run), open_(solver), known_(std::move(known)) {}
 
-  std::vector<Candidate> run() {
+  std::vector<Candidate> run(SearchDepth depth) {
     const Columns columns = open_.columns();
     int start = 1, idle = 0;
     for (const std::string& value : columns.values) {
@@ -91,6 +91,7 @@ class SettingSearch {
       if (over_ || (idle >= 2 && (best_ || columns.sweeps == false))) break;
       if (columns.sweeps && hopeless_) break;
     }
+    if (depth == SearchDepth::columns) return tried_;
     if (target_.error) bisect();
     if (target_.error && columns.sweeps) bisect_sweeps();
     if (worth_more()) alternatives();
@@ -282,8 +283,9 @@ class SettingSearch {
 }  // namespace
 
 std::vector<Candidate> search_settings(const std::string& solver, const Target& target,
-                                       const Evaluation& run, std::vector<Candidate> known) {
-  return SettingSearch(solver, target, run, std::move(known)).run();
+                                       const Evaluation& run, std::vector<Candidate> known,
+                                       SearchDepth depth) {
+  return SettingSearch(solver, target, run, std::move(known)).run(depth);
 }
 
 std::string cheapest_setting(const std::string& solver) {

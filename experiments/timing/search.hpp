@@ -12,6 +12,9 @@ namespace taut {
 /// Runs a setting ("jakobsen:iterations=1,substeps=16"); nothing: time is up, search no further.
 using Evaluation = std::function<std::optional<Candidate>(const std::string& setting)>;
 
+/// How far a search goes: its columns alone, or all of it.
+enum class SearchDepth { columns, refined };
+
 /// Looks for the setting of `solver` (its text fixes what it names) that serves the target best,
 /// and returns all that it tried. It walks the accuracy parameters of the
 /// solver's entry, not their grid:
@@ -22,7 +25,8 @@ using Evaluation = std::function<std::optional<Candidate>(const std::string& set
 ///   2. error: bisection of the substeps, then of the sweeps, between the last doubling.
 ///   3. the entry's alternatives, one at a time; each with as few substeps as it then needs.
 std::vector<Candidate> search_settings(const std::string& solver, const Target&, const Evaluation&,
-                                       std::vector<Candidate> known = {});
+                                       std::vector<Candidate> known = {},
+                                       SearchDepth depth = SearchDepth::refined);
 
 /// The setting of `solver` that costs least: one substep, and the first of the second parameter's
 /// values, as far as the text leaves them open.

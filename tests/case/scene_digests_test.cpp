@@ -29,11 +29,11 @@ class MadeUp {
 
   std::string scene() {
     text_ = "summary = \"made up\"\n";
-    const bool fabric = coin();
-    if (fabric) line("fabric", "\"petrak-m3\"");
+    fabric_ = coin();
+    if (fabric_) line("fabric", "\"petrak-m3\"");
     cloth();
     links();
-    if (fabric || coin()) bending();
+    if (fabric_ || coin()) bending();
     if (coin()) section("forces"), maybe("gravity", vec(10)), maybe("damping", number(0, 2));
     if (coin()) wind();
     for (const char* type : {"plane", "ball", "box", "capsule"})
@@ -85,7 +85,8 @@ class MadeUp {
     maybe("origin", vec(2));
     if (coin()) {  // one after the other, whatever the compiler: so everywhere below
       const std::string mass = number(0.1, 2);
-      line(coin() ? "mass" : "area_density", mass);
+      const bool whole = coin();
+      if (!fabric_) line(whole ? "mass" : "area_density", mass);
     }
     maybe("lumping", coin() ? "\"equal\"" : "\"area\"");
     maybe("stretch", number(0.5, 2));
@@ -108,8 +109,9 @@ class MadeUp {
 
   void bending() {
     section("bending");
-    line("stiffness",
-         coin() ? number(1e-6, 1e-3) : "{ warp = " + number(1e-6, 1e-3) + ", weft = 2e-5 }");
+    const std::string stiffness =
+        coin() ? number(1e-6, 1e-3) : "{ warp = " + number(1e-6, 1e-3) + ", weft = 2e-5 }";
+    if (!fabric_) line("stiffness", stiffness);
     line("warp", "[0, 1, " + number(-1, 1) + "]");
   }
 
@@ -158,6 +160,7 @@ class MadeUp {
 
   std::mt19937 random_;
   std::string text_;
+  bool fabric_ = false;  ///< which leaves no mass and no stiffness to the scene
 };
 
 std::map<std::string, std::string> digests() {

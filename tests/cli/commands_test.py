@@ -54,6 +54,23 @@ class BadInput(CommandLine):
         self.refuse("advise", "hang", "--error", "1%", "--patience", -3, says="'-3' is not a number above 0")
         self.refuse("run", "iterations", "--timeout", "-3", says="--timeout: '-3' is not a number above 0")
 
+    def test_what_contradicts_itself(self):
+        for words, both in ((["--dt", "1/60", "--set", "time.dt=0.1"], ["'time.dt=0.1'", "time.dt=\"1/60\""]),
+                            (["--set", "cloth.mass=0.1", "--set", "cloth.mass = 0.2"], ["'cloth.mass=0.1'", "'cloth.mass = 0.2'"]),
+                            (["--fabric", "petrak-m1", "--set", "bending.stiffness=1e-5"], ["'stiffness' in [bending]", 'fabric = "petrak-m1"']),
+                            (["--fabric", "petrak-m1", "--set", "cloth.mass=3"], ["'mass' in [cloth]", 'fabric = "petrak-m1"'])):
+            self.refuse("case", "./small.toml", "jakobsen", *words, says=both)
+        for option in ("--from", "--to", "--of", "--dt", "--set"):
+            self.refuse("frontier", "--all", "jakobsen", option, "1", says=[option, "--all"])
+
+    def test_a_message_says_what_would_be_right(self):
+        self.refuse("run", self.study(scenes=["hang:cloth.grid=[12,12]"]), says="a value with a comma stands in quotes: key='[12, 12]'")
+        self.refuse("run", self.study(scenes=["./none.toml"]), says=f"none.toml: no such scene file, seen from {self.folder}")
+        self.taut("run", self.study())
+        self.assertIn("before: no results folder to compare with results/runs", self.taut("report", "before", "results/runs", expect=2).err)
+        self.assertIn("results/runs: 1 cases are there, but none", self.taut("report", "--json", "--out", "results/runs", expect=2).err)
+        self.assertNotIn("store", json.loads(self.taut("cluster", "merge", "nothing", "--out", "new", "--json", expect=None).out or "{}").get("facts", {}))
+
     def test_numbers(self):
         for value in ["0", "-3", "many", "nan", "1e9", "1.5"]:
             if value != "0":
@@ -202,6 +219,40 @@ class Verbs(CommandLine):
             self.taut(*words[1:])
         self.assertEqual(len((self.folder / "table.csv").read_text().splitlines()), 3)
 
+    def test_a_run_without_figures_ends_with_commands_that_work_too(self):
+        said = self.taut("run", self.study(rest="axes.iterations = [1, 2]\n")).err
+        for line in said.partition("next: ")[2].splitlines():
+            self.taut(*shlex.split(line)[1:])
+
+    def test_what_only_a_preset_has_is_said(self):
+        rest = 'axes.iterations = [1, 2]\n[preset.quick]\nset = ["time.duration=0.25"]\n[preset.half]\naxes.iterations = [1]\n'
+        study = self.study(rest=rest + '[[plot]]\nkind = "convergence"\n')
+        self.taut("run", study, "--preset", "quick")
+        for verb in ("plot", "export", "report"):
+            self.assertIn("preset quick has all of its results: --preset quick", self.taut(verb, study, expect=2).err)
+            self.taut(verb, study, "--preset", "quick")
+        self.taut("run", study, "--preset", "half")
+        for verb in ("plot", "export"):
+            said = self.taut(verb, study, expect=3)
+            self.assertRegex(said.err, r"\b1 (of the 2 )?cases .*; preset half has all of its results: --preset half")
+            self.assertTrue(said.out)
+
+    def test_a_model_goes_where_it_is_told(self):
+        study = self.study()
+        self.taut("run", study)
+        self.assertEqual(self.taut("report", study, "--json", "-o", "model.json").out, "model.json\n")
+        model = json.loads((self.folder / "model.json").read_text())
+        self.assertEqual(model.keys(), json.loads(self.taut("report", study, "--json").out).keys())
+
+    def test_a_device_is_a_file_for_whoever_may_write_to_it(self):
+        user = {"user": 65534} if os.getuid() == 0 else {}
+        os.chmod(self.folder, 0o755)
+        for device in ("/dev/stdout", "/dev/null"):
+            line = f"{BINARIES}/taut case {self.folder}/small.toml jakobsen --final-state {device} | cat"  # a pipe of the user's own
+            process = subprocess.run(["bash", "-o", "pipefail", "-c", line], cwd=self.folder, capture_output=True, text=True, **user)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertEqual("vertex,x,y,z" in process.stdout, device == "/dev/stdout")
+
     def test_unequal_work_is_said_wherever_it_is_compared(self):
         plot = '[[plot]]\nkind = "convergence"\n'
         unequal = self.study("unequal.toml", solvers=["jakobsen:substeps=2", "bullet"], rest="axes.iterations = [1, 4]\n" + plot)
@@ -258,6 +309,17 @@ class Verbs(CommandLine):
         self.assertEqual(len(named), len(set(named)))
         for verb in [[name] for name in named] + [["bench", inner] for inner in ["effects", "scaling"]]:
             self.assertIn("Example:\n  taut " + " ".join(verb), self.taut(*verb, "--help").out)
+
+    def test_every_example_of_every_help_is_understood(self):
+        """The last word is refused, and it alone: options are judged in their order, and --quiet is the last of each verb."""
+        verbs = [[name] for name in re.findall(r"^  ([a-z]+) ", self.taut("--help").out, re.MULTILINE)]
+        verbs += [[verb, inner] for verb, inners in (("bench", ["effects", "scaling"]), ("external", ["probe", "score"]), ("cluster", ["submit", "status", "merge"]),
+                                                     ("baseline", ["diff", "update"])) for inner in inners]
+        examples = [example for verb in verbs for example in re.findall(r"^ +(taut [^\n]*?)(?: \|| &&| > |$)", self.taut(*verb, "--help").out, re.MULTILINE)]
+        self.assertGreater(len(examples), 40)
+        for example in examples:
+            words = shlex.split(example)[1:]
+            self.assertIn("Could not convert: --quiet", self.taut(*words, "--quiet=bogus", expect=2).err, example)
 
     def test_the_help_shows_verbs_in_groups_a_line_each(self):
         lines = self.taut("--help").out.splitlines()
@@ -380,7 +442,7 @@ class Verbs(CommandLine):
 
     def test_advice_is_clear_only_when_it_was_confirmed_and_the_search_has_ended(self):
         for patience in [3, 120]:
-            said = facts_of(self.advise("--error", "0.3%", "--patience", patience))
+            said = facts_of(self.advise("--error", "0.3%", "--patience", patience, expect=None))
             self.assertLess(said["seconds"], 1.1 * patience + 1)
             inside = said["cost"][0] <= said["again"][1] <= said["cost"][2]
             self.assertEqual(said["confirmed"], inside)
@@ -389,6 +451,25 @@ class Verbs(CommandLine):
         self.assertTrue(said["complete"])
         refused = [t["refused"] for t in rows_of(self.advise("--error", "0.3%", "--solver", "mass-spring"), "tried") if t["refused"]]
         self.assertTrue(all(re.match(r"exploded \(", why) for why in refused) and refused, refused)
+
+    def test_advice_uses_its_time_and_searches_all_before_it_refines_one(self):
+        patience = 10
+        done = self.taut("advise", "./small.toml", "--error", "0.1%", "--patience", patience, "--json", expect=None)
+        answer = json.loads(done.out)
+        said, left = facts_of(answer), rows_of(answer, "not_done")
+        self.assertTrue(said["complete"] or said["seconds"] > 0.6 * patience, said)
+        self.assertLess(said["seconds"], 1.1 * patience + 1)
+        unsearched = [row["solver"] for row in left if row["what"] == "search"]
+        self.assertEqual("INCOMPLETE" in answer["subject"], bool(unsearched))
+        self.assertEqual(done.returncode, 3 if unsearched else 0)
+        tried = [row["setting"] for row in rows_of(answer, "tried")]
+        self.assertEqual(len(tried), len(set(tried)), "each once")
+        if any("omega=" in setting for setting in tried):  # a refinement of jakobsen, which is cheap
+            self.assertLess({"xpbd", "pd", "bullet"}, {setting.partition(":")[0] for setting in tried[:tried.index(
+                next(setting for setting in tried if "omega=" in setting))]})
+        hurried = self.taut("advise", "./small.toml", "--error", "0.1%", "--patience", 0.8, "--json", expect=None)
+        self.assertIn(hurried.returncode, (3, 4))
+        self.assertIn("INCOMPLETE", json.loads(hurried.out)["subject"])
 
     def test_the_bench_and_the_advice_name_the_same_solver(self):
         answer = self.advise("--error", "1%", "--solver", "jakobsen", "--solver", "bullet")
@@ -490,6 +571,21 @@ class Verbs(CommandLine):
         more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='axes.time.dt = ["1/64", "1/32"]\n')
         missing = self.taut("export", more, expect=3)
         self.assertEqual(missing.out.count(",not run,"), 2)
+
+    def test_a_damaged_case_is_no_row_of_a_table(self):
+        study = self.study(rest="axes.iterations = [1, 2]\n")
+        self.taut("run", study)
+        with sqlite3.connect(self.folder / "results/runs/results.db") as store:
+            store.execute("UPDATE numbers SET value = 2 * value WHERE case_id = 1")
+        for option in ([], ["--tidy"], ["--series"]):
+            done = self.taut("export", study, *option, expect=3)
+            self.assertIn("damaged case", done.err)
+            self.assertIn("1 cases are damaged and left empty", done.err)
+            rows = list(csv.DictReader(done.out.splitlines()))
+            self.assertEqual(len({row["key"] for row in rows if row.get("status", "ok") == "ok" and row.get("value", "1") != ""}), 1)
+            if not option:
+                damaged, = [row for row in rows if row["status"] == "damaged"]
+                self.assertEqual((damaged["stretch.rms"], damaged["dt"]), ("", ""))
 
     def test_no_cell_of_a_table_is_a_formula(self):
         (self.folder / "=1+1.toml").write_text((self.folder / "small.toml").read_text())

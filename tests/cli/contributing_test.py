@@ -8,6 +8,8 @@ import csv
 import json
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 
 DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "CONTRIBUTING.md"
@@ -60,6 +62,26 @@ class Contributing(CommandLine):
             done = self.taut("verify", "--solver", solver, program="taut-toy")
             self.assertIn("any-solver", done.out)
             self.assertRegex(done.err, r"4 numbers: 4 passed, 0 deviate as explained, 0 not applicable, 0 broken")
+
+    def test_the_code_is_formatted_as_the_tree_is(self):
+        if not shutil.which("clang-format"):
+            self.skipTest("clang-format is not installed")
+        for path, text in re.findall(r"```cpp\n// (\S+)\n(.*?)```", DOCUMENT.read_text(), re.DOTALL):
+            style = f"--style=file:{DOCUMENT.parent / '.clang-format'}"
+            done = subprocess.run(["clang-format", style, f"--assume-filename={DOCUMENT.parent / path}"], input=text, capture_output=True, text=True, check=True)
+            self.assertEqual(done.stdout, text, path)
+
+    def test_the_truth_has_the_next_row_of_its_section(self):
+        truths = json.loads(self.taut("verify", "--list", "--json", program="taut-toy").out)["tables"]["truths"]
+        place = [column["name"] for column in truths["columns"]].index("place")
+        rows = sorted(int(row[place].split(".")[1]) for row in truths["rows"] if row[place].startswith("3."))
+        self.assertEqual(rows, list(range(1, len(rows) + 1)))
+
+    def test_advice_on_the_pass_is_searched_as_on_ours(self):
+        done = self.taut("advise", "./small.toml", "--error", "0.01%", "--solver", "toy-pass", "--json", program="taut-toy", expect=None)
+        tried = " ".join(row[0] for row in json.loads(done.out)["tables"]["tried"]["rows"])
+        self.assertIn("substeps=2", tried)
+        self.assertIn("iterations=2", tried)
 
     def test_the_scene_and_the_study_run(self):
         files = blocks("toml", "#")

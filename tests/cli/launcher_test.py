@@ -152,6 +152,30 @@ class Launcher(unittest.TestCase):
         self.call("run")
         self.assertEqual(self.started(), [], "a test is no part of the program")
 
+    def test_every_folder_of_sources_is_watched_and_no_scene_or_study(self):
+        self.call("run")
+        folders = {file.parent for top in ("cmake", "core", "bullet_ref", "experiments") for ending in ("cpp", "hpp", "cmake", "js", "css", "html")
+                   for file in (REPOSITORY / top).rglob(f"*.{ending}")}
+        self.assertGreater(len(folders), 30)
+        files = [self.clone / folder.relative_to(REPOSITORY) / "source" for folder in folders]
+        data = [self.clone / "experiments" / name / "mine.toml" for name in ("scenes", "studies")]
+        for file in files + data:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.touch()
+        functions = re.findall(r"^(?:is_current|made_from)\(\) \{.*?\}$", (REPOSITORY / "taut").read_text(), re.MULTILINE | re.DOTALL)
+        script = "\n".join(["home=$1", *functions, 'is_current "$home/build/default" built-program'])
+        stamp = self.clone / "build/default/built-program"
+        os.utime(stamp, (stamp.stat().st_mtime + 100, ) * 2)
+
+        def is_current():
+            return subprocess.run(["bash", "-c", script, "bash", self.clone]).returncode == 0
+
+        for file in files + data:
+            os.utime(file, (stamp.stat().st_mtime + 100, ) * 2)
+            self.assertEqual(is_current(), file in data, file)
+            os.utime(file, (0, 0))
+        self.assertTrue(is_current())
+
     def test_what_does_not_compile_is_said_and_tried_again(self):
         self.call("run")
         self.edit("int main", "int main(")

@@ -80,6 +80,11 @@ class Require(CommandLine):
         full = json.loads(self.taut("case", "./made.toml", "jakobsen", "--json").out)
         self.assertLess(case["links"] * case["steps"], 0.7 * full["links"] * full["steps"])
 
+    def test_a_tolerance_above_the_value_is_said(self):
+        for tolerance, says in (("90%", self.assertIn), ("0.0001%", self.assertNotIn)):
+            found = self.require(CALM, "--keep", "stretch.max:" + tolerance)
+            says("LARGER THAN THE VALUE: SAYS NOTHING", json.dumps(found["tables"]["answers"]["notes"]))
+
     def test_friction_is_kept_on_a_slope_about_to_slide(self):
         for share in (0.98, 1.02):
             found = self.require(slope(share * math.tan(math.radians(30))))

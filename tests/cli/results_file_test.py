@@ -36,12 +36,13 @@ class ResultsFile(CommandLine):
             self.assertEqual(columns.split(", "), self.columns(table), table)
 
     def test_the_line_of_the_readme_answers_its_first_question(self):
-        line, = re.findall(r'^sqlite3 .*$', (ROOT / "README.md").read_text(), re.MULTILINE)
+        readme = (ROOT / "README.md").read_text()
+        line, = re.findall(r'^sqlite3 .*$', readme, re.MULTILINE)
         self.assertIn(line, DOCUMENT)
         if not shutil.which("sqlite3"):
             self.skipTest("sqlite3 is not installed")
-        study = self.study(scenes=["hang"], solvers=["jakobsen", "xpbd"], rest='set = ["cloth.grid=[4, 4]", "time.duration=0.25"]\n'
-                           "axes.iterations = [1, 4]\n")
+        study = self.study(scenes=["hang"], solvers=["jakobsen", "xpbd"], name="iterations.toml",
+                           rest='set = ["cloth.grid=[4, 4]", "time.duration=0.25"]\naxes.iterations = [1, 4]\n')
         self.taut("run", study)
         said = subprocess.run(line, shell=True, cwd=self.folder, capture_output=True, text=True, check=True).stdout.splitlines()
         self.assertEqual(said[0], "setting|value")
@@ -50,6 +51,19 @@ class ResultsFile(CommandLine):
         self.assertEqual(found.keys(), values.keys())
         for which, value in values.items():
             self.assertAlmostEqual(found[which], value, delta=1e-14 * abs(value))
+
+    def test_the_examples_of_the_documents_mix_no_two_studies(self):
+        rest = 'set = ["cloth.grid=[4, 4]", "time.duration=0.25"]\naxes.iterations = [1, 4]\n'
+        self.taut("run", self.study("iterations.toml", ["hang"], ["jakobsen:substeps=1"], rest),
+                  self.study("other.toml", ["hang"], ["jakobsen:substeps=3"], rest))
+        for document in (ROOT / "README.md").read_text(), DOCUMENT:
+            line, = re.findall(r'^sqlite3 [^"]*"(.*)"$', document, re.MULTILINE)
+            asked, = re.findall(r'read_sql\("([^"]*)"', document)
+            for sql in line, asked:
+                self.assertEqual(len(self.query(sql)), 2, sql)
+            self.assertIn('study == "iterations")', document, "of R")
+        both = self.query("select * from results where metric = 'stretch.rms' and scene = 'hang'")
+        self.assertEqual(len(both), 4)
 
     def test_what_a_case_has_not_is_null_and_its_status_says_why(self):
         study = self.study(solvers=["faulty:mode=stable", "faulty:mode=crash", "faulty:mode=refuse"])

@@ -31,9 +31,9 @@ Scene shipped(const std::string& name, const std::vector<std::string>& overrides
 }
 
 /// What is wrong with the text of a scene file that is called x; "" if nothing is.
-std::string errors_of(const std::string& text) {
+std::string errors_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
-    parse_scene("x", text);
+    parse_scene("x", text, overrides);
   } catch (const InputError& error) {
     return std::string(error.what()) + "\n";
   }
@@ -332,7 +332,7 @@ TEST(SceneFiles, BendingIsOneStiffnessOrThatOfWarpAndWeft) {
 }
 
 TEST(SceneFiles, AFabricIsMassAndBendingInPlaceOfTheScenes) {
-  const Scene s = shipped("hang", {"fabric=\"petrak-m1\"", "bending.stiffness=1"});
+  const Scene s = shipped("hang", {"fabric=\"petrak-m1\""});
   double mass = 0;
   for (const double m : s.mesh.mass) mass += m;
   EXPECT_NEAR(mass, 0.135, 1e-12) << "of 1 m^2";
@@ -347,6 +347,32 @@ TEST(SceneFiles, AFabricIsMassAndBendingInPlaceOfTheScenes) {
   EXPECT_NE(errors_of("fabric = \"petrak-m\"\ncloth = { grid = [2, 2], size = [1, 1] }")
                 .find("not 'petrak-m'; did you mean 'petrak-m1'"),
             std::string::npos);
+}
+
+TEST(SceneFiles, WhatIsSetBesideAFabricContradictsIt) {
+  const auto beside = [](const std::string& cloth, const std::string& rest,
+                         const std::vector<std::string>& overrides) {
+    return errors_of("cloth = { grid = [2, 2], size = [1, 1]" + cloth + " }\n" + rest, overrides);
+  };
+  const std::string fabric = "fabric = \"petrak-m1\"", stiff = "bending = { stiffness = 1 }";
+  EXPECT_EQ(beside(", mass = 1", stiff, {fabric}), "") << "which replaces what the file says";
+  for (const auto& [cloth, rest, overrides, says] :
+       std::vector<std::tuple<std::string, std::string, std::vector<std::string>, std::string>>{
+           {", mass = 1", fabric, {}, "'mass' in [cloth]"},
+           {", area_density = 1", fabric, {}, "'area_density' in [cloth]"},
+           {"", fabric + "\n" + stiff, {}, "'stiffness' in [bending]"},
+           {"", fabric, {"cloth.mass=3"}, "cloth.mass=3: column 12: 'mass' in [cloth]"},
+           {"", "", {fabric, "cloth.mass=3"}, "'mass' in [cloth]"},
+           {"", "", {"cloth.mass=3", fabric}, "'mass' in [cloth]"},
+           {", mass = 1", stiff, {fabric, "bending.stiffness=2"}, "'stiffness' in [bending]"},
+           {"",
+            "bending.stiffness = { warp = 1, weft = 1 }",
+            {fabric, "bending.stiffness.weft=2"},
+            "'stiffness' in [bending]"}}) {
+    const std::string errors = beside(cloth, rest, overrides);
+    EXPECT_NE(errors.find(says + " is what fabric = \"petrak-m1\" sets"), std::string::npos)
+        << cloth << rest << errors;
+  }
 }
 
 TEST(SceneFiles, ABallNamesTheVerticesInsideIt) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 
 #include "core/model/solver.hpp"
@@ -82,6 +83,20 @@ TEST(Search, ARivalThatIsFarCheaperEndsItEarly) {
   search_settings(kPlain, target, std::ref(alone));
   search_settings(kPlain, target, std::ref(beaten), {{"other", "other", {0.1, 0.1, 0.1}, 1e-5}});
   EXPECT_LT(beaten.runs, alone.runs / 2);
+}
+
+TEST(Search, WithoutRefinementItDoublesSubstepsAndSweepsAlone) {
+  Formula coarse, whole;
+  const Target target{1e-3, {}};
+  const auto columns = search_settings(kPlain, target, std::ref(coarse), {}, SearchDepth::columns);
+  search_settings(kPlain, target, std::ref(whole));
+  EXPECT_LT(coarse.runs, whole.runs);
+  EXPECT_TRUE(target.meets(best_of(columns, target)));
+  for (const Candidate& o : columns)
+    for (const char* name : {"substeps", "iterations"})
+      EXPECT_TRUE(
+          std::has_single_bit(static_cast<unsigned>(parse_solver(o.setting).params.integer(name))))
+          << o.setting;
 }
 
 TEST(Search, StopsWhenTimeIsUp) {

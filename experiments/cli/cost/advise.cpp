@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "core/io/scene_io.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/require/require.hpp"
@@ -21,6 +22,9 @@ constexpr int kQuickSteps = 48;            ///< of the quick cost that guides th
 constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
 constexpr std::size_t kMostRefused = 4;    ///< printed unless all are asked for
 constexpr double kSurelyDearer = 1.3;      ///< than a budget: more than a quick cost may be off
+constexpr double kFinalShare = 0.25;  ///< of --patience, kept from the search to time finalists
+constexpr std::size_t kFewestFinalists = 2;
+constexpr int kFewestRounds = 2;  ///< with which finalists are timed where the time is short
 
 struct Options {
   std::string scene, metric = kErrorMetric, error, out;
@@ -57,6 +61,7 @@ struct Result {
   std::vector<Candidate> tried;
   std::vector<std::string> unsupported;  ///< "xpbd: why"
   std::vector<std::string> cut;          ///< solvers whose search --patience ended
+  std::vector<std::string> unrefined;    ///< and those of which it ended what follows the search
   SceneBench bench;
   Recommendation recommendation;
   Interval cost;  ///< of the best, as it is expected in a second session
@@ -64,6 +69,7 @@ struct Result {
   Interval again;  ///< cost of the best in a second session
 
   const BenchedCase& best() const { return bench.cases[*recommendation.best]; }
+  bool complete() const { return cut.empty() && unrefined.empty(); }
   bool confirmed() const { return cost.contains(again.mid); }
 };
 
@@ -104,20 +110,41 @@ class Advisor {
     double all = 0;
     const auto chosen = finalists(result_.tried, result_.target, most);
     const auto of = [&](const Candidate& c) {
-      return c.cost.mid * duration_ + 2 * rounds * (options_.seconds + 5 * c.cost.mid * dt_);
+      const double run = c.cost.mid * duration_;  // a sample is a run at most
+      return run + 2 * rounds * (std::min(options_.seconds, run) + 5 * c.cost.mid * dt_);
     };
     for (const std::size_t i : chosen) all += of(result_.tried[i]);
     // The control, its and the best's second session, and the best's second run with its metrics.
     if (!chosen.empty())
       all += 3 * of(result_.tried[chosen.front()]) +
              2 * result_.tried[chosen.front()].cost.mid * duration_;
-    return slowdown_ * all;
+    return slowdown() * all;
   }
 
-  /// Physics and quick cost of a setting; nothing when the time is up.
-  std::optional<Candidate> evaluate(const std::string& setting, double deadline) {
-    const double end =
-        std::min(deadline, options_.patience - seconds_of_final(kMostFinalists, options_.rounds));
+  /// Wall over CPU time now, as others use the machine: the middle of all pilots, for a single one
+  /// is so short that to wait once makes it a hundred times as long.
+  double slowdown() const { return slowdowns_.empty() ? 1 : std::max(1.0, median(slowdowns_)); }
+
+  /// When the search has to end, so that there is time for the final; that makes do with less where
+  /// it would take a large share [s].
+  double end_of_search() const {
+    return options_.patience - std::max(seconds_of_final(kFewestFinalists, kFewestRounds),
+                                        std::min(seconds_of_final(kMostFinalists, options_.rounds),
+                                                 kFinalShare * options_.patience));
+  }
+
+  /// Physics and quick cost of a setting, run at most once; nothing when the time is up.
+  std::optional<Candidate> evaluate(const std::string& text, double deadline) {
+    const std::string setting = parse_solver(text).canonical();
+    const auto known = std::ranges::find(result_.tried, setting, &Candidate::setting);
+    if (known != result_.tried.end()) return *known;
+    const auto found = run_and_time(setting, deadline);
+    if (found) result_.tried.push_back(*found);
+    return found;
+  }
+
+  std::optional<Candidate> run_and_time(const std::string& setting, double deadline) {
+    const double end = std::min(deadline, end_of_search());
     if (elapsed() >= end) return {};
     const auto record = run_stored(make(setting), store_, {}, at(end));
     if (!record) return {};
@@ -134,7 +161,7 @@ class Advisor {
       const StepTime step = worker.pilot_run(std::min(kQuickSteps, steps_done(*record)));
       const double cost = step.cpu / record->dt;
       found.cost = {cost, cost, cost};
-      slowdown_ = std::max(1.0, step.wall / step.cpu);
+      slowdowns_.push_back(step.wall / step.cpu);
     } catch (const TimeIsUp&) {
       return {};
     } catch (const std::runtime_error& error) {
@@ -210,24 +237,37 @@ class Advisor {
     return false;
   }
 
-  /// Every solver gets an equal share of the time that those before it have left.
+  /// Every solver is searched before one is refined; each gets an equal share of the time that
+  /// those before it have left.
   void search(std::vector<std::string> solvers) {
     if (solvers.size() > 1)
       solvers = cheapest_first(std::move(solvers), [&](const std::string& setting) {
         return evaluate(setting, options_.patience);
       });
+    search(solvers, SearchDepth::columns, result_.cut);
+    std::vector<std::string> unrefined;
+    search(solvers, SearchDepth::refined, unrefined);
+    for (const std::string& solver : unrefined)
+      if (std::ranges::find(result_.cut, solver) == result_.cut.end())
+        result_.unrefined.push_back(solver);
+  }
+
+  void search(const std::vector<std::string>& solvers, SearchDepth depth,
+              std::vector<std::string>& cut) {
     auto left = static_cast<double>(solvers.size());
     for (const std::string& solver : solvers) {
-      const double deadline = elapsed() + (options_.patience - elapsed()) / left--;
+      const double deadline = elapsed() + (end_of_search() - elapsed()) / left--;
       bool ended = true;
       const Evaluation run = [&](const std::string& setting) {
         const auto found = evaluate(setting, deadline);
         ended = found.has_value();
         return found;
       };
-      const auto found = search_settings(solver, result_.target, run, result_.tried);
-      result_.tried.insert(result_.tried.end(), found.begin(), found.end());
-      if (!ended) result_.cut.push_back(solver);
+      const std::string name(parse_solver(solver).entry->name);
+      std::vector<Candidate> others = result_.tried;
+      std::erase_if(others, [&](const Candidate& c) { return c.solver == name; });
+      search_settings(solver, result_.target, run, others, depth);
+      if (!ended) cut.push_back(solver);
     }
   }
 
@@ -243,8 +283,8 @@ class Advisor {
     const auto too_long = [&] {
       return elapsed() + seconds_of_final(most, rounds) > options_.patience;
     };
-    while (most > 2 && too_long()) --most;
-    while (rounds > 2 && too_long()) --rounds;
+    while (most > kFewestFinalists && too_long()) --most;
+    while (rounds > kFewestRounds && too_long()) --rounds;
     std::vector<Record> records;
     for (const std::size_t i : finalists(result_.tried, result_.target, most))
       records.push_back(*run_stored(make(result_.tried[i].setting), store_));
@@ -258,7 +298,7 @@ class Advisor {
     result_.again = time({best}, rounds).cases.front().cost();
     result_.cost = cost_expected_again(result_.bench, *recommendation.best);
     if (recommendation.certainty == Certainty::clear &&
-        !(result_.cut.empty() && result_.confirmed()))
+        !(result_.complete() && result_.confirmed()))
       recommendation.certainty = Certainty::likely;
   }
 
@@ -266,8 +306,8 @@ class Advisor {
   SteadyClock::time_point start_ = SteadyClock::now();
   Store store_;
   CaseMaker maker_;
-  double duration_ = 0, dt_ = 0;  ///< of the scene [s]
-  double slowdown_ = 1;           ///< wall over CPU time now: others use the machine
+  double duration_ = 0, dt_ = 0;   ///< of the scene [s]
+  std::vector<double> slowdowns_;  ///< wall over CPU time of each pilot
   Result result_;
 };
 
@@ -312,9 +352,9 @@ void add_nearest(Answer& answer, const Options& options, const Result& result) {
   for (const Candidate& c : result.tried)
     if (c.failure.empty() && std::isfinite(c.error) && (!nearest || miss(c) < miss(*nearest)))
       nearest = &c;
-  answer.add({"best"}, Cell().with(result.too_dear      ? "unreachable"
-                                   : result.cut.empty() ? "never reached"
-                                                        : "not reached in the time given"));
+  answer.add({"best"}, Cell().with(result.too_dear     ? "unreachable"
+                                   : result.complete() ? "never reached"
+                                                       : "not reached in the time given"));
   if (result.too_dear) {
     answer.add({"cheapest", "the cheapest setting"},
                parse_solver(result.too_dear->setting).brief());
@@ -411,7 +451,10 @@ Table refused_of(const Result& result) {
 }
 
 Answer answer_of(const Options& options, const Result& result, double elapsed) {
-  Answer answer{"advise", options.scene + ", " + text(result.target, options.metric)};
+  std::string subject = options.scene + ", " + text(result.target, options.metric);
+  if (!result.cut.empty())
+    subject += "; INCOMPLETE: --patience ended the search of " + join(result.cut, ", ");
+  Answer answer{"advise", subject};
   if (result.recommendation.best)
     add_best(answer, options, result);
   else
@@ -419,13 +462,15 @@ Answer answer_of(const Options& options, const Result& result, double elapsed) {
   answer.add({"searched", "settings searched"}, result.tried.size());
   answer.add({"seconds", "time", kTime}, elapsed);
   answer.add({"patience", "of", kTime}, options.patience);
-  answer.add(Column("complete").in_detail(), result.cut.empty());
+  answer.add(Column("complete").in_detail(), result.complete());
   answer.add(solvers_of(options, result));
   answer.add(limits_of(result));
   answer.add(without_of(result));
   answer.add(refused_of(result));
-  Table not_done{"not_done", "NOT DONE: stopped by --patience", {{"solver"}}};
-  for (const std::string& solver : result.cut) not_done.rows.push_back({solver});
+  Table not_done{"not_done", "NOT DONE: stopped by --patience", {{"solver"}, {"what"}}};
+  for (const std::string& solver : result.cut) not_done.rows.push_back({solver, "search"});
+  for (const std::string& solver : result.unrefined)
+    not_done.rows.push_back({solver, "refinement of its best"});
   answer.add(std::move(not_done));
   answer.add(tried_of(options, result));
   return answer;
@@ -441,14 +486,15 @@ int run(Options options) {
   check_solvers(options.solvers);
   Advisor advisor(options);
   const Result result = advisor.run();
-  if (!result.too_dear && result.cut.empty() &&
+  if (!result.too_dear && result.complete() &&
       std::ranges::all_of(result.tried, [](const Candidate& c) { return std::isnan(c.error); }))
     throw InputError(result.tried.empty()
                          ? "no solver can run scene '" + options.scene + "'"
                          : options.metric + " has no value on scene '" + options.scene + "'");
   print(answer_of(options, result, advisor.elapsed()), options.format);
   if (!result.recommendation.best) return kNothing;
-  return result.same_bits ? kPass : kConflict;
+  if (!result.same_bits) return kConflict;
+  return result.cut.empty() ? kPass : kIncomplete;
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -486,5 +532,6 @@ TAUT_VERB(advise) = {
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
         "stretch.max\n  taut advise tunnel --error 1% --keep penetration.peak:1mm --keep "
         "tunnelling.count:0\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
-        "Exit: 0 found; 4 not reached; 6 the best does not repeat bit for bit",
+        "Exit: 0 found; 3 found, solvers not searched; 4 not reached; 6 the best does not repeat "
+        "bit for bit",
     .bind = taut::bind_verb<taut::verb::advise::add_options, taut::verb::advise::run>};

@@ -228,6 +228,8 @@ void add_options(CLI::App& app, Options& options) {
           ->expected(1, 2)
           ->excludes("SCENE")
           ->excludes("SOLVER");
+  for (const char* name : {"--dt", "--duration", "--set", "--fabric"})
+    app.get_option(name)->excludes(all);
   add_baselines(app, options.baselines);
   app.add_flag("--check", options.check,
                "Exit 1 if a frontier of --all is another one than in the baseline")
@@ -235,11 +237,13 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--update", options.update, "Keep what --all finds as the baseline")->needs(all);
   app.add_option("--of", options.of,
                  "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
-                 "(default: dt)");
-  app.add_option("--from", options.from, "Where to start (dt: 1e-3 s)");
-  app.add_option("--to", options.to, "Where to stop (dt: 0.5 s)");
+                 "(default: dt)")
+      ->excludes(all);
+  app.add_option("--from", options.from, "Where to start (dt: 1e-3 s)")->excludes(all);
+  app.add_option("--to", options.to, "Where to stop (dt: 0.5 s)")->excludes(all);
   app.add_option("--tolerance", options.tolerance, "Relative width of the bracket (default: 0.01)")
-      ->check(CLI::Range(1e-9, 0.5));
+      ->check(CLI::Range(1e-9, 0.5))
+      ->excludes(all);
   add_jobs(app, options.jobs);
   add_results(app, options.out);
   add_format(app, options.format);

@@ -63,13 +63,20 @@ Table answers_of(const Requirement& found) {
   for (std::size_t i = 0; i < found.answers.size(); ++i) {
     const KeptAnswer& answer = found.answers[i];
     const Unit unit = unit_of(answer);
-    const auto said = [&](double value) {
-      return unit.shown.empty() ? Cell(value) : Cell(value).with(text(answer, value));
+    const auto said = [&](double value, const std::string& remark = "") {
+      std::string note = unit.shown.empty() ? "" : text(answer, value);
+      if (!note.empty() && !remark.empty()) note += ", ";
+      return Cell(value).with(note + remark);
     };
-    table.rows.push_back({answer.name, unit.shown.empty() ? "1" : unit.shown,
-                          answer.is_shape() ? Cell() : said(found.values[i]),
-                          said(answer.tolerance),
-                          i < found.noise.size() ? said(found.noise[i]) : Cell(), unit.si});
+    const bool vacuous = !answer.is_shape() && answer.tolerance > std::abs(found.values[i]);
+    const bool noisy = i < found.noise.size() && found.noise[i] > answer.tolerance;
+    table.rows.push_back(
+        {answer.name, unit.shown.empty() ? "1" : unit.shown,
+         answer.is_shape() ? Cell() : said(found.values[i]),
+         said(answer.tolerance, vacuous ? "LARGER THAN THE VALUE: SAYS NOTHING" : ""),
+         i < found.noise.size() ? said(found.noise[i], noisy ? "MORE THAN THE TOLERANCE" : "")
+                                : Cell(),
+         unit.si});
   }
   return table;
 }

@@ -166,7 +166,7 @@ int merge(const MergeOptions& o) {
   answer.add({"cases"}, plan.cases.size());
   answer.add({"there"}, plan.cases.size() - missing.size());
   answer.add({"merged"}, may);
-  answer.add({"store"}, store.digest());
+  if (store.reading()) answer.add({"store"}, store.digest());
   answer.add(sentences("missing", missing));
   answer.add(sentences("foreign", plan.foreign));
   answer.add(sentences("conflicts", plan.conflicts));

@@ -30,18 +30,25 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
-/// The results file with a table `asked` of the study's cases, as this build would run them, and
-/// `timed` of what they cost here or, if nothing was timed here, on another host.
+/// The results file with a table `asked` of the study's cases, as this build would run them (its
+/// case_id is NULL if it is not stored or does not match its digest, which is said), and `timed` of
+/// what they cost here or, if nothing was timed here, on another host.
 class Asked {
  public:
   Asked(const Study& study, const Store& store) : database_(*store.reading()) {
     database_.script(
-        "CREATE TEMP TABLE asked (place INTEGER PRIMARY KEY, key, id, scene, solver);"
+        "CREATE TEMP TABLE asked (place INTEGER PRIMARY KEY, key, id, scene, solver, case_id, "
+        "absent);"
         "CREATE TEMP TABLE timed (key PRIMARY KEY, 'cpu.host', 'cpu.per_second', "
         "'cpu.per_second.low', 'cpu.per_second.high', 'memory.peak')");
     each_case(study, [&](Case&& one) {
-      database_.run("INSERT INTO asked (key, id, scene, solver) VALUES (?, ?, ?, ?)", one.key,
-                    one.id, one.scene->name, std::string(one.choice.entry->name));
+      const bool sound = store.find(one).has_value();
+      database_.run(
+          "INSERT INTO asked (key, id, scene, solver, case_id, absent) SELECT ?1, ?2, ?3, ?4, "
+          "iif(?5, case_id, NULL), iif(case_id IS NULL, 'not run', 'damaged') "
+          "FROM (SELECT 1) LEFT JOIN cases ON cases.key = ?1",
+          one.key, one.id, one.scene->name, std::string(one.choice.entry->name),
+          static_cast<int>(sound));
     });
     const std::vector<StudyBench> benches = stored_benches(store, study.name);
     if (benches.empty()) return;
@@ -60,39 +67,40 @@ class Asked {
       names.push_back(name), columns.push_back(column);
     };
     for (const std::string& name : list("SELECT DISTINCT value.key FROM asked JOIN cases USING "
-                                        "(key), json_each(parameters) AS value ORDER BY 1"))
+                                        "(case_id), json_each(parameters) AS value ORDER BY 1"))
       add(name, "parameters ->> " + quoted("$.\"" + name + "\""));
     for (const std::string& name :
          list("SELECT DISTINCT substr(value, 1, instr(value, '=') - 1) FROM asked JOIN cases USING "
-              "(key), json_each(settings) ORDER BY 1"))
+              "(case_id), json_each(settings) ORDER BY 1"))
       add(name,
           "(SELECT trim(substr(value, instr(value, '=') + 1), '\"') FROM json_each(settings) "
           "WHERE substr(value, 1, instr(value, '=')) = " +
               quoted(name + "=") + " ORDER BY json_each.key DESC LIMIT 1)");
     for (const char* name : {"dt", "steps", "vertices", "links"}) add(name, name);
-    add("status", "coalesce(status, 'not run')"), add("reason", "reason"), add("step", "step");
+    add("status", "coalesce(status, absent)"), add("reason", "reason"), add("step", "step");
     Database::Rows metric = database_.rows("SELECT name, metric_id FROM metrics ORDER BY name");
     while (metric.next())
       add(metric.text(0),
-          "(SELECT value FROM numbers WHERE case_id = cases.case_id AND metric_id = " +
+          "(SELECT value FROM numbers WHERE case_id = asked.case_id AND metric_id = " +
               metric.text(1) + ")");
     if (count("FROM timed") > 0)
       for (const std::string name : {"cpu.host", "cpu.per_second", "cpu.per_second.low",
                                      "cpu.per_second.high", "memory.peak"})
         add(name, "timed.\"" + name + "\"");
     add("case", "asked.id"), add("key", "asked.key");
-    return all("SELECT " + join(columns, ", ") +
-                   " FROM asked LEFT JOIN cases USING (key) LEFT JOIN timed USING (key) "
-                   "ORDER BY place",
-               names);
+    return all(
+        "SELECT " + join(columns, ", ") +
+            " FROM asked LEFT JOIN cases USING (case_id) LEFT JOIN timed ON timed.key = asked.key "
+            "ORDER BY place",
+        names);
   }
 
   /// A row for each value of each case.
   std::string tidy() {
     return all(
         "SELECT asked.scene, asked.solver, asked.id, metrics.name, value, metrics.unit, "
-        "coalesce(status, 'not run'), asked.key FROM asked CROSS JOIN metrics LEFT JOIN cases "
-        "USING (key) LEFT JOIN numbers USING (case_id, metric_id) ORDER BY place, metric_id",
+        "coalesce(status, absent), asked.key FROM asked CROSS JOIN metrics LEFT JOIN cases "
+        "USING (case_id) LEFT JOIN numbers USING (case_id, metric_id) ORDER BY place, metric_id",
         {"scene", "solver", "case", "metric", "value", "unit", "status", "key"});
   }
 
@@ -100,7 +108,7 @@ class Asked {
   std::string series() {
     return all(
         "SELECT asked.scene, asked.solver, asked.id, json_extract(columns, '$.t[' || point.key || "
-        "']'), line.key, point.value, asked.key FROM asked JOIN cases USING (key) JOIN series "
+        "']'), line.key, point.value, asked.key FROM asked JOIN series "
         "USING (case_id), json_each(columns) AS line, json_each(line.value) AS point "
         "WHERE line.key NOT IN ('step', 't') ORDER BY place, line.key, point.key",
         {"scene", "solver", "case", "t", "metric", "value", "key"});
@@ -132,9 +140,9 @@ int run(const Options& options) {
     asked.emplace(study, store);
   else
     each_case(study, [](Case&&) {});  // what is wrong with it is said first
-  if (!asked || asked->count("FROM asked JOIN cases USING (key)") == 0)
+  if (!asked || asked->count("FROM asked WHERE case_id IS NOT NULL") == 0)
     throw InputError("no case of study '" + study.name + "' is in " + options.results +
-                     " as this build would run it; taut run makes them");
+                     " as this build would run it; taut run makes them" + where_else(study, store));
   const std::string text = options.series ? asked->series()
                            : options.tidy ? asked->tidy()
                                           : asked->wide();
@@ -142,9 +150,12 @@ int run(const Options& options) {
     std::cout << text;
   else
     write_durably(options.output, text), std::cout << options.output << '\n';
-  const std::int64_t missing =
-      asked->count("FROM asked LEFT JOIN cases USING (key) WHERE case_id IS NULL");
-  if (missing > 0) progress() << missing << " cases were not run\n";
+  const std::int64_t missing = asked->count("FROM asked WHERE case_id IS NULL"),
+                     damaged =
+                         asked->count("FROM asked WHERE case_id IS NULL AND absent = 'damaged'");
+  if (missing > damaged)
+    progress() << missing - damaged << " cases were not run" << where_else(study, store) << '\n';
+  if (damaged > 0) progress() << damaged << " cases are damaged and left empty\n";
   return missing > 0 ? kIncomplete : kPass;
 }
 
@@ -170,5 +181,5 @@ Python:
   import pandas
   cases = pandas.read_csv("x.csv").query("status == 'ok'")
   print(cases.pivot_table("stretch.rms", ["scene", "iterations"], "solver"))
-Exit: 0 every case is there; 3 some were not run (their status says so))",
+Exit: 0 every case is there; 3 some were not run or are damaged (their status says so))",
     .bind = taut::bind_verb<taut::verb::exporting::add_options, taut::verb::exporting::run>};

@@ -176,7 +176,12 @@ int run(const Options& options) {
   if (result.records.empty())
     throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
                      study.name + "' is in " + options.results +
-                     " as this build would run them; taut run makes them");
+                     " as this build would run them; taut run makes them" +
+                     where_else(study, store));
+  const std::size_t missing = result.planned - result.records.size();
+  if (missing > 0)
+    std::cerr << missing << " of the " << result.planned << " cases of study '" << study.name
+              << "' are not there and not drawn" << where_else(study, store) << '\n';
   keep("--solver", result.records, options.solvers, [](const Record& r) { return r.solver; });
   keep("--scene", result.records, options.scenes, [](const Record& r) { return r.scene; });
   const std::filesystem::path out =
@@ -203,7 +208,9 @@ int run(const Options& options) {
     drawn = false;
   }
   print_files(files, options.json);
-  return !drawn ? kEnvironment : files.empty() ? kNothing : kPass;
+  if (!drawn) return kEnvironment;
+  if (files.empty()) return kNothing;
+  return missing > 0 ? kIncomplete : kPass;
 }
 
 void add_options(CLI::App& app, Options& options) {
@@ -235,6 +242,6 @@ TAUT_VERB(plot) = {.name = "plot",
                    .example =
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "
                        "stability -o figures\n  taut plot trade --kind profile\n  taut plot "
-                       "iterations --x projections "
-                       "--y stretch.max",
+                       "iterations --preset quick --x projections --y stretch.max\n"
+                       "Exit: 0 drawn; 3 drawn without cases that were not run; 4 nothing to draw",
                    .bind = taut::bind_verb<taut::verb::plot::add_options, taut::verb::plot::run>};

@@ -5,6 +5,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "core/solver/simd/kernels.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/cli/calls.hpp"
@@ -24,7 +25,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> studies, films;
-  std::string preset, results, output = "report.html";
+  std::string preset, results, output;
   bool no_media = false, json = false;
   bool silent = false;  ///< the file is not named
 };
@@ -61,11 +62,12 @@ std::string readable(const std::string& stamp) {
 
 /// The model, or the page into its file.
 int put_out(const report::ReportInput& input, const Options& options) {
-  if (options.json) {
+  if (options.json && options.output.empty()) {
     std::cout << report::make_model(input, 1) << '\n';
     return kPass;
   }
-  write_file(options.output, report::make_report(input));
+  write_file(options.output,
+             options.json ? report::make_model(input, 1) + "\n" : report::make_report(input));
   if (!options.silent) std::cout << options.output << '\n';
   return kPass;
 }
@@ -81,7 +83,7 @@ int compare_folders(const Options& options) {
   if (options.studies.size() < 2 || !Store::is_at(options.studies[1]))
     throw InputError("report " + options.studies[0] +
                      ": one results folder; --out shows it, a second one is compared with it");
-  if (!options.json) test_writable(options.output);
+  if (!options.output.empty()) test_writable(options.output);
   const Store a(options.studies[0]), b(options.studies[1]);
   std::vector<std::string> names(options.studies.begin() + 2, options.studies.end());
   std::string preset = options.preset;
@@ -124,7 +126,11 @@ void add_findings(report::ReportInput& input, const Store& store, const std::str
 }
 
 int run(Options options) {
+  if (options.output.empty() && !options.json) options.output = "report.html";
   if (!options.studies.empty() && Store::is_at(options.studies[0])) return compare_folders(options);
+  if (options.studies.size() > 1 && Store::is_at(options.studies[1]))
+    throw InputError(options.studies[0] + ": no results folder to compare with " +
+                     options.studies[1]);
   const std::string command = command_line(options);
   std::vector<std::string> maps = options.studies;
   if (options.studies.empty()) {
@@ -134,12 +140,19 @@ int run(Options options) {
     if (options.films.empty()) options.films = shipped("scenes");
     if (options.preset.empty()) options.preset = job.preset;
   }
-  if (!options.json) test_writable(options.output);
+  if (!options.output.empty()) test_writable(options.output);
   const std::vector<Study> studies = load_all(options.studies, options.preset);
   const Store store(options.results);
   report::ReportInput input = report::stored_results(studies, store);
   if (!std::filesystem::exists(options.results))
     throw InputError("no results folder " + options.results + "; taut run makes it");
+  const auto none = [](const report::StudyResult& study) { return study.records.empty(); };
+  if (const std::size_t others = store.keys().size();
+      others > 0 && std::ranges::all_of(input.studies, none))
+    throw InputError(options.results + ": " + std::to_string(others) +
+                     " cases are there, but none that this build would run for " +
+                     join(options.studies, ", ") + "; taut run makes them" +
+                     where_else(studies.front(), store));
   report::add_stored_maps(input, load_all(maps, options.preset), store);
   input.command = command;
   input.solvers = introductions();
@@ -178,7 +191,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--no-media", options.no_media, "Without pictures and videos");
   add_json(app, options.json,
            "The model of the page (experiments/report/model/MODEL.md), without pictures");
-  add_output(app, options.output, "The page (default: report.html)");
+  add_output(app, options.output,
+             "The page (default: report.html), or the model (default: standard output)");
 }
 
 }  // namespace
@@ -186,6 +200,7 @@ void add_options(CLI::App& app, Options& options) {
 std::string report_main_job(const std::string& preset, const std::string& results) {
   Options options;
   options.preset = preset, options.results = results, options.silent = true;
+  options.output = "report.html";
   run(options);
   return options.output;
 }

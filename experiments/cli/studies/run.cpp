@@ -146,7 +146,7 @@ void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
   }
 }
 
-void print_next(const Options& options, bool bare) {
+void print_next(const Options& options, const Study& leading, bool bare) {
   std::string which;
   for (const std::string& study : options.studies)
     if (!bare) which += " " + shell_word(study);
@@ -157,8 +157,9 @@ void print_next(const Options& options, bool bare) {
   progress() << "next: "
              << (bare && !options.no_report ? "open report.html"
                                             : "taut report" + which + more + in)
-             << "\n      taut plot " << first << more << in << "\n      taut export " << first
-             << more << in << " -o table.csv\n";
+             << "\n      taut plot " << first << more
+             << (leading.plots.empty() ? " --kind series" : "") << in << "\n      taut export "
+             << first << more << in << " -o table.csv\n";
 }
 
 int run(Options options) {
@@ -198,7 +199,7 @@ int run(Options options) {
   else if (!bare || options.no_report)
     std::cout << options.out << '\n';
   print_unequal_work(studies, store);
-  print_next(options, bare);
+  print_next(options, studies.front(), bare);
   return kPass;
 }
 
@@ -229,6 +230,6 @@ TAUT_VERB(run) = {.name = "run",
                   .summary = "Runs studies, one process per case; resumes what was interrupted",
                   .example =
                       "taut run\n  taut run iterations --preset quick -j 2\n"
-                      "  taut run default-setting --table stretch.rms --table energy.drift\n"
+                      "  taut run default-setting --table stretch.rms --table stretch.max\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
                   .bind = taut::bind_verb<taut::verb::run::add_options, taut::verb::run::run>};
