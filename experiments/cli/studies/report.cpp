@@ -4,8 +4,8 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
-#include "core/solver/simd/kernels.hpp"
 #include "core/model/text.hpp"
+#include "core/solver/simd/kernels.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/cli/calls.hpp"
