@@ -91,7 +91,7 @@ class BadInput(CommandLine):
                         says=["jakobsne: column 1: unknown solver", "omega=2: column 8: bullet: iterations=-1 is outside",
                               "omega=2: column 22: bullet: unknown parameter 'omega'"])
         self.refuse("case", "hang", ":,,,", says=["column 1: unknown solver ''", *(f"column {i}: expected key=value" for i in (2, 3, 4, 5))])
-        self.refuse("case", "hang", "xpbd:iterations=10000000", says="is outside 0 to 1000000")
+        self.refuse("case", "hang", "xpbd:iterations=10000000", says="is outside 0 to 1e6")
         self.refuse("run", "iterations", "--shard", "5/4", says="shard 5/4 does not exist")
         self.refuse("run", "iterations", "--shard", "two", says="expected i/n")
 

@@ -195,8 +195,9 @@ TEST(ShippedData, AreFoundByNameAndFilesByPath) {
   EXPECT_EQ(find_scene("more/d"), data / "scenes/more/d.toml");
   EXPECT_EQ(find_study("s"), data / "studies/s.toml");
   EXPECT_EQ(find_scene((data / "studies/s.toml").string()), data / "studies/s.toml");
-  EXPECT_EQ(refused([] { find_scene("more/../a"); }), "more/../a: no such scene file");
-  EXPECT_EQ(refused([] { find_study("none.toml"); }), "none.toml: no such study file");
+  const std::string from = ", seen from " + std::filesystem::current_path().string();
+  EXPECT_EQ(refused([] { find_scene("more/../a"); }), "more/../a: no such scene file" + from);
+  EXPECT_EQ(refused([] { find_study("none.toml"); }), "none.toml: no such study file" + from);
   EXPECT_EQ(refused([&] { find_scene((data / "scenes").string()); }),
             (data / "scenes").string() + " is a folder, not a scene file");
   EXPECT_EQ(refused([] { find_scene("aa"); }),
