@@ -244,16 +244,25 @@ class Advisor {
       solvers = cheapest_first(std::move(solvers), [&](const std::string& setting) {
         return evaluate(setting, options_.patience);
       });
-    search(solvers, SearchDepth::columns, result_.cut);
-    std::vector<std::string> unrefined;
-    search(solvers, SearchDepth::refined, unrefined);
-    for (const std::string& solver : unrefined)
+    result_.cut = search(solvers, SearchDepth::columns);
+    for (const std::string& solver : search(solvers, SearchDepth::refined))
       if (std::ranges::find(result_.cut, solver) == result_.cut.end())
         result_.unrefined.push_back(solver);
   }
 
-  void search(const std::vector<std::string>& solvers, SearchDepth depth,
-              std::vector<std::string>& cut) {
+  /// Those for which there was too little time; what the others leave of it is theirs.
+  std::vector<std::string> search(const std::vector<std::string>& solvers, SearchDepth depth) {
+    std::vector<std::string> cut = search_once(solvers, depth);
+    for (std::size_t before = 0;
+         !cut.empty() && elapsed() < end_of_search() && result_.tried.size() > before;) {
+      before = result_.tried.size();
+      cut = search_once(cut, depth);
+    }
+    return cut;
+  }
+
+  std::vector<std::string> search_once(const std::vector<std::string>& solvers, SearchDepth depth) {
+    std::vector<std::string> cut;
     auto left = static_cast<double>(solvers.size());
     for (const std::string& solver : solvers) {
       const double deadline = elapsed() + (end_of_search() - elapsed()) / left--;
@@ -269,6 +278,7 @@ class Advisor {
       search_settings(solver, result_.target, run, others, depth);
       if (!ended) cut.push_back(solver);
     }
+    return cut;
   }
 
   SceneBench time(const std::vector<Record>& records, int rounds) const {
