@@ -143,7 +143,9 @@ class FaultySolvers(CommandLine):
         model = json.loads(self.taut("report", study, "--json", program="taut-faulty").out)
         shown, = [status for status in model["statuses"] if status["id"] == "extreme"]
         self.assertTrue(shown["failed"])
-        self.assertIn("of 2: 1 extreme", json.dumps(model["answer"]["tables"]["failures"]))
+        failures = model["answer"]["tables"]["failures"]
+        self.assertIn("of 1: 1 extreme", json.dumps(failures))  # one case for each question and work
+        self.assertIn("of all 2 cases of this page, 1 failed", failures["caption"])
 
     def test_printing_without_end(self):
         status = self.run_modes("print")["print"]

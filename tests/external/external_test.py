@@ -151,7 +151,7 @@ class Toys(Programs):
         for solver, says in [("external:cmd='no-such-program x'", "no program 'no-such-program'"),
                              ("external:cmd='python3 a | b'", "no shell runs it"),
                              ("external:cmd='touch called", "the quote ' is not closed"),
-                             (f"external:cmd='{TOYS['cpp']}',iterations=-1", "iterations=-1 is outside 0 to 1000000"),
+                             (f"external:cmd='{TOYS['cpp']}',iterations=-1", "iterations=-1 is outside 0 to 1e6"),
                              (f"external:cmd='{TOYS['cpp']}',sweeps=1", "unknown parameter 'sweeps'"),
                              ("mien", "unknown solver 'mien'")]:
             with self.subTest(solver):

@@ -271,7 +271,7 @@ TEST(Chosen, ACostIsThatOfTheCheapestThatReachesAnErrorAndAProfileCountsThem) {
                                         {1u, 0.09, 2.0},
                                         {3u, 0.05, 5.0},
                                         {5u, 0.0009, 8.0}}) {
-    records[at].values = {{"stretch.rms", error}, {"motion.share", 0.4}, {"energy.peak", 7}};
+    records[at].values = {{"stretch.rms", error}, {"motion.share", 0.6}, {"energy.peak", 7}};
     const std::vector<double> samples(12, cost * records[at].dt);
     scene.cases.push_back({records[at], {samples, samples, 0, "", ""}});
   }
@@ -296,10 +296,10 @@ TEST(Chosen, ACostIsThatOfTheCheapestThatReachesAnErrorAndAProfileCountsThem) {
     const std::size_t row = note["row"];
     const std::string solver = note["column"], text = note["note"];
     EXPECT_EQ(note["key"], short_key("hang", solver, row == 0 ? 4 : solver == "bullet" ? 16 : 8));
-    EXPECT_TRUE(text.ends_with(", " + quantity("motion.share").title + " 40\u00A0%")) << text;
+    EXPECT_TRUE(text.ends_with(", " + quantity("motion.share").title + " 60\u00A0%")) << text;
     EXPECT_EQ(text.find(quantity("stretch.rms").title), text.npos) << "the row has it: " << text;
-    if (row < 2) {
-      EXPECT_EQ(note.contains("best"), solver == "jakobsen") << row;
+    if (row < 2) {  // 10 % is reached by the cheapest settings that were tried: upper bounds
+      EXPECT_EQ(note.contains("best"), solver == "jakobsen" && row == 1) << row;
     }
     ++seen;
   }

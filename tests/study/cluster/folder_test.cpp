@@ -153,7 +153,7 @@ TEST_F(Folder, AMergeTakesResultsBeforeFailuresAndSaysWhatIsMissing) {
   });
   EXPECT_EQ(told, 3u);
   const Store merged(root_.path() / "m");
-  EXPECT_EQ(merged.keys(), (Strings{key(0), key(1), key(2)}));
+  EXPECT_EQ(merged.keys(), (Strings{key(1), key(0), key(2)})) << "as they were merged";
   EXPECT_EQ(merged.find(key(0))->values.at("a"), 5);
   EXPECT_EQ(merged.find(key(1))->status.kind, Kind::oom) << "a failure is better than nothing";
   EXPECT_EQ(merged.series(key(2)).rows.size(), 1u);
