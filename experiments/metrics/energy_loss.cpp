@@ -43,9 +43,9 @@ class EnergyLoss final : public Metric {
     if (now.kinetic > largest_) largest_ = now.kinetic, least_ = now;
   }
   std::vector<double> finish() override {
+    if (exchanged_ <= kSwing * energy_.unit()) return {Summary::kNone};
     const double loss = (first_ - last_) / exchanged_;
-    const bool swings = exchanged_ > kSwing * energy_.unit() && loss <= 1;
-    return {swings ? loss : Summary::kNone};
+    return {loss <= 1 ? loss : Summary::kNone};
   }
   std::vector<double> now(const Snapshot&) const override { return {Summary::kNone}; }
 
