@@ -467,7 +467,7 @@ class Verbs(CommandLine):
         if any("omega=" in setting for setting in tried):  # a refinement of jakobsen, which is cheap
             self.assertLess({"xpbd", "pd", "bullet"}, {setting.partition(":")[0] for setting in tried[:tried.index(
                 next(setting for setting in tried if "omega=" in setting))]})
-        hurried = self.taut("advise", "./small.toml", "--error", "0.1%", "--patience", 0.8, "--json", expect=None)
+        hurried = self.taut("advise", "./small.toml", "--error", "0.1%", "--patience", 0.05, "--out", "new", "--json", expect=None)
         self.assertIn(hurried.returncode, (3, 4))
         self.assertIn("INCOMPLETE", json.loads(hurried.out)["subject"])
 
