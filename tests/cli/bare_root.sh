@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The README's two commands on a Debian 12 that has nothing else: what they install is all that they, and the tests, use.
 # The bare system is a folder (debootstrap, from the mirror of this machine). In it stands this tree with BUILD, under an overlay:
-# it is configured anew with what the root has, and compiled anew where BUILD used ccache, which the root has not.
+# it is configured anew with what the root has, and compiled anew where a file differs that the root has, or has not.
 # Usage: bare_root.sh BUILD [--whole]
 #   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call other programs.
 # Ends with 77, not run, where no such system can be made; says why.
@@ -28,6 +28,11 @@ mkdir "$root" "$scratch/changed" "$scratch/work"
 debootstrap --variant=minbase bookworm "$root" "$mirror" >"$scratch/log" 2>&1 || { tail -n 3 "$scratch/log"; not_here "debootstrap failed"; }
 mkdir -p "$root$home"
 cp /etc/resolv.conf /etc/hosts "$root/etc"
+# Equal commands, so that what BUILD compiled stays: its -Werror, and for its compiler cache one that only calls the compiler.
+export CI=
+! grep -q '^TAUT_WERROR:BOOL=ON' "$build/CMakeCache.txt" || CI=1
+cache=$(sed -n 's/^CCACHE:FILEPATH=\(\/.*\)/\1/p' "$build/CMakeCache.txt")
+[[ -z $cache ]] || install -Dm755 <(printf '#!/bin/sh\nexec "$@"\n') "$root$cache"
 
 # What is mounted is gone with the process.
 export root home build scratch study
@@ -35,7 +40,7 @@ unshare --mount --pid --fork --kill-child bash -euc '
   mount -t overlay overlay -o "lowerdir=$home,upperdir=$scratch/changed,workdir=$scratch/work" "$root$home" &&
     mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" || exit 77
   rm -f "$root$build/CMakeCache.txt" "$root$build/build.ninja"
-  in_root() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TMPDIR=/tmp CI=1 "$@"; }
+  in_root() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TMPDIR=/tmp CI="$CI" "$@"; }
   in_root "$home/taut" run $study --out /tmp/runs
   [[ -z $study ]] || in_root "$home/taut" report $study --out /tmp/runs
   in_root "$home/taut" test "$@"
