@@ -109,7 +109,7 @@ class Require(CommandLine):
         for patience in (1, 3):
             process = self.start("require", "./made.toml", "--patience", patience, "--json")
             found = facts_of(json.loads(process.communicate(timeout=60)[0]))
-            self.assertLess(found["seconds"], 1.1 * patience)
+            self.assertLess(found["seconds"], 1.1 * patience + 1)
             self.assertEqual(process.returncode, 0 if found["complete"] else 3)
         stored = len(self.keys())
         found = facts_of(self.answer("require", "./made.toml"))

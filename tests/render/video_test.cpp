@@ -47,6 +47,7 @@ class VideoTest : public testing::Test {
 MediaOptions quick() {
   MediaOptions options;
   options.width = 480, options.height = 200, options.duration = 0.25;
+  options.fps = 22;
   options.quality = RenderQuality::draft();
   return options;
 }

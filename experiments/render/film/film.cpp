@@ -117,8 +117,6 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   options.quality.finest_sheet = 33;  // quads of three to eight pixels
   if (!film.studied) {
     options.width = 704, options.height = 320;
-    options.fps = 16;
-    options.quality.light = {18, 128, 96};
     options.crf = 30;
   }
   options.width = options.width / static_cast<int>(panels) * static_cast<int>(runs) / 2 * 2;

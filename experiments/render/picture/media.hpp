@@ -11,7 +11,7 @@ struct MediaOptions {
   int width = 960, height = 400;  ///< of all panels together; even
   double duration = 4;            ///< s of the scene's beginning
   double speed = 1;               ///< simulated seconds per second of video
-  double fps = 22;  ///< of the video; frames are whole steps: the nearest rate that dt allows
+  double fps = 16;  ///< of the video; frames are whole steps: the nearest rate that dt allows
   RenderQuality quality = RenderQuality::video();
   int crf = 25;
 };

@@ -86,7 +86,7 @@ struct RenderQuality {
   int finest_sheet = 64;  ///< quads along a side after refinement
 
   static RenderQuality draft() { return {{9, 96, 64}, 1, 33}; }
-  static RenderQuality video() { return {{18, 128, 112}, 1, 66}; }
+  static RenderQuality video() { return {{12, 128, 96}, 1, 66}; }
   static RenderQuality still() { return {{96, 256, 224}, 2, 132}; }
 };
 
