@@ -114,8 +114,9 @@ std::string text(const Cell&, const Column&, bool with_unit = true);
 /// The heading with the unit: "CPU time [ms]".
 std::string label(const Column&);
 
-/// For a terminal: the subject, a line for every fact, tables in columns.
-std::string to_text(const Answer&, bool details = false);
+/// For a terminal: the subject, a line for every fact, tables in columns. Words are broken into
+/// lines where a row would have more than `width` characters.
+std::string to_text(const Answer&, bool details = false, std::size_t width = std::string::npos);
 
 /// The schema of all verbs (experiments/cli/README.md): every number in SI, to the bit.
 std::string to_json(const Answer&);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <sstream>
 
 #include "experiments/answer/answer.hpp"
 
@@ -18,22 +20,60 @@ std::string padded(const std::string& text, std::size_t width, bool left) {
   return left ? text + blanks : blanks + text;
 }
 
+/// The text in lines of at most that many characters, broken at blanks; a longer word has a line.
+std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
+  if (characters(text) <= most) return {text};
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;)
+    if (!lines.empty() && characters(lines.back()) + 1 + characters(word) <= most)
+      lines.back() += ' ' + word;
+    else
+      lines.push_back(word);
+  return lines;
+}
+
+/// As wide as what is in them, but of words at most as wide as lets a line fit into `most`
+/// characters and as their longest word needs.
+std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows,
+                                   const std::vector<bool>& left, std::size_t most) {
+  std::vector<std::size_t> all(left.size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) all[i] = std::max(all[i], characters(row[i]));
+  std::vector<std::size_t> fit = all;
+  const auto line = [&] { return std::accumulate(fit.begin(), fit.end(), 2 * fit.size()); };
+  if (line() <= most) return all;
+  std::vector<std::size_t> least(left.size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i)
+      for (const std::string& word : wrapped(row[i], left[i] ? 0 : most))
+        least[i] = std::max(least[i], characters(word));
+  for (std::size_t cap = std::ranges::max(all); line() > most && cap-- > 0;)
+    for (std::size_t i = 0; i < fit.size(); ++i) fit[i] = std::max(least[i], std::min(all[i], cap));
+  return fit;
+}
+
 /// Columns of words are flush left, those of numbers flush right.
 std::string lines_of(const std::vector<std::vector<std::string>>& rows,
-                     const std::vector<bool>& left) {
-  std::vector<std::size_t> width(rows.front().size());
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], characters(row[i]));
+                     const std::vector<bool>& left, std::size_t most) {
+  const std::vector<std::size_t> width = widths_of(rows, left, most);
   std::string all;
   for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) line += "  " + padded(row[i], width[i], left[i]);
-    all += line.erase(line.find_last_not_of(' ') + 1) + '\n';
+    std::vector<std::vector<std::string>> cells;
+    std::size_t lines = 1;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      lines = std::max(lines, cells.emplace_back(wrapped(row[i], width[i])).size());
+    for (std::size_t k = 0; k < lines; ++k) {
+      std::string line;
+      for (std::size_t i = 0; i < row.size(); ++i)
+        line += "  " + padded(k < cells[i].size() ? cells[i][k] : "", width[i], left[i]);
+      all += line.erase(line.find_last_not_of(' ') + 1) + '\n';
+    }
   }
   return all;
 }
 
-std::string text_of(const Table& table, bool details) {
+std::string text_of(const Table& table, bool details, std::size_t width) {
   const std::size_t shown = table.rows_shown(details);
   std::vector<std::vector<std::string>> rows(shown + 1);
   std::vector<bool> left;
@@ -50,24 +90,22 @@ std::string text_of(const Table& table, bool details) {
     left.push_back(words);
   }
   std::string out = table.title.empty() ? "" : table.title + "\n";
-  out += lines_of(rows, left);
+  out += lines_of(rows, left, width);
   if (shown < table.rows.size())
     out += "  and " + std::to_string(table.rows.size() - shown) + " more: --all\n";
-  return table.caption.empty() ? out : out + "  " + table.caption + '\n';
+  return table.caption.empty() ? out : out + lines_of({{table.caption}}, {true}, width);
 }
 
 }  // namespace
 
-std::string to_text(const Answer& answer, bool details) {
+std::string to_text(const Answer& answer, bool details, std::size_t width) {
   std::string out = answer.subject.empty() ? "" : answer.subject + '\n';
-  std::size_t width = 0;
+  std::vector<std::vector<std::string>> facts;
   for (const auto& [column, cell] : answer.facts)
-    if (details || !column.detail) width = std::max(width, characters(column.heading));
-  for (const auto& [column, cell] : answer.facts)
-    if (details || !column.detail)
-      out += "  " + padded(column.heading, width, true) + "  " + text(cell, column) + '\n';
+    if (details || !column.detail) facts.push_back({column.heading, text(cell, column)});
+  if (!facts.empty()) out += lines_of(facts, {true, true}, width);
   for (const Table& table : answer.tables)
-    if (table.is_shown(details)) out += (out.empty() ? "" : "\n") + text_of(table, details);
+    if (table.is_shown(details)) out += (out.empty() ? "" : "\n") + text_of(table, details, width);
   return out;
 }
 

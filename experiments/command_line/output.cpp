@@ -1,5 +1,6 @@
 #include "experiments/command_line/output.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -42,6 +43,13 @@ std::string with_verdicts(const std::string& text) {
   return out;
 }
 
+/// Of the terminal that standard output is; a file's or a pipe's lines are as long as they are.
+std::size_t columns_of_output() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col
+                                                                         : std::string::npos;
+}
+
 }  // namespace
 
 std::string coloured(std::string_view text, Colour colour) {
@@ -58,7 +66,7 @@ void print(const Answer& answer, const Format& format) {
   else if (!format.csv.empty())
     std::cout << to_csv(answer, format.csv == "true" ? "" : format.csv);
   else
-    std::cout << with_verdicts(to_text(answer, format.details));
+    std::cout << with_verdicts(to_text(answer, format.details, columns_of_output()));
   std::cout << std::flush;
 }
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -208,6 +210,37 @@ TEST(Answers, OfAnyKindComeBackFromJsonAndSayTheSameInCsvAndToPeople) {
     for (const bool details : {false, true}) expect_people_see(answer, details);
     if (HasFailure()) FAIL() << "seed " << seed;
   }
+}
+
+TEST(Answers, BreakWordsWhereATerminalIsNarrowAndLoseNone) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Answer answer = MadeUp(seed).answer();
+    const auto words = [](const std::string& text) {
+      std::istringstream in(text);
+      return std::multiset<std::string>{std::istream_iterator<std::string>(in), {}};
+    };
+    EXPECT_EQ(words(to_text(answer, true, 40)), words(to_text(answer, true))) << seed;
+  }
+  const Answer answer{"list",
+                      "",
+                      {},
+                      {{"scenes",
+                        "scenes",
+                        {Column("name"), Column("n", "vertices", kCount), Column("summary")},
+                        {{"hang", 1024, "held by two corners, so every strain is error"},
+                         {"ball-and-chain", 7, "falls"}},
+                        "a caption of more words than a line has"}}};
+  EXPECT_EQ(to_text(answer, false, 42),
+            "scenes\n"
+            "  name            vertices  summary\n"
+            "  hang                1024  held by two\n"
+            "                            corners, so\n"
+            "                            every strain\n"
+            "                            is error\n"
+            "  ball-and-chain         7  falls\n"
+            "  a caption of more words than a line has\n");
+  EXPECT_NE(to_text(answer, false, 24).find("\n  a caption of more\n  words than a line has\n"),
+            std::string::npos);
 }
 
 TEST(Answers, ShowACellInTheUnitOfItsColumn) {

@@ -306,8 +306,8 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableS
       << "two of three thirds of 960";
   using Refused = std::vector<std::pair<std::string, std::string>>;
   EXPECT_EQ(first.refused, (Refused{{"mass-spring", "no reason"}}));
-  EXPECT_EQ(first.duration, 15 / 64.0);
-  EXPECT_EQ(first.frame, 3 / 64.0);
+  EXPECT_EQ(first.duration, 16 / 64.0);
+  EXPECT_EQ(first.frame, 4 / 64.0);
   EXPECT_EQ(first.speed, 1);
   ASSERT_EQ(first.bar["stops"].size(), 17u);
   for (const auto& [stop, at] : {std::pair{0, 0.0}, {4, 0.25}, {8, 0.5}, {16, 1.0}}) {
