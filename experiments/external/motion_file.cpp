@@ -308,7 +308,11 @@ ResolvedSettings MotionFile::settings(const Scene& scene) {
                                                                 : "text";
   return {
       {"frames", std::to_string(about.frames) + " of " + std::to_string(about.vertices) +
-                     " vertices, " + rounding},
+                     " vertices, " + rounding +
+                     (about.frames > scene.steps + 1
+                          ? "; scored are the first " + std::to_string(scene.steps + 1) +
+                                ", with which the scene ends"
+                          : "")},
       {"time step",
        shortest(frame_dt_) + " s a frame, " +
            (options_.fps > 0 ? "as said" : "assumed: the scene's; fps says otherwise")},

@@ -215,6 +215,10 @@ TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {
   const Scene scene = sheet();
   const MotionOptions plain = write("a.npy", scene, kAsIs);
   EXPECT_EQ(setting(scene, plain, "frames"), "4 of 63 vertices, float64");
+  Scene shorter = scene;
+  shorter.steps = 2;
+  EXPECT_EQ(setting(shorter, plain, "frames"),
+            "4 of 63 vertices, float64; scored are the first 3, with which the scene ends");
   EXPECT_EQ(setting(scene, plain, "time step"),
             "0.015625 s a frame, assumed: the scene's; fps says otherwise");
   EXPECT_EQ(setting(scene, plain, "unit"), "1 unit is 1 m, y up");
