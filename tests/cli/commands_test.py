@@ -467,7 +467,7 @@ class Verbs(CommandLine):
         if any("omega=" in setting for setting in tried):  # a refinement of jakobsen, which is cheap
             self.assertLess({"xpbd", "pd", "bullet"}, {setting.partition(":")[0] for setting in tried[:tried.index(
                 next(setting for setting in tried if "omega=" in setting))]})
-        hurried = self.taut("advise", "./small.toml", "--error", "0.1%", "--patience", 0.8, "--json", expect=None)
+        hurried = self.taut("advise", "./small.toml", "--error", "0.1%", "--patience", 0.05, "--json", expect=None)
         self.assertIn(hurried.returncode, (3, 4))
         self.assertIn("INCOMPLETE", json.loads(hurried.out)["subject"])
 
@@ -571,6 +571,20 @@ class Verbs(CommandLine):
         more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='axes.time.dt = ["1/64", "1/32"]\n')
         missing = self.taut("export", more, expect=3)
         self.assertEqual(missing.out.count(",not run,"), 2)
+
+    def test_a_bench_says_how_many_times_the_first_each_costs(self):
+        study = self.study(rest="axes.iterations = [1, 256]\n")
+        first, other = rows_of(self.answer("bench", study, *self.QUICK), "cases")
+        self.assertIsNone(first["times"])
+        self.assertGreater(other["cost"][1], 2 * first["cost"][1])
+        self.assertGreater(other["times"][1], 2)
+        self.assertNotIn("cheaper", other["verdict"])
+
+    def test_of_a_key_that_is_set_twice_export_has_what_the_case_ran(self):
+        study = self.study(scenes=["./small.toml:time.duration=0.25"], rest='set = ["time.duration=0.375", "time.dt=\'1/32\'"]\n')
+        self.taut("run", study)
+        row, = csv.DictReader(self.taut("export", study).out.splitlines())
+        self.assertEqual((float(row["time.duration"]), int(row["steps"])), (0.25, 8))
 
     def test_a_damaged_case_is_no_row_of_a_table(self):
         study = self.study(rest="axes.iterations = [1, 2]\n")
