@@ -15,6 +15,7 @@
 #include "experiments/case/reference_store.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/cloths.hpp"
+#include "tests/support/environment.hpp"
 
 namespace taut::records_test {
 namespace {
@@ -230,6 +231,34 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   EXPECT_TRUE(found().rest) << "its own was not replaced";
   scene.name = "";
   EXPECT_FALSE(found().rest || !found().motion.empty());
+}
+
+// Committed ones come first; what they lack is taken from one's own, each kind by itself.
+TEST(ReferenceFiles, OnesOwnStandInForEachKindThatIsNotCommitted) {
+  Scene scene = hanging_sheet(2, 2);
+  scene.name = "small";
+  for (int has = 0; has < 16; ++has) {
+    const Scratch scratch;
+    const Environment data("TAUT_DATA", scratch.path().c_str()),
+        own("TAUT_RESULTS", (scratch.path() / "own").c_str());
+    int bit = 1;
+    for (const std::string whose : {"committed", "own"})
+      for (const std::string kind : {"static", "motion"}) {
+        const auto folder = scratch.path() / (whose == "own" ? "own/references" : "references");
+        make_folder(folder);
+        if (has & bit)
+          write_reference(
+              {"small", reference_digest(scene, kind), kind, 0.5, whose, 1e-9, scene.start.x},
+              folder / "small");
+        bit *= 2;
+      }
+    const auto whose = [&](int committed, int mine) {
+      return has & committed ? "committed" : has & mine ? "own" : "";
+    };
+    const References known = known_references(scene);
+    EXPECT_EQ(known.rest ? known.rest->derivation : "", whose(1, 4)) << has;
+    EXPECT_EQ(known.motion.empty() ? "" : known.motion.front().derivation, whose(2, 8)) << has;
+  }
 }
 
 }  // namespace

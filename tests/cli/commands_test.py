@@ -593,6 +593,20 @@ class Verbs(CommandLine):
         missing = self.taut("export", more, expect=3)
         self.assertEqual(missing.out.count(",not run,"), 2)
 
+    def test_a_bench_says_how_many_times_the_first_each_costs(self):
+        study = self.study(rest="axes.iterations = [1, 256]\n")
+        first, other = rows_of(self.answer("bench", study, *self.QUICK), "cases")
+        self.assertIsNone(first["times"])
+        self.assertGreater(other["cost"][1], 2 * first["cost"][1])
+        self.assertGreater(other["times"][1], 2)
+        self.assertNotIn("cheaper", other["verdict"])
+
+    def test_of_a_key_that_is_set_twice_export_has_what_the_case_ran(self):
+        study = self.study(scenes=["./small.toml:time.duration=0.25"], rest='set = ["time.duration=0.375", "time.dt=\'1/32\'"]\n')
+        self.taut("run", study)
+        row, = csv.DictReader(self.taut("export", study).out.splitlines())
+        self.assertEqual((float(row["time.duration"]), int(row["steps"])), (0.25, 8))
+
     def test_a_damaged_case_is_no_row_of_a_table(self):
         study = self.study(rest="axes.iterations = [1, 2]\n")
         self.taut("run", study)

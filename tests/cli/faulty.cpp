@@ -17,10 +17,11 @@ namespace taut {
 namespace {
 
 constexpr ParamSpec kParams[] = {
-    ParamSpec::choice("mode", "stable",
-                      "stable|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random|"
-                      "exit74|exit127|chdir|fork|daemon|stop|stretch|fewer|far|forge|words",
-                      "what it does at that step"),
+    ParamSpec::choice(
+        "mode", "stable",
+        "stable|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random|"
+        "exit74|exit127|chdir|fork|daemon|stop|stretch|fewer|far|forge|words|restless",
+        "what it does at that step"),
     ParamSpec::integer("at", "5", 1, 1e6, "step at which it does it"),
     ParamSpec::integer("variant", "0", 0, 1e6, "makes cases differ"),
 };
@@ -35,7 +36,10 @@ class Faulty final : public Solver {
     state = state_;
     if (mode_ == "fewer" && step_ >= at_) state.x.resize(2);
   }
-  std::vector<PassCost> step_cost() const override { return {}; }
+  std::vector<PassCost> step_cost() const override {  // with sweeps it would have to settle
+    if (mode_ != "restless") return {};
+    return {{.pass = "links", .items = 1, .repeats = 1000, .projections = true}};
+  }
 
   void step(double, double dt) override {
     if (++step_ == at_) misbehave();

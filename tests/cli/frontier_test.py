@@ -102,6 +102,22 @@ class AllFrontiers(CommandLine):
         self.assertEqual(self.keys(), [])
 
 
+class OneFrontier(CommandLine):
+    """Theory has growth of any pace; a short run sees only what is fast, so that its bracket lies above."""
+
+    def test_theory_is_inside_the_bracket_or_as_far_off_as_its_nearer_end(self):
+        for seconds in (16, 0.1):
+            facts = self.answer("frontier", "chain", "mass-spring:substeps=1", "--duration", seconds, "--from", 0.003, "--to", 0.006)["facts"]
+            theory, stable, unstable = (facts[name]["value"] for name in ("theory", "stable", "unstable"))
+            said = facts["theory"]["note"].partition(":")[0]
+            if seconds == 16:
+                self.assertTrue(stable <= theory <= unstable, facts)
+                self.assertEqual(said, "inside the bracket")
+            else:
+                self.assertLess(theory, stable)
+                self.assertEqual(said, f"measured +{100 * (stable / theory - 1):.2g} % from it")
+
+
 class Assertions(CommandLine):
     def test_a_verdict_that_changes_is_red(self):
         kept = pathlib.Path(__file__).parents[2] / "results/baselines/assertions.json"

@@ -147,6 +147,13 @@ class FaultySolvers(CommandLine):
         self.assertIn("of 1: 1 extreme", json.dumps(failures))  # one case for each question and work
         self.assertIn("of all 2 cases of this page, 1 failed", failures["caption"])
 
+    def test_a_value_of_a_case_that_should_rest_and_does_not_is_marked(self):
+        study = self.study(solvers=["faulty:mode=restless", "faulty:mode=stable"], rest='set = ["forces.damping=1000"]\n')
+        run = self.taut("run", study, "--table", "stretch.max", "--json", program="taut-faulty")
+        self.assertIn("2/2 cases: ok 1, unsettled 1", run.err)
+        table = json.loads(run.out)["tables"]["stretch.max"]
+        self.assertEqual([(note["row"], note.get("note")) for note in table["notes"]], [(0, "~"), (1, None)])
+
     def test_printing_without_end(self):
         status = self.run_modes("print")["print"]
         self.assertIn(status["kind"], ("crash", "timeout"))

@@ -380,6 +380,15 @@ class NoMoreFiles {
   rlimit before_{};
 };
 
+// How long it may take belongs to the program: one that was too slow once may be fast enough.
+TEST(Programs, OfOneCommandAreOthersWithAnotherTimeout) {
+  const std::string cmd = R"(external:cmd='sh -c "read x; sleep 1; echo {}; read x"',timeout=)";
+  enable();
+  EXPECT_NE(parse_solver(cmd + "0.1").entry->summary.find("within 0.1 s"), std::string::npos);
+  EXPECT_EQ(parse_solver(cmd + "60").entry->summary.find("within"), std::string::npos);
+  set_solver_source({});
+}
+
 TEST(Probe, IsMadeAgainIfItCouldNotBeMade) {
   const Scratch scratch;
   std::string program = kSlightlyWrong;

@@ -420,6 +420,7 @@ class Probe(Programs):
                     "centimetres": "free fall: .*it falls 103.1 times as far as g t\\^2/2",
                     "frames": "free fall: .*it advances by 0.5333 s", "forgets": "free fall: .*forgets the velocities",
                     "shrinks": "free fall: .*does not stay in shape.*vertex 1", "frame-velocity": "free fall: .*it reports the velocity",
+                    "nan": "free fall: .*does not stay in shape.*vertex 15 is -?nan m off",
                     "pins": "pins: vertex 0 is pinned", "chance": "same bits: the same load and the same steps give other bits",
                     "survives": "same bits: the same load", "restart": "restart: 'store' right after 'load'",
                     "outlives": "end of input: does not end within 5 s"}

@@ -48,6 +48,8 @@ class Wrong:
             self.x[4] += self.kept
         if MODE == "shrinks":
             self.x[3] -= 1e-3
+        if MODE == "nan":
+            self.x[-1] = float("nan")
 
     def store(self):
         if MODE == "frame-velocity":

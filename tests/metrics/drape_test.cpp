@@ -112,7 +112,8 @@ TEST(Cantilever, HasABendingLengthWherePeircesFormulaHolds) {
   EXPECT_NEAR(too_long(20), 0.0042, 1e-4);
   EXPECT_NEAR(too_long(41.5), 0.0188, 1e-4);
   EXPECT_NEAR(too_long(59.999), 0.0442, 1e-4);
-  EXPECT_TRUE(std::isnan(too_long(60.001)));
+  for (const double degrees : {60.001, 0.0, -0.001, -30.0})  // none beyond, level or bent upwards
+    EXPECT_TRUE(std::isnan(too_long(degrees))) << degrees;
   EXPECT_NEAR(reference::peirce_bending_length(87 * std::numbers::pi / 180) /
                   reference::bending_length(87 * std::numbers::pi / 180),
               1.566, 1e-3);

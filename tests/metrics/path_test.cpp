@@ -5,6 +5,8 @@
 
 #include "core/io/scene_io.hpp"
 #include "experiments/case/run_case.hpp"
+#include "experiments/metrics/reference_path.hpp"
+#include "tests/metrics/measured.hpp"
 
 namespace taut::path_test {
 namespace {
@@ -51,6 +53,42 @@ TEST(Path, APlateThinnerThanASubstepsTravelIsPassed) {
   const Scene scene =
       load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/tunnel.toml", {});
   EXPECT_EQ(outcome(scene, "jakobsen:contact=discrete,substeps=4").tunnelled, 289);
+}
+
+/// Way of the references at t [m]: along a line, as fast as the time is long.
+Vec3 way(double t) { return t * Vec3(0.3, -0.9, 0.4); }
+
+ReferencePath followed(double dt, const std::function<Vec3(double)>& way_at) {
+  Scene scene = sheet(3);
+  scene.dt = dt, scene.steps = static_cast<int>(std::ceil(2.6 / dt));
+  const auto moved = [&](const Vec3& by) {
+    std::vector<Vec3> x = scene.start.x;
+    for (Vec3& one : x) one += by;
+    return x;
+  };
+  std::vector<Reference> moments;
+  for (const double t : {0.5, 1.0, 1.5, 2.0})
+    moments.push_back({"made up", "", "motion", t, "", 0, moved(way(t))});
+  ReferencePath path(scene, std::move(moments));
+  for (int step = 0; step <= scene.steps; ++step)
+    path.observe({step, step * dt, State{moved(way_at(step * dt)), scene.start.v}});
+  return path;
+}
+
+// References are of moments that few time steps meet: on a line the time step changes nothing.
+TEST(Path, ALineIsJudgedAtTheReferencesTimesWhateverTheTimeStep) {
+  for (const double dt : {1.0 / 64, 0.03, 0.07, 0.19, 0.3}) {
+    for (const double faster : {0.5, 1.0, 1.5}) {
+      const ReferencePath path = followed(dt, [&](double t) { return faster * way(t); });
+      EXPECT_NEAR(path.share(), faster, 1e-12) << dt;
+      EXPECT_NEAR(path.error(), std::abs(faster - 1), 1e-12) << dt;
+      EXPECT_EQ(path.horizon(), 2) << dt;
+    }
+    const double late = 0.1;
+    const ReferencePath path = followed(dt, [&](double t) { return way(t - late); });
+    EXPECT_NEAR(path.phase(), late, 1e-7) << dt;
+    EXPECT_NEAR(path.error(), 2 * late / std::sqrt(0.36 + 1.21 + 2.56 + 4.41), 1e-12) << dt;
+  }
 }
 
 }  // namespace

@@ -219,6 +219,40 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   EXPECT_FALSE(answer.table("price").rows[0][1].best) << "alone";
 }
 
+// Where work is not equal each cell says its own, beside what it says anyway.
+TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWorkEither) {
+  Reported made;
+  made.add("swing", "jakobsen", {{"stretch.rms", 0.03}, {"motion.share", 0.9}});
+  Record& still = made.add("swing", "pd", {{"stretch.rms", 0.001}, {"motion.share", 0.49}});
+  still.params["iterations"] = "8";
+  const auto row = made.answer().table("stretch.rms").rows[0];
+  EXPECT_EQ(row[1].note, "1 × 16");
+  EXPECT_EQ(row[2].note, "hardly moves: 49\u00A0% of the way; 1 × 8");
+  EXPECT_FALSE(row[2].best);
+}
+
+// On most scenes first; of settings that reach the error on as many the cheapest, in any order.
+TEST(PageAnswers, RecommendWhatReachesTheErrorOnMostScenesAndOfEqualsTheCheapest) {
+  Reported made;
+  for (const char* solver : {"jakobsen", "bullet"})
+    made.add("hang", solver, {{"stretch.rms", 0.1}});
+  for (const double reached : {0.005, 0.5})
+    for (const bool cheap_first : {true, false}) {
+      std::vector<Timed> timed;
+      for (const char* scene : {"hang", "ball"}) {
+        const double error = scene == std::string("ball") ? reached : 0.005;
+        const Timed cheap{scene, "jakobsen", 1, 2, error, 1e-4},
+            dear{scene, "jakobsen", 1, 8, 0.004, 4e-4};
+        timed.insert(timed.end(), {cheap_first ? cheap : dear,
+                                   cheap_first ? dear : cheap,
+                                   {scene, "bullet", 1, 1, 0.005, 1e-3}});
+      }
+      made.input.bench = bench_of(timed);
+      EXPECT_EQ(made.answer().table("setting").rows.back()[1].text(),
+                reached < 0.01 ? "1 × 2" : "1 × 8");
+    }
+}
+
 TEST(PageAnswers, CountFailuresOfWhatAllSolversRanAlone) {
   Reported made;
   const auto add = [&](const char* solver, int sweeps, bool fails) {

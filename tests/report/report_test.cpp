@@ -158,6 +158,14 @@ void check_references(const Json& model) {
 
 TEST(Model, EveryReferenceLeadsSomewhere) {
   check_references(model_of(example()));
+  ReportInput several = example();  // of one solver three ways to set it, each with a map
+  for (const char* omega : {"1.3", "1.6"})
+    for (Record r : synthetic::time_steps("hang")) {
+      r.params["omega"] = omega, r.id += omega, r.key += omega;
+      several.studies[1].records.push_back(r);
+    }
+  check_references(model_of(several));
+  EXPECT_EQ(model_of(several)["scenes"][0]["maps"].size(), 6U);
   for (unsigned seed = 0; seed < 20; ++seed)
     check_references(model_of(made_up::Maker(seed).input()));
 }

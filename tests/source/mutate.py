@@ -21,11 +21,13 @@ were not drawn. The aim is 92 % noticed, no layer below 85 %. The run fails if s
 a thousand times when the share is --goal; it ends with 77, neither passed nor failed, if so few were judged in --minutes that it would
 not have failed with half of them unnoticed. The tests ask for 0.8: of a fresh sample 65 of 80 were noticed (--layers 16 --seed 11250
 --limit 20, which leaves out most tests of the command line; before it was asked which tests its survivors lack), 63 of 76 without
-experiments/truths, whose errors are errors of checks. --chosen plants the errors of a file instead (chosen_mutants.txt): the checks
+experiments/truths, whose errors are errors of checks; both before the command line was among the layers, and while one of its tests was
+red with any error and counted as noticing it. --chosen plants the errors of a file instead (chosen_mutants.txt): the checks
 that stand there with an error must notice it, every one.
 """
 import argparse
 import concurrent.futures
+import contextlib
 import fnmatch
 import itertools
 import json
@@ -52,8 +54,9 @@ EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
 LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut_solver", "core/reference": "taut_reference",
           "bullet_ref": "taut_bullet64", **{f"experiments/{name}": f"taut_{name}" for name in (
               "system", "answer", "metrics", "case", "external", "study", "timing", "require", "baseline", "truths",
-              "report", "render")}}
+              "report", "render")}, "experiments/cli": "taut_commands", "experiments/command_line": "taut_commands"}
 LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
+PROGRAMS = (UNIT, TAUT, "taut-f32", "taut-faulty")  # have the errors: the last two are called by the others
 MOST = 1 << 16  # errors at a time
 CHOSEN = f"""
 #include <fcntl.h>
@@ -120,9 +123,9 @@ class Build:
         for entry in json.loads((build / "compile_commands.json").read_text()):
             words = shlex.split(re.sub(r" -Werror\b| -MD -MT \S+ -MF \S+", "", entry["command"]))
             self.commands[os.path.normpath(words[words.index("-o") + 1])] = [words[0], "-w", *words[1:]]
-        self.layer = {word: layer for layer, library in LAYERS.items()
-                      for word in self.ninja("-t", "query", f"lib{library}.a").split("outputs:")[0].split()
-                      if word in self.commands and "registry" not in word}
+        self.library = {word: f"lib{library}.a" for library in set(LAYERS.values())
+                        for word in self.ninja("-t", "query", f"lib{library}.a").split("outputs:")[0].split()
+                        if word in self.commands and "registry" not in word}
         self.dependents, object_ = {}, None
         for line in self.ninja("-t", "deps").splitlines():
             if line and not line[0].isspace():
@@ -137,7 +140,7 @@ class Build:
     def objects(self, file, tests=()):
         """Those of the layers that depend on a source file, and those of some files of the tests."""
         of_tests = [self.dependents[str(ROOT / test)] for test in tests]
-        return (self.dependents.get(str(ROOT / file), set()) & self.layer.keys()).union(*of_tests)
+        return (self.dependents.get(str(ROOT / file), set()) & self.library.keys()).union(*of_tests)
 
     def compile(self, target, mutants):
         """The object with all these errors in it but those that do not compile."""
@@ -172,7 +175,7 @@ class Build:
         words = shlex.split(next(line for line in reversed(self.ninja("-t", "commands", program).splitlines())
                                  if f"-o {program} " in line).removeprefix(": && ").split(" && ")[0])
         words[words.index("-o") + 1] = str(out)
-        own = [str(object_) for target, object_ in objects.items() if target in words or target in self.layer]
+        own = [str(object_) for target, object_ in objects.items() if {target, self.library.get(target)} & set(words)]
         # BUILD's libraries then have nothing left to give.
         words = [words[0], "-Wl,--strip-debug", *own, str(self.folder / "chosen.o"), *(w for w in words[1:] if w not in objects)]
         subprocess.run(words, cwd=self.build, check=True)
@@ -183,7 +186,7 @@ class Build:
         for name in ("", "tests"):
             (beside / name).mkdir()
             for entry in (self.build / name).iterdir():
-                if entry.name not in (TAUT, "tests", pathlib.Path(UNIT).name):
+                if entry.name not in (*PROGRAMS, "tests", pathlib.Path(UNIT).name):
                     (beside / name / entry.name).symlink_to(entry)
         chosen.write_text(CHOSEN)
         subprocess.run(["cc", "-c", chosen, "-o", chosen.with_suffix(".o")], check=True)
@@ -195,7 +198,7 @@ class Build:
         targets = sorted(of, key=lambda target: -(self.build / target).stat().st_size)
         compiled = zip(targets, pool.map(lambda target: self.compile(target, of[target]), targets))
         objects = {target: object_ for target, object_ in compiled if object_}
-        list(pool.map(lambda program: self.link(program, objects, beside / program), (UNIT, TAUT)))
+        list(pool.map(lambda program: self.link(program, objects, beside / program), PROGRAMS))
         return beside
 
 
@@ -241,7 +244,7 @@ def draw(layers, random_, build):
             name = str(file.relative_to(ROOT))
             if LEFT_OUT.search(name) or not build.objects(name):
                 continue
-            if not {build.layer[target] for target in build.objects(name)} <= set(layers):
+            if not {build.library[target] for target in build.objects(name)} <= {f"lib{LAYERS[drawn]}.a" for drawn in layers}:
                 wide += 1
                 continue
             text = file.read_text()
@@ -262,6 +265,14 @@ def draw(layers, random_, build):
                 mutant = Mutant(layer, *pool[operator].pop(random_.randrange(len(pool[operator]))))
                 if mutant.body((ROOT / mutant.file).read_text()):
                     yield mutant
+
+
+@contextlib.contextmanager
+def scratch():
+    """A folder that any user may enter: tests run the program as another one."""
+    with tempfile.TemporaryDirectory() as folder:
+        os.chmod(folder, 0o755)
+        yield folder
 
 
 class Batch:
@@ -294,7 +305,7 @@ def judge(mutant, batches, programs, limit):
         while batch.checks and (batch.reached is None or batch.reached[mutant.number]):
             checks = batch.checks
             program, allowed = programs / checks[0].program, 5 + 4 * sum(check.seconds for check in checks)
-            with tempfile.TemporaryDirectory() as where:
+            with scratch() as where:
                 reached = pathlib.Path(where, "reached")
                 reached.write_bytes(bytes(MOST))
                 red, seconds = run(checks, program, where, allowed, TAUT_ERROR=str(mutant.number), TAUT_REACHED=str(reached))
@@ -304,7 +315,7 @@ def judge(mutant, batches, programs, limit):
                 batch.reached = seen
                 break
             culprits = [check for check in checks if check.name == red]
-            with tempfile.TemporaryDirectory() as where:
+            with scratch() as where:
                 if not culprits or not run(culprits, program, where, allowed)[0]:
                     mutant.by = red
                     return
@@ -335,7 +346,7 @@ def main():
     def spent():
         cpu = resource.getrusage(resource.RUSAGE_CHILDREN)
         return f"{time.monotonic() - start:.0f} s, {cpu.ru_utime + cpu.ru_stime:.0f} s of CPU"
-    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+    with scratch() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         build = Build(options.build.resolve(), pathlib.Path(folder))
         random_ = random.Random(options.seed)
         layers = options.layer or sorted(random_.sample(list(LAYERS), options.layers))

@@ -120,6 +120,8 @@ def run(checks, program, where, seconds=600.0, **environment):
         hangs.cancel()
         kill()  # what it left behind
         output.seek(0)
-        told = re.findall(r"^\[ ( FAILED |RUN     ) \] ([^\s,]+)", output.read(), re.MULTILINE)
+        text = output.read()
+        told = re.findall(r"^\[ ( FAILED |RUN     ) \] ([^\s,]+)", text, re.MULTILINE)
+        told += [("FAILED", f"{of}.{test}") for test, of in re.findall(r"^(?:FAIL|ERROR): (\w+) \(__main__\.(\w+)", text, re.MULTILINE)]
     named = [name for word, name in told if "FAILED" in word] or [name for _, name in reversed(told)] or names
     return named[0] if process.returncode else None, usage.ru_utime + usage.ru_stime

@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <ctime>
 #include <regex>
 #include <set>
@@ -15,6 +14,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/process.hpp"
+#include "tests/support/environment.hpp"
 
 namespace taut::files_test {
 namespace {
@@ -36,23 +36,6 @@ std::string refused(const Do& what) {
   }
   return "";
 }
-
-/// A variable of the environment, as long as this lives; nullptr: there is none.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* now = std::getenv(name)) before_ = now;
-    set(value);
-  }
-  ~Environment() { set(before_ ? before_->c_str() : nullptr); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  void set(const char* value) { value ? setenv(name_, value, 1) : unsetenv(name_); }
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 TEST(WrittenFiles, ReplaceTheOldOneAndLeaveNothingBeside) {
   const Scratch scratch;

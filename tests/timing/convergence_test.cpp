@@ -176,6 +176,19 @@ TEST(Convergence, VertexBlockDescentLowersTheGapInEverySweepAndGoesARoundaboutWa
   }
 }
 
+// The state from which all solvers step: the scene's own time went by, as its pins show.
+TEST(Convergence, BeginsWhereTheScenesOwnMotionHasBroughtIt) {
+  Scene scene = let_go(4, 4, {true, true, false});
+  PinMotion pins{{1}, {}};
+  pins.motion.path = {{0, Vec3::Zero()}, {0.25, Vec3(0.02, 0, 0.01)}, {1, Vec3(0, 0.03, 0)}};
+  scene.pin_motions = {pins};
+  for (const double at : {0.0, 0.125, 0.5, 1.0}) {
+    const State state = state_at(scene, parse_solver("jakobsen:precision=double"), at);
+    for (const int pin : scene.pins)
+      EXPECT_LT((state.x[to_index(pin)] - pin_position(scene, pin, at)).norm(), 1e-12) << at;
+  }
+}
+
 /// All goes along the chain: strains shrink as the sweep's matrix says.
 TEST(Convergence, GaussSeidelAndJacobiContractOnAStraightChainAsPrinted) {
   constexpr int kLinks = 8;

@@ -150,6 +150,21 @@ TEST(Judging, KeepsWhatItJudgedByAndSaysWhy) {
   EXPECT_EQ(section_title(10), "Metrics");
 }
 
+// A deviation that is gone is as wrong as one that has grown: its explanation no longer holds.
+TEST(Judging, ADeviationIsHeldToWhatExplainsIt) {
+  for (const auto& [measured, verdict] : {std::pair(1.0, TruthVerdict::broken),
+                                          {1.4, TruthVerdict::broken},
+                                          {1.5, TruthVerdict::passed},
+                                          {1.6, TruthVerdict::deviates},
+                                          {2.0, TruthVerdict::deviates},
+                                          {2.6, TruthVerdict::broken},
+                                          {std::nan(""), TruthVerdict::broken}}) {
+    Findings findings;
+    findings.deviates("jakobsen", "a", "1", measured, 1, 2, 0.5, "because");
+    EXPECT_EQ(findings.all().front().verdict, verdict) << measured;
+  }
+}
+
 TEST(Judging, WhatCannotRunIsNotClaimed) {
   Findings findings({"jakobsen", "bullet", "nonesuch"});
   const Scene scene = bare::pair(1, 1);
