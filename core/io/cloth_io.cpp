@@ -70,7 +70,7 @@ std::optional<double> read_mass(Section& cloth, const Fabric* fabric, const File
 }
 
 /// A row of count vertices whose ends are `span` apart, as a circular arc: every link keeps its
-/// rest length. Offsets along u and v of each vertex [m].
+/// rest length. Offsets along u and square to it of each vertex [m].
 std::vector<std::pair<double, double>> arc(int count, double width, double span) {
   const int links = count - 1;
   const double chord = width / links;
@@ -103,12 +103,14 @@ void start_sheet(Section& cloth, const SheetShape& shape, const FileKeys& said, 
                              as_typed(said.span));
   } else if (hung && said.span < shape.width) {
     const auto row = arc(shape.nu, shape.width, said.span);
+    // square to u even in a parallelogram, or links would not keep their lengths
+    const Vec3 sag = (shape.v - shape.v.dot(shape.u) * shape.u).normalized();
     const Grid& g = *scene.mesh.grid;
     for (int j = 0; j < g.nv; ++j)
       for (int i = 0; i < g.nu; ++i) {
         const Vec3 down = scene.mesh.rest[to_index(g.index(0, j))];
         scene.start.x[to_index(g.index(i, j))] =
-            down + row[to_index(i)].first * shape.u + row[to_index(i)].second * shape.v;
+            down + row[to_index(i)].first * shape.u + row[to_index(i)].second * sag;
       }
   }
   if (said.tilt != 0)

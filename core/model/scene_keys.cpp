@@ -67,9 +67,10 @@ const SceneKey kKeys[] = {
            "mass by area; not for a chain of no width"),
     choice("cloth.lumping", &FileKeys::lumping, "area|equal", "\"equal\"",
            "each vertex weighs the area it owns, or all weigh the same"),
-    number("cloth.span", &FileKeys::span, "m", Range::positive(kFar), "0.9",
-           "starts with left and right side this far apart, rows sagging along v as circular arcs "
-           "that keep every structural length; grid")
+    number(
+        "cloth.span", &FileKeys::span, "m", Range::positive(kFar), "0.9",
+        "starts with left and right side this far apart, rows sagging square to u, to v's side, as "
+        "circular arcs that keep every structural length; grid")
         .limited("at most the width")
         .otherwise("the width"),
     number("cloth.tilt", &FileKeys::tilt, "degrees", Range::within(360), "30",

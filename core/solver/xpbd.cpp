@@ -86,7 +86,7 @@ constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|dou
 LinearModel linear_model(const Scene& scene, const Params& params) {
   for (const double compliance : compliances(scene, params))
     if (compliance != 0) return {};
-  if (!params.is("order", "mesh")) return {};
+  if (!params.is("order", "mesh") || params.is("tethers", "on")) return {};
   return LinearSweeps{.sweeps = params.integer("iterations"),
                       .substeps = params.integer("substeps")};
 }

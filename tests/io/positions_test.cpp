@@ -249,6 +249,23 @@ TEST_F(Positions, AreWrittenAsTheFormatsSay) {
   EXPECT_FALSE(fs::exists(folder_ / "f_00002.obj"));
 }
 
+// Whatever a sequence is called, its name reads back what was written last, and no other's frames.
+TEST_F(Positions, ASequenceIsReadByTheNameThatItWasWrittenBy) {
+  const Mesh mesh = make_sheet({.nu = 2, .nv = 1, .width = 1, .height = 0, .mass = 1});
+  for (const int frames : {3, 2})
+    for (const char* name : {"run.obj", "run2.obj", "7.obj", "run_2.obj"}) {
+      const auto writer = create_positions(folder_ / name, mesh);
+      for (int k = 0; k < frames; ++k) writer->append(k, {Vec3(k, frames, 0), Vec3(1, 0, 0)});
+    }
+  file("run20.obj", "v 0 0 0\n"), file("run3_00000.obj", "v 0 0 0\n");
+  for (const char* name : {"run2.obj", "7.obj", "run_2.obj"}) {
+    const auto all = all_of(folder_ / name);
+    ASSERT_EQ(all.size(), 2u) << name;
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_EQ(all[k].at(0), Vec3(static_cast<double>(k), 2, 0)) << name;
+  }
+}
+
 TEST_F(Positions, ArraysOfEveryVersionAndTheirErrors) {
   std::string dictionary = "{'shape': (1, 1, 3), 'fortran_order': False,   'descr':   '<f4', }";
   dictionary.resize(70, ' ');

@@ -115,6 +115,9 @@ TEST(SceneFiles, ASpanHangsTheRowsWithoutStretchingThem) {
     EXPECT_EQ(right, Vec3(std::stod(span), 0, 0));
     EXPECT_LT(drape.start.x[16].y(), 0);  // it sags
   }
+  const Scene skewed = shipped("drape", {"cloth.span=0.8", "cloth.v=[0.6, -0.8, 0.3]"});
+  EXPECT_LT(start_strain(skewed, Family::structural), 1e-12) << "in a parallelogram too";
+  EXPECT_LT(skewed.start.x[16].y(), 0);
 }
 
 TEST(SceneFiles, ATiltTurnsTheSheetAboutItsTopEdge) {

@@ -159,7 +159,8 @@ TEST(LinearTheory, HoldsForSweepsInTheScenesOrderWhateverSolverMakesThem) {
   EXPECT_GT(growth(scene, listing("iterations=1,method=jacobi")), 2);
   for (const char* unknown :
        {"jakobsen", "jakobsen:order=reversed", "xpbd", "xpbd:order=mesh,bend=1",
-        "bullet:reorder=on", "bullet-deformable", "jakobsen:order=mesh,method=jacobi-averaged"})
+        "bullet:reorder=on", "bullet-deformable", "jakobsen:order=mesh,method=jacobi-averaged",
+        "xpbd:order=mesh,tethers=on"})
     EXPECT_EQ(growth(scene, unknown), -1) << unknown;
   EXPECT_EQ(growth(damped, "bullet"), -1);
   EXPECT_GT(growth(chain(128), listing()), 0);

@@ -44,12 +44,12 @@ std::vector<Numbered> numbered_files(const fs::path& path, const std::string& pr
 std::vector<fs::path> files_of(const fs::path& path) {
   std::string prefix = path.stem().string();
   const auto end = prefix.find_last_not_of(kDigits);
-  const bool numbered = end + 1 < prefix.size();
-  if (!numbered && fs::exists(path)) return {path};
-  if (numbered) prefix.resize(end == prefix.npos ? 0 : end + 1);
+  const bool numbered = end + 1 < prefix.size(), exists = fs::exists(path);
+  if (!numbered && exists) return {path};
+  if (numbered && exists) prefix.resize(end + 1);  // npos + 1 is 0
+  if (numbered && !exists) prefix += '_';          // "run2" of run2_00000.obj
   const std::vector<Numbered> all = numbered_files(path, prefix);
-  if (all.empty() || (numbered && !fs::exists(path)))
-    fail_in(path, "no such file, and no frames of that name");
+  if (all.empty()) fail_in(path, "no such file, and no frames of that name");
   std::vector<fs::path> files;
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (k > 0 && all[k].number == all[k - 1].number)
@@ -129,17 +129,25 @@ class SequenceReader final : public PositionReader {
 
 class SequenceWriter final : public PositionWriter {
  public:
-  SequenceWriter(const fs::path& path, const Mesh& mesh) : path_(path), mesh_(mesh) {}
+  /// Frames of a longer sequence that was there would be read as the end of this one.
+  SequenceWriter(const fs::path& path, const Mesh& mesh) : path_(path), mesh_(mesh) {
+    std::error_code error;
+    for (int k = 0; fs::remove(frame(k), error); ++k) {
+    }
+  }
 
   void append(double t, const std::vector<Vec3>& x) override {
-    std::string digits = std::to_string(frames_++);
-    digits.insert(0, 5 - std::min<std::size_t>(5, digits.size()), '0');
-    fs::path file = path_;
-    file.replace_filename(path_.stem().string() + "_" + digits + path_.extension().string());
-    OutputFile(file).write_at(0, obj_text(t, x, mesh_));
+    OutputFile(frame(frames_++)).write_at(0, obj_text(t, x, mesh_));
   }
 
  private:
+  fs::path frame(int k) const {
+    std::string digits = std::to_string(k);
+    digits.insert(0, 5 - std::min<std::size_t>(5, digits.size()), '0');
+    fs::path file = path_;
+    return file.replace_filename(path_.stem().string() + "_" + digits + path_.extension().string());
+  }
+
   fs::path path_;
   Mesh mesh_;
   int frames_ = 0;
