@@ -25,7 +25,9 @@ constexpr ParamSpec kOwn[] = {
     kMaterial,
     kVertexOrder,
     kAdaptiveStart,
-    ParamSpec::real("damping", "s", "0", 0, 1e3, "k_d, of the springs' Hessian"),
+    ParamSpec::real("damping", "s", "0", 0, 1e3,
+                    "k_d, of the springs' Hessian; as published it brakes each vertex' own way, "
+                    "rigid motion, too"),
     kChebyshev,
 };
 constexpr auto kParams = loop::with_common(kOwn);

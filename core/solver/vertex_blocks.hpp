@@ -162,9 +162,10 @@ inline constexpr ParamSpec kVertexOrder =
     ParamSpec::choice("order", "coloured", "coloured|mesh",
                       "vertices colour after colour, which threads can divide, or in the scene's "
                       "order");
-inline constexpr ParamSpec kAdaptiveStart =
-    ParamSpec::choice("start", "adaptive", "adaptive|inertia",
-                      "where iterations start: without the part of gravity that did not act in the "
-                      "last substep, or where the vertices would go without links");
+inline constexpr ParamSpec kAdaptiveStart = ParamSpec::choice(
+    "start", "adaptive", "adaptive|inertia",
+    "where iterations start: without the part of gravity that did not act in the "
+    "last substep, as published, so that what too few sweeps lose of a fall stays "
+    "lost; or where the vertices would go without links");
 
 }  // namespace taut
