@@ -143,11 +143,14 @@ TEST(Drawn, ACaseHasItsSettingsItsCommandAndItsCost) {
     for (const StudyResult& study : made.input.studies)
       for (const Record& r : study.records) raw[r.id] = &r;
     for (const auto& [key, one] : made.cases) {
-      if (const auto at = raw.find(one["id"]); at != raw.end())
+      if (const auto at = raw.find(one["id"]); at != raw.end()) {
         for (const auto& [name, value] : at->second->values)
           if (std::isfinite(value)) {
             EXPECT_TRUE(same(one["values"][name], value)) << name;
           }
+        EXPECT_EQ(one.value("step", -1), at->second->status.step);
+        EXPECT_EQ(one.value("vertex", -1), at->second->status.vertex);
+      }
       const std::string command = one["command"], settings = one["settings"];
       EXPECT_NE(command.find(settings), std::string::npos);
       for (const Json& text : one.value("overrides", Json::array()))

@@ -93,6 +93,8 @@ class Maker {
     const double die = uniform();
     if (die < 0.7) return;
     r.status.reason = "made up";
+    r.status.vertex = static_cast<int>(1000 * die) % 3 - 1;  // none, the first, another
+    r.status.step = static_cast<int>(1e6 * die) % 3 - 1;
     r.status.kind = die < 0.78   ? Status::Kind::unsettled
                     : die < 0.82 ? Status::Kind::extreme
                     : die < 0.88 ? Status::Kind::exploded

@@ -36,6 +36,22 @@ class StudyFile : public testing::Test {
   const std::string file_ = folder_.path() / "asked.toml";
 };
 
+// Whatever rounding does in between: a range begins and ends where it says.
+TEST_F(StudyFile, ARangeHasItsEndsToTheLastDigit) {
+  for (const std::string scale : {"linear", "log"})
+    for (const std::string from : {"0.1", "0.3", "0.007", "3"})
+      for (const std::string to : {"0.7", "0.9", "1.1", "49", "1000"}) {
+        const Study study = read(
+            "question = \"?\"\nscenes = [\"hang\"]\nsolvers = "
+            "[\"jakobsen\"]\n[axes]\n\"forces.damping\" = { from = " +
+            from + ", to = " + to + ", steps = 4, scale = \"" + scale + "\" }\n");
+        const Strings& values = study.axes.at(0).values;
+        ASSERT_EQ(values.size(), 4u);
+        EXPECT_EQ(values.front(), from) << to << scale;
+        EXPECT_EQ(values.back(), to) << from << scale;
+      }
+}
+
 TEST_F(StudyFile, GivesItsValuesAsTheyWereTyped) {
   const Study study = read(R"(question = "Why?"
 scenes = ["hang"]
