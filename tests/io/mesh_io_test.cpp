@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <numeric>
@@ -91,13 +92,24 @@ TEST(MeshFromObj, TwoTrianglesBendAcrossTheirEdge) {
 TEST(MeshFromObj, NoPairIsLinkedTwiceWhereThreeQuadsMeet) {
   // The corner of a cube: 0 is the corner, 1 2 3 its neighbours. Across the edge 0-1, vertices 2
   // and 3 are opposite, but they are also the diagonal of the third quad.
-  const Polygons p = parse_obj("x.obj",
-                               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\nv 0 1 1\nv 1 0 1\n"
-                               "f 1 2 5 3\nf 1 3 6 4\nf 1 4 7 2\n");
-  const auto links = mesh_links(p, {.structural = true, .shear = true, .bend = true});
-  EXPECT_EQ(as_set(links).size(), 9u + 6u + 3u);
-  for (const Link& l : links) EXPECT_LT(l.a, l.b);
-  EXPECT_EQ(mesh_links(p, {.structural = false, .shear = false, .bend = true}).size(), 6u);
+  const std::vector<std::string> vertices{"v 0 0 0\n", "v 1 0 0\n", "v 0 1 0\n", "v 0 0 1\n",
+                                          "v 1 1 0\n", "v 0 1 1\n", "v 1 0 1\n"};
+  for (std::size_t shift = 0; shift < 7; ++shift) {  // whatever the vertices' numbers are
+    std::string text;
+    for (std::size_t v = 0; v < 7; ++v) text += vertices[(v + shift) % 7];
+    for (const std::array<std::size_t, 4>& face :
+         {std::array<std::size_t, 4>{0, 1, 4, 2}, {0, 2, 5, 3}, {0, 3, 6, 1}}) {
+      text += 'f';
+      for (const std::size_t v : face) text += ' ' + std::to_string((v + 7 - shift) % 7 + 1);
+      text += '\n';
+    }
+    const Polygons p = parse_obj("x.obj", text);
+    const auto links = mesh_links(p, {.structural = true, .shear = true, .bend = true});
+    std::set<std::pair<int, int>> pairs;
+    for (const Link& l : links) EXPECT_TRUE(l.a < l.b && pairs.emplace(l.a, l.b).second) << shift;
+    EXPECT_EQ(as_set(links).size(), 9u + 6u + 3u);
+    EXPECT_EQ(mesh_links(p, {.structural = false, .shear = false, .bend = true}).size(), 6u);
+  }
 }
 
 TEST(MeshFromObj, QuadsAreCutAlongTheirShorterDiagonalAndWeighAsMuchAsTheirTriangles) {

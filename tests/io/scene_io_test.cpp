@@ -371,6 +371,10 @@ TEST(SceneFiles, WhatIsSetBesideAFabricContradictsIt) {
            {"",
             "bending.stiffness = { warp = 1, weft = 1 }",
             {fabric, "bending.stiffness.weft=2"},
+            "'stiffness' in [bending]"},
+           {"",
+            "bending.stiffness = { warp = 1, weft = 1 }",
+            {fabric, "bending.stiffness.warp=2"},
             "'stiffness' in [bending]"}}) {
     const std::string errors = beside(cloth, rest, overrides);
     EXPECT_NE(errors.find(says + " is what fabric = \"petrak-m1\" sets"), std::string::npos)

@@ -78,6 +78,12 @@ TEST(ClosedForms, CatenaryOfSixteenLinks) {
   EXPECT_NEAR(continuum_sag(1, 0.8), 0.265437509140, 5e-13);
 }
 
+/// One link swings as implicit Euler has it, whatever the sweeps: y = l/(l + g dt^2) y.
+TEST(ClosedForms, TransverseSweepsOfOneLinkAreImplicitEuler) {
+  for (const int sweeps : {1, 3})
+    EXPECT_NEAR(transverse_sweeps(1, sweeps, 0.01, 0.5)(0, 0), 0.5 / 0.51, 1e-15);
+}
+
 TEST(ClosedForms, OneSweepLeavesEveryLinkTheWeightBelowIt) {
   const int n = 16;
   const Eigen::VectorXd e = steady_strain(chain_sweep(n, Sweep::gauss_seidel), 1, 1);

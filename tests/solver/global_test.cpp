@@ -40,6 +40,20 @@ TEST(ProjectiveDynamics, AcceleratedItGoesToTheSamePointFaster) {
 }
 
 /// All directions are right from the start, and along them the energy is quadratic.
+/// Iteration k has k - 1 differences to combine: a window of m cuts them off from m + 2 on.
+TEST(ProjectiveDynamics, AndersonCombinesAsManyIterationsAsItIsTold) {
+  const Scene scene = irregular_net(9);
+  const auto after = [&](int window, int iterations) {
+    return after_one_step(scene, "pd:anderson=" + std::to_string(window) +
+                                     ",iterations=" + std::to_string(iterations))
+        .x;
+  };
+  for (const int window : {1, 2, 3}) {
+    EXPECT_EQ(after(window, window + 1), after(20, window + 1)) << window;
+    EXPECT_NE(after(window, window + 2), after(window + 1, window + 2)) << window;
+  }
+}
+
 TEST(ProjectiveDynamics, AStraightLoadedChainIsExactAfterOnePass) {
   Scene scene = hanging_sheet(1, 12, {true, false, false});
   for (std::size_t i = 1; i < scene.start.x.size(); ++i) scene.start.v[i] = {0, -0.3, 0};

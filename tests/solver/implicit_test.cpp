@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/reference/implicit_step.hpp"
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
 
@@ -42,6 +43,42 @@ TEST(Implicit, OneIterationWithoutLineSearchIsBaraffAndWitkinsStep) {
   const State mine = after_one_step(scene, "implicit:iterations=1,line-search=off," + kSoftText);
   EXPECT_LT(largest_distance(mine.x, linear), 1e-9);
   EXPECT_GT(largest_distance(step.minimum(), linear), 1e-5);  // it is not the minimum
+  // where the whole way would raise the energy, too
+  Scene thrown = scene;
+  for (Vec3& v : thrown.start.v) v *= 100;
+  const ElasticStep far(thrown, kSoft);
+  const std::vector<Vec3> whole = far.moved(thrown.start.x, far.newton_direction(thrown.start.x));
+  const auto after_one = [&](const std::string& search) {
+    return after_one_step(thrown, "implicit:iterations=1,line-search=" + search + "," + kSoftText)
+        .x;
+  };
+  EXPECT_LT(largest_distance(after_one("off"), whole), 1e-9);
+  EXPECT_GT(largest_distance(after_one("on"), whole), 1e-2);
+}
+
+/// What convergence is measured against is the step of the scene: with damping, wind and pins that
+/// move, each alone and together.
+TEST(Implicit, ConvergesToTheMinimumOfTheReference) {
+  for (int effects = 0; effects < 8; ++effects) {
+    Scene scene = hanging_sheet(5, 4);
+    scene.stiffness = {800, 300, 50};
+    for (std::size_t i = 1; i < scene.start.v.size(); ++i)
+      scene.start.v[i] = {0.3, -0.2, std::sin(static_cast<double>(i))};
+    for (const int pin : scene.pins) scene.start.v[to_index(pin)].setZero();
+    if ((effects & 1) != 0) scene.damping = 5;
+    if ((effects & 2) != 0) scene.wind = Wind{.velocity = {1, 2, 6}, .strength = 2};
+    if ((effects & 4) != 0) scene.pin_motions = {{{0}, {.velocity = {0, 0, 2}}}};
+    const reference::ImplicitStep step(scene, scene.start, 0, scene.stiffness);
+    const auto minimum = step.minimum(scene.start.x);
+    EXPECT_EQ(minimum.problem, "");
+    std::vector<Vec3> mine = after_one_step(scene, "implicit").x;
+    EXPECT_LT(largest_distance(mine, minimum.x), 1e-8) << effects;
+    // pins, which nobody moves, count neither as near nor as mass
+    std::vector<Vec3> shifted = mine;
+    for (std::size_t i = 0; i < mine.size(); ++i) shifted[i] += Vec3(0.3, 0, 0.4);
+    for (const int pin : scene.pins) shifted[to_index(pin)] = mine[to_index(pin)];
+    EXPECT_NEAR(step.square_distance(shifted, mine), 0.25, 1e-12);
+  }
 }
 
 /// In equilibrium tension is fixed by the weight, so strain is tension / (K r).

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -112,6 +113,20 @@ TEST(SolverRefusals, OfSubstepsThatFloatLosesSayHowManyItKeeps) {
   EXPECT_EQ(reason(400), "") << "nothing to lose";
 }
 
+/// By the vertices that move, not by those that there are.
+TEST(SolverSettings, ImplicitFactorsUpToTwentyThousandVerticesThatMove) {
+  Scene scene = hanging_sheet(142, 142);  // 20164
+  scene.pins.clear();
+  for (const int pins : {163, 164}) {
+    while (static_cast<int>(scene.pins.size()) < pins)
+      scene.pins.push_back(static_cast<int>(scene.pins.size()));
+    std::string solved;
+    for (const auto& [name, value] : settings(scene, "implicit"))
+      if (name == "links solved") solved = value;
+    EXPECT_EQ(solved.ends_with("conjugate gradients"), pins == 163) << solved;
+  }
+}
+
 TEST(SolverSettings, AnInstructionSetThatTheMachineLacksIsAnError) {
   const Scene scene = hanging_sheet(3, 3);
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
@@ -165,6 +180,32 @@ TEST(LinearTheory, HoldsForSweepsInTheScenesOrderWhateverSolverMakesThem) {
   EXPECT_EQ(growth(damped, "bullet"), -1);
   EXPECT_GT(growth(chain(128), listing()), 0);
   EXPECT_EQ(growth(chain(129), listing()), -1) << "too many links for a dense sweep";
+}
+
+/// Explicit Euler with drag is stable while no mode grows: across the chain, where nothing pulls,
+/// too. z = 1 + h l with l^2 + y l + w^2 = 0, y = c/m.
+TEST(LinearTheory, OfDraggedExplicitEulerIsThatOfAllModes) {
+  const Scene scene = chain(3);
+  const double k = 92, mass = 0.05, h = scene.dt;
+  int stable = 0, unstable = 0;
+  for (double drag = 0.5; drag < 12; drag *= 1.07) {
+    double largest = 0;
+    for (const int mode : {0, 1, 3, 5}) {  // w^2 = 4 k/m sin^2(mode pi/14)
+      const double y = drag / mass,
+                   w = 2 * std::sqrt(k / mass) * std::sin(mode * std::acos(-1.0) / 14);
+      const std::complex<double> root = std::sqrt(std::complex<double>(y * y / 4 - w * w));
+      for (const double sign : {-1.0, 1.0})
+        largest = std::max(largest, std::abs(1.0 + h * (-y / 2 + sign * root)));
+    }
+    const auto theory = linear_stability(
+        scene, parse_solver("mass-spring:substeps=1,integrator=explicit-euler,structural=92,drag=" +
+                            shortest(drag)));
+    ASSERT_TRUE(theory);
+    EXPECT_EQ(theory->stable(), largest < 1 + 1e-9) << drag << ": " << largest;
+    ++(theory->stable() ? stable : unstable);
+  }
+  EXPECT_GE(stable, 4);
+  EXPECT_GT(unstable, 5);
 }
 
 TEST(LinearTheory, OfSpringsKnowsTheirFamiliesAndTheirDrag) {

@@ -83,6 +83,38 @@ TEST(SelfCollision, SlowParticlesNeverOverlapThoughTheyAreSearchedSeldom) {
   }
 }
 
+/// The upper half of a folded sheet sinks on to the lower one by a 32nd of a diameter a step: from
+/// farther than the first search reaches, in each layout of the particles.
+TEST(SelfCollision, AFoldThatClosesSlowlyIsSeenInTime) {
+  for (const char* layout : {"layout=interleaved", "layout=batches", "order=mesh"}) {
+    Scene scene = hanging_sheet(16, 4, {true, false, false});
+    const double spacing = 1.0 / 15, diameter = spacing / 2;
+    scene.pins.clear(), scene.gravity.setZero();
+    scene.self_collision = SelfCollision{.radius = diameter / 2};
+    for (std::size_t v = 0; v < scene.start.x.size(); ++v)
+      if (v % 16 >= 8) {
+        scene.start.x[v].x() = static_cast<double>(15 - v % 16) * spacing;
+        scene.start.x[v].z() = spacing, scene.start.v[v].z() = -spacing;
+      }
+    const SolverChoice choice =
+        parse_solver(std::string("jakobsen:precision=double,substeps=1,") + layout);
+    const auto solver = choice.entry->make(scene, choice.params);
+    solver->load(scene.start);
+    State state;
+    double least = spacing;
+    for (int n = 0; n < 64; ++n) {
+      solver->step(n * scene.dt, scene.dt), solver->store(state);
+      for (std::size_t v = 0; v < state.x.size(); ++v)
+        if (v % 16 < 8) {
+          const double gap = (state.x[v + 15 - 2 * (v % 16)] - state.x[v]).norm();
+          least = std::min(least, gap);
+          ASSERT_TRUE(v % 16 == 7 || gap > diameter * (1 - 1e-6)) << layout << " step " << n;
+        }
+    }
+    EXPECT_LT(least, diameter * 1.01) << layout << ": they met";
+  }
+}
+
 TEST(SelfCollision, TheOctreeDoesNotSeeAcrossASplitAndTheGridDoes) {
   // Two slow particles meet at the middle of a box whose corners hold the others.
   std::vector<Vec3> x{{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}};
@@ -188,6 +220,10 @@ std::vector<std::vector<Vec3>> clouds() {
   }
   for (Vec3& x : all.emplace_back(cube)) x.z() = x.x() + x.y();
   all.emplace_back(cube)[0] = {1e9, -1e9, 1e9};  // beyond the last cell
+  all.emplace_back(1, Vec3::Zero());
+  for (const double reach : {0.02, 0.3, 1.0})  // on both sides of what would be that
+    for (const double cells : {1e6, 2e6, 4e6, 1.6e7})
+      for (const double side : {-0.25, 0.25}) all.back().emplace_back((cells + side) * reach, 0, 0);
   return all;
 }
 
@@ -331,9 +367,10 @@ TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
 // Links that pull in a step's sweeps bring together what was apart when its pairs were searched: by
 // up to the way that each has made.
 TEST(SelfCollision, ParticlesThatALinkPullsTogetherInAFastStepStayApart) {
-  for (const double mass : {1.0, 4.0}) {
-    Scene scene = particles({{0, 0, 0}, {0.2, -0.05, 0}, {-0.5, 0.05, 0}},
-                            {{0, 0, 0}, {0, 6.4, 0}, {0, 0, 0}});  // 0.1 m a step, to (0.2, 0.05)
+  // From as far as 3/2 diameters and the way.
+  for (const auto& [mass, far] : {std::pair(1.0, 0.2), {4.0, 0.2}, {1.0, 0.24}, {4.0, 0.24}}) {
+    Scene scene = particles({{0, 0, 0}, {far, -0.05, 0}, {-0.5, 0.05, 0}},
+                            {{0, 0, 0}, {0, 6.4, 0}, {0, 0, 0}});  // 0.1 m a step, to (far, 0.05)
     scene.mesh.mass[0] = mass;
     scene.pins = {2};
     scene.links = {{1, 2, 0.55}};  // to x = 0.05, inside the first
