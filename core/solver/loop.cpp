@@ -256,19 +256,40 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params, MakeLinks
 template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<float>);
 template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<double>);
 
+/// Of the coordinates where a scene starts [m]: the largest, and its unit in the last place in
+/// float.
+std::pair<double, double> coordinates(const Scene& scene) {
+  double farthest = 0;
+  for (const Vec3& x : scene.start.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+  return {farthest, std::ldexp(1.0, std::ilogb(std::max(farthest, 1e-30)) - 23)};
+}
+
 /// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
 /// would ever begin to fall.
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   if (!in_float(params)) return {};
   const double h = scene.dt / params.integer("substeps");
-  double farthest = 0;
-  for (const Vec3& x : scene.start.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+  const double farthest = coordinates(scene).first;
   const double resolution = farthest * 0x1p-25, move = scene.gravity.norm() * h * h;
   if (move == 0 || move >= resolution) return {};
   const auto most = static_cast<int>(scene.dt / std::sqrt(resolution / scene.gravity.norm()));
   return {"in float, gravity's move of " + std::to_string(move * 1e9) +
           " nm a substep is lost in coordinates of " + std::to_string(farthest) + " m: at most " +
           std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
+}
+
+/// Verlet's x - x_previous is a whole number of units in the last place of x: gravity's g h^2 is
+/// rounded to one in every substep, the same way as long as the coordinate's exponent stays.
+std::string precision_of(const Scene& scene, const Params& params) {
+  if (!in_float(params)) return "double";
+  const double h = scene.dt / params.integer("substeps");
+  const auto [farthest, unit] = coordinates(scene);
+  const double move = scene.gravity.norm() * h * h;
+  if (unit / 2 < 0.01 * move || move == 0) return "float";
+  return "float: rounding in coordinates of " + shortest(farthest) +
+         " m changes gravity by up to " +
+         std::to_string(std::lround(100 * std::min(1.0, unit / 2 / move))) +
+         " %, farther out by more; less with fewer substeps, not with precision=double";
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
@@ -283,7 +304,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
                                       shortest(scene.bending->weft) + " N m along the weft, " +
                                       std::string(bending));
   lines.emplace_back("gravity", "the scene's");
-  lines.emplace_back("precision", in_float(params) ? "float" : "double");
+  lines.emplace_back("precision", precision_of(scene, params));
   if (scene.damping > 0)
     lines.emplace_back("damping",
                        "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");

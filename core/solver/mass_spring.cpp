@@ -32,7 +32,9 @@ constexpr auto kParams = loop::with_common(
      ParamSpec::choice(
          "drag-at", "lagged", "lagged|central",
          "velocity that drag sees: (x_n - x_n-1)/dt, or, verlet only, (x_n+1 - x_n-1)/2dt"),
-     loop::substeps("32", "each step is this many steps of dt / substeps"), loop::kPrecision,
+     loop::substeps("32", "each step is this many steps of dt / substeps"),
+     ParamSpec::choice("precision", "double", "float|double",
+                       "scalar type of the simulation; in float many substeps lose part of a fall"),
      kMaterial});
 
 template <class Real>
@@ -152,7 +154,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  "as forces");
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "double|float"}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   return LinearSprings{.stiffness = stiffnesses(scene, params),

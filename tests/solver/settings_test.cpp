@@ -15,6 +15,7 @@
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
 #include "core/solver/simd/kernels.hpp"
+#include "experiments/case/run_case.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::solver_settings_test {
@@ -54,6 +55,33 @@ TEST(SolverSettings, OfJakobsenAreTheseLines) {
             all);
 }
 
+/// A sheet 1000 m out falls for a tenth of a second: its coordinate keeps its exponent.
+TEST(SolverSettings, SayHowFarGravityIsOffInFloatAndItIs) {
+  Scene scene = hanging_sheet(3, 3);
+  scene.pins.clear();
+  for (Vec3& x : scene.mesh.rest) x.y() += 1000;
+  scene.start.x = scene.mesh.rest;
+  scene.dt = 1.0 / 64, scene.steps = 6;
+  const double fall = scene.gravity.norm() * scene.duration();
+  double worst = 0;
+  for (const int substeps : {1, 2, 4, 8}) {
+    const std::string solver = "jakobsen:iterations=0,substeps=" + std::to_string(substeps);
+    std::string said = settings(scene, solver).back().second;
+    const CaseRun run = run_case(scene, parse_solver(solver));
+    const double off = std::abs(run.last.v[0].y() + fall) / fall;
+    if (said != "float") {
+      EXPECT_EQ(said.substr(0, said.find(" by up to")),
+                "float: rounding in coordinates of 1000 m changes gravity")
+          << said;
+      said.erase(0, said.find("up to ") + 6);
+    }
+    EXPECT_LE(off, said == "float" ? 0.01 : 0.01 * std::stod(said) + 0.005) << solver;
+    worst = std::max(worst, off);
+  }
+  EXPECT_GT(worst, 0.1);
+  EXPECT_EQ(settings(scene, "jakobsen:substeps=8,precision=double").back().second, "double");
+}
+
 TEST(SolverSettings, OfTheOthersAreTheseLines) {
   EXPECT_EQ(settings(hanging_sheet(3, 3), "mass-spring:structural=7,bend=0.5"),
             (Lines{{"time step", "0.00048828125 s x 32"},
@@ -61,7 +89,7 @@ TEST(SolverSettings, OfTheOthersAreTheseLines) {
                    {"links", "Hooke springs: structural 7 N/m, shear 50 N/m, bend 0.5 N/m"},
                    {"work unit", "spring evaluations, not projections"},
                    {"gravity", "the scene's"},
-                   {"precision", "float"}}));
+                   {"precision", "double"}}));
   Scene elastic = hanging_sheet(3, 3);
   EXPECT_EQ(settings(elastic, "xpbd:precision=double,shear=0.5,order=mesh"),
             (Lines{{"time step", "0.001953125 s x 8"},
