@@ -298,6 +298,17 @@ class Store(CommandLine):
         self.taut("run", study, program="taut-faulty")
         self.assertEqual(len(self.keys()), 4)
 
+    def test_a_run_that_ignores_hangups_goes_on(self):
+        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2]\n")
+        for ignored, code in ((True, 0), (False, 130)):
+            process = self.start("run", study, "-j", 1, "--out", f"ignored-{ignored}", program="taut-faulty", preexec_fn=(
+                (lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) if ignored else None))
+            while "[1/3]" not in (line := process.stderr.readline()):
+                self.assertTrue(line, "it ended")
+            process.send_signal(signal.SIGHUP)
+            _, said = process.communicate(timeout=30)
+            self.assertEqual(process.returncode, code, said)
+
     def test_two_runs_share_a_folder(self):
         study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
         scratch = self.folder / "scratch"

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 
 #include "core/io/positions/positions.hpp"
 #include "core/model/index.hpp"
@@ -47,7 +48,7 @@ class MotionFiles : public testing::Test {
   }
   static std::vector<Vec3> moved(const Scene& scene, int k) {
     std::vector<Vec3> x = scene.start.x;
-    for (Vec3& v : x) v += Vec3(0.01 * k * v.y(), -0.003 * k, 0);
+    for (Vec3& v : x) v += Vec3(0.01 * k * v.y(), -0.003 * k, 0.004 * k * v.x());
     return x;
   }
   static std::string misfit(const Scene& scene, const MotionOptions& options) {
@@ -337,6 +338,16 @@ TEST_F(MotionFiles, ArePlayedFrameAfterFrameWithTheirDifferencesAsVelocities) {
   EXPECT_EQ(one, same);
   EXPECT_NE(one->implementation, two->implementation) << "of all bytes";
   EXPECT_NE(one->name, two->name);
+  std::set<std::string> digests;
+  for (const double height : {0.0, 1e-6}) {
+    Scene rest = scene;
+    rest.start.x[5].y() += height;
+    write("shape.npy", rest, kAsIs, 1);
+    MotionOptions with_rest = file;
+    with_rest.rest = folder_ / "shape.npy";
+    digests.emplace(recorded("positions", solver_text(with_rest).substr(10))->implementation);
+  }
+  EXPECT_EQ(digests.size(), 2u) << "of the rest shape's, too";
   EXPECT_EQ(recorded("mine", text.substr(10))->name, "mine");
 }
 

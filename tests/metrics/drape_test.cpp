@@ -66,6 +66,11 @@ TEST(Drape, IsOfScenesWithALevelSupportAlone) {
   EXPECT_FALSE(has(s)) << "aslant";
   s.gravity = Vec3::Zero();
   EXPECT_FALSE(has(s));
+  for (const int corner : {2 * 9 + 2, 6 * 9 + 6}) {  // of the first faces and of the last
+    s = table();
+    s.mesh.rest[to_index(corner)].y() += 0.1, s.start.x = s.mesh.rest;
+    EXPECT_FALSE(has(s)) << "one corner of the support is higher";
+  }
   EXPECT_FALSE(has(hanging_sheet(5, 5))) << "no face is pinned";
 }
 

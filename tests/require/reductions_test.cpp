@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "core/io/fabrics.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
+#include "experiments/answer/answer.hpp"
 #include "experiments/require/require.hpp"
 #include "experiments/system/files.hpp"
 
@@ -116,6 +118,20 @@ TEST(Reductions, OfAWindAreItsLawAndItself) {
   for (const Effect& effect : effects_of(full))
     if (effect.name.ends_with("wind")) effect.reductions.front().apply(both);
   EXPECT_FALSE(make_case(both.write(scratch.path(), "both")).scene->wind);
+}
+
+TEST(Drafts, OfAFabricHaveWhatItSets) {
+  const Scratch scratch;
+  for (const Fabric& fabric : fabrics()) {
+    const Case full = hang({"fabric='" + std::string(fabric.name) + "'"}, "pd:stiffness=1000");
+    Draft draft(full.spec);
+    draft.set("forces", "damping", "0.5");
+    const Case one = make_case(draft.write(scratch.path(), slug(fabric.name)));
+    EXPECT_EQ(one.scene->damping, 0.5);
+    EXPECT_EQ(one.scene->mesh.mass, full.scene->mesh.mass) << fabric.name;
+    EXPECT_EQ(one.scene->bending->warp, fabric.warp) << fabric.name;
+    EXPECT_EQ(one.scene->bending->weft, fabric.weft) << fabric.name;
+  }
 }
 
 TEST(Drafts, AreTheCaseAsItWasGivenUntilTheSceneChanges) {

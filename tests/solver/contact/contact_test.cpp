@@ -292,6 +292,19 @@ TEST(FaceContact, LiftsTheFaceOffACapsule) {
 }
 
 // Whatever it meets and does, in every response: the same path to rounding.
+/// There no direction is nearer than another: it is one across the axis.
+TEST(Contact, AVertexOnTheAxisOfACapsuleLeavesItSideways) {
+  for (const Vec3& axis : {Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
+    Scene scene = points(Vec3::Zero(), 3);  // the middle one in the middle
+    scene.gravity = Vec3::Zero();
+    scene.colliders = {{.shape = Capsule{-2 * axis, 2 * axis, 0.1}}};
+    Runner runner(scene, ",contact=discrete");
+    const Vec3 x = runner.step().x[4];
+    EXPECT_NEAR(x.norm(), 0.1, 1e-12);
+    EXPECT_NEAR(x.dot(axis), 0, 1e-12);
+  }
+}
+
 TEST(Contact, ACapsuleOfNoLengthIsABall) {
   Scene scene = points({0, 0.3, 0}, 9);
   scene.links = grid_links(scene.mesh, {.structural = true, .shear = true});
