@@ -267,6 +267,16 @@ TEST(Convergence, EachSolverHasTheExactStepOfItsOwnLinks) {
   }
 }
 
+TEST(Convergence, AGapIsReachedWhereItStaysBelow) {
+  Convergence c;
+  for (const double gap : {1.0, 0.01, 0.5, 0.02, 0.01}) c.points.push_back({.gap = gap});
+  EXPECT_EQ(reached(c, 0.1), 3) << "it had risen again";
+  EXPECT_EQ(reached(c, 1), 0);
+  EXPECT_EQ(reached(c, 0.001), -1);
+  c.points.push_back({.gap = std::nan("")});
+  EXPECT_EQ(reached(c, 1), -1);
+}
+
 TEST(Convergence, SaysWhatItCannotCompare) {
   const Scene scene = hanging_sheet(1, 4, {true, false, false});
   EXPECT_FALSE(of_one(scene, "mass-spring", 4).refused.empty());
