@@ -41,8 +41,8 @@ class Cantilever final : public Metric {
   void observe(const Snapshot& m) override { angle_.add(m.step, end_.contains(m.step), now(m)[0]); }
   std::vector<double> finish() override {
     const double angle = angle_.mean();
-    const double cube = std::cos(angle / 2) / (8 * std::tan(angle));
-    return {angle, angle > 0 && angle <= kMost ? overhang_ * std::cbrt(cube) : Summary::kNone};
+    if (!(angle > 0 && angle <= kMost)) return {angle, Summary::kNone};
+    return {angle, overhang_ * std::cbrt(std::cos(angle / 2) / (8 * std::tan(angle)))};
   }
   std::vector<double> now(const Snapshot& m) const override {
     const Vec3 end = end_of(m.state.x);

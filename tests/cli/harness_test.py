@@ -446,6 +446,8 @@ class Store(CommandLine):
         merged = self.taut("cluster", "merge", "shard1", "shard2", "shard3", "--out", "merged")
         self.assertRegex(merged.out, r"there +12\b")
         self.assertEqual(self.store_digest(merged), whole)
+        again = self.taut("cluster", "merge", *others, "--out", "merged")
+        self.assertEqual(self.store_digest(again), whole, "what is there already is not missing")
 
     def test_a_slurm_array_is_a_shard(self):
         study = self.study(rest=self.MANY)

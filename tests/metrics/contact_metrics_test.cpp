@@ -213,11 +213,12 @@ TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {
     if (step >= 10) state.x[3].y() = -0.995;                    // stays inside
     if (step >= 10) state.x[4] = {9, -2, 9};                    // past the edge
     if (step >= 12) state.x[4] = {0.5, -2, 0.5};
+    state.x[5].y() = step < 10 ? -0.995 : -2;  // starts inside, at the top, and leaves below
     return state;
   });
-  EXPECT_EQ(v.at("tunnelling.count"), 2);
-  EXPECT_EQ(v.at("tunnelling.events"), 4);
-  EXPECT_NEAR(v.at("tunnelling.share"), 2.0 / 9, 1e-12);
+  EXPECT_EQ(v.at("tunnelling.count"), 3);
+  EXPECT_EQ(v.at("tunnelling.events"), 5);
+  EXPECT_NEAR(v.at("tunnelling.share"), 3.0 / 9, 1e-12);
 }
 
 TEST(Tunnelling, SeesTheColliderMoveAndGrazesPardoned) {

@@ -49,6 +49,16 @@ TEST(Scaling, WhatWouldTakeTooLongIsSkippedAndSaid) {
       << "as long as is allowed";
 }
 
+TEST(Scaling, WhatEndsEarlyDoesNotPromiseTheNextToBeQuick) {
+  const auto lines = measure_scaling(squares({8, 12, 40}), 1500, [](const Case& one, double) {
+    Measured m = measured(one, 0);
+    if (m.benched.record.vertices == 144) m.seconds = 0.1;
+    return m;
+  });
+  EXPECT_EQ(lines[0].cases.size(), 2u);
+  EXPECT_EQ(lines[0].skipped.back(), "1600 vertices: expected to take 5689 s, allowed 1500 s");
+}
+
 // What failed is said and counts for no exponent; the wall's time is what the machine's load makes.
 TEST(Scaling, WhatEndedBadlyIsNoPointOfTheLine) {
   const auto lines = measure_scaling(squares({4, 8, 12, 16, 20}), 1e9, [](const Case& one, double) {

@@ -66,7 +66,7 @@ struct Contact {
       const Entry<T> entry = surface.entry(from, x);
       // The faces of a turned box are across each other but for rounding, which must not decide.
       const auto same_side =
-          !surface.clear(x, T(0)) && dot(tangent.normal, entry.tangent.normal) > T(1e-3);
+          !surface.clear(x, T(0)) && dot(tangent.normal, entry.tangent.normal) > T(1e-6);
       const auto back = passing && entry.hits;
       tangent = select(back && !same_side, entry.tangent, tangent);
       near = near || back;
