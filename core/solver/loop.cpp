@@ -247,35 +247,12 @@ bool in_float(const Params& params) {
   return params.has("precision") && params.is("precision", "float");
 }
 
-}  // namespace
-
-template <class Real>
-std::unique_ptr<Solver> make(const Scene& scene, const Params& params, MakeLinks<Real> links) {
-  return std::make_unique<Loop<Real>>(scene, params, links);
-}
-template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<float>);
-template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<double>);
-
 /// Of the coordinates where a scene starts [m]: the largest, and its unit in the last place in
 /// float.
 std::pair<double, double> coordinates(const Scene& scene) {
   double farthest = 0;
   for (const Vec3& x : scene.start.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
   return {farthest, std::ldexp(1.0, std::ilogb(std::max(farthest, 1e-30)) - 23)};
-}
-
-/// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
-/// would ever begin to fall.
-std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
-  if (!in_float(params)) return {};
-  const double h = scene.dt / params.integer("substeps");
-  const double farthest = coordinates(scene).first;
-  const double resolution = farthest * 0x1p-25, move = scene.gravity.norm() * h * h;
-  if (move == 0 || move >= resolution) return {};
-  const auto most = static_cast<int>(scene.dt / std::sqrt(resolution / scene.gravity.norm()));
-  return {"in float, gravity's move of " + std::to_string(move * 1e9) +
-          " nm a substep is lost in coordinates of " + std::to_string(farthest) + " m: at most " +
-          std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
 }
 
 /// Verlet's x - x_previous is a whole number of units in the last place of x: gravity's g h^2 is
@@ -289,7 +266,30 @@ std::string precision_of(const Scene& scene, const Params& params) {
   return "float: rounding in coordinates of " + shortest(farthest) +
          " m changes gravity by up to " +
          std::to_string(std::lround(100 * std::min(1.0, unit / 2 / move))) +
-         " %, farther out by more; less with fewer substeps, not with precision=double";
+         " %, farther out by more; by less with fewer substeps, not at all with precision=double";
+}
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<Solver> make(const Scene& scene, const Params& params, MakeLinks<Real> links) {
+  return std::make_unique<Loop<Real>>(scene, params, links);
+}
+template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<float>);
+template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<double>);
+
+/// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
+/// would ever begin to fall.
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  if (!in_float(params)) return {};
+  const double h = scene.dt / params.integer("substeps");
+  const double farthest = coordinates(scene).first;
+  const double resolution = farthest * 0x1p-25, move = scene.gravity.norm() * h * h;
+  if (move == 0 || move >= resolution) return {};
+  const auto most = static_cast<int>(scene.dt / std::sqrt(resolution / scene.gravity.norm()));
+  return {"in float, gravity's move of " + std::to_string(move * 1e9) +
+          " nm a substep is lost in coordinates of " + std::to_string(farthest) + " m: at most " +
+          std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params,

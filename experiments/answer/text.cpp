@@ -21,8 +21,9 @@ std::string padded(const std::string& text, std::size_t width, bool left) {
 }
 
 /// The text in lines of at most that many characters, broken at blanks; a longer word has a line.
+/// A command stays in one, for it is copied.
 std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
-  if (characters(text) <= most) return {text};
+  if (characters(text) <= most || text.starts_with("taut ")) return {text};
   std::vector<std::string> lines;
   std::istringstream words(text);
   for (std::string word; words >> word;)

@@ -239,6 +239,10 @@ TEST(Answers, BreakWordsWhereATerminalIsNarrowAndLoseNone) {
             "                            is error\n"
             "  ball-and-chain         7  falls\n"
             "  a caption of more words than a line has\n");
+  Answer again{"frontier", ""};
+  again.add({"command"}, "taut case swing mass-spring --set cloth.size.0=0.0665646");
+  EXPECT_EQ(to_text(again, false, 30),
+            "  command  taut case swing mass-spring --set cloth.size.0=0.0665646\n");
   EXPECT_NE(to_text(answer, false, 24).find("\n  a caption of more\n  words than a line has\n"),
             std::string::npos);
 }

@@ -1,11 +1,15 @@
 """What the tests of the command line share: a scratch folder, the built programs, a small study."""
 
+import fcntl
 import json
 import os
 import pathlib
+import pty
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import unittest
 
 import stored
@@ -46,6 +50,23 @@ class CommandLine(unittest.TestCase):
     def start(self, *words, program="taut", **more):
         return subprocess.Popen([BINARIES / program, *map(str, words)], cwd=self.folder, text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, **more)
+
+    def on_a_terminal(self, *words, columns=0, **environment):
+        """What the verb writes to stdout where that is a terminal, of so many columns if it knows."""
+        ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        process = subprocess.Popen([BINARIES / "taut", *words], cwd=self.folder, stdout=theirs, stderr=subprocess.DEVNULL,
+                                   env={k: v for k, v in os.environ.items() if k != "NO_COLOR"} | environment)
+        os.close(theirs)
+        said = b""
+        try:
+            while chunk := os.read(ours, 65536):
+                said += chunk
+        except OSError:  # the other end is closed
+            pass
+        os.close(ours)
+        process.wait(timeout=60)
+        return said.decode()
 
     def taut(self, *words, expect=0, program="taut", **more):
         process = self.start(*words, program=program, **more)

@@ -2,19 +2,16 @@
 """What the verbs print, and what bad input costs: a message with its place, exit 2, nothing written."""
 
 import csv
-import fcntl
 import hashlib
 import json
 import os
 import pathlib
-import pty
 import re
 import shlex
 import socket
 import sqlite3
 import struct
 import subprocess
-import termios
 import time
 import tomllib
 
@@ -362,25 +359,10 @@ class Verbs(CommandLine):
             self.assertIn("cannot be written", process.stderr)
 
     def test_a_terminal_gets_lines_of_its_width_and_a_pipe_whole_rows(self):
-        try:
-            ours, theirs = pty.openpty()
-        except OSError as error:
-            self.skipTest(f"no pseudo-terminal here: {error}")
-        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
-        process = subprocess.Popen([f"{BINARIES}/taut", "list", "scenes"], stdout=theirs)
-        os.close(theirs)
-        shown = b""
-        try:
-            while more := os.read(ours, 65536):
-                shown += more
-        except OSError:  # the other end is closed
-            pass
-        os.close(ours)
-        self.assertEqual(process.wait(), 0)
-        lines, rows = shown.decode().splitlines(), self.taut("list", "scenes").out
-        self.assertLessEqual(max(map(len, lines)), 100)
+        shown, rows = self.on_a_terminal("list", "scenes", columns=100), self.taut("list", "scenes").out
+        self.assertLessEqual(max(map(len, shown.splitlines())), 100)
         self.assertGreater(max(map(len, rows.splitlines())), 150)
-        self.assertEqual(sorted(shown.decode().split()), sorted(rows.split()))
+        self.assertEqual(sorted(shown.split()), sorted(rows.split()))
 
     def test_truths_are_listed_by_name_and_section(self):
         all_of_4 = rows_of(self.answer("verify", "--list", "--section", 4), "truths")

@@ -4,9 +4,7 @@
 import csv
 import io
 import json
-import os
 import pathlib
-import pty
 import re
 import shlex
 import subprocess
@@ -157,22 +155,6 @@ class EveryVerb(CommandLine):
             with self.subTest(words=words), open("/dev/full", "w") as full:
                 asked = subprocess.run([BINARIES / "taut", *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True, timeout=120)
                 self.assertEqual((asked.returncode, asked.stderr.splitlines()[-1:]), (2, ["standard output cannot be written"]))
-
-    def on_a_terminal(self, *words, **environment):
-        """What the verb writes to stdout where that is a terminal."""
-        ours, theirs = pty.openpty()
-        process = subprocess.Popen([BINARIES / "taut", *words], cwd=self.folder, stdout=theirs, stderr=subprocess.DEVNULL,
-                                   env={k: v for k, v in os.environ.items() if k != "NO_COLOR"} | environment)
-        os.close(theirs)
-        said = b""
-        try:
-            while chunk := os.read(ours, 65536):
-                said += chunk
-        except OSError:  # the other end is closed
-            pass
-        os.close(ours)
-        process.wait(timeout=60)
-        return said.decode()
 
     def test_colour_on_a_terminal_and_none_in_a_pipe(self):
         self.prepare()
