@@ -50,7 +50,6 @@ class AugmentedPass final : public Pass<double> {
   }
 
   void begin(Particles<double>& p, double t, double h) override {
-    blocks_.begin(t, h);
     for (std::size_t j = 0; j < links_.size(); ++j) {
       LinkState& link = links_[j];
       const auto& [a, b, rest, unused] = springs_[j];
@@ -60,6 +59,7 @@ class AugmentedPass final : public Pass<double> {
     }
     y_ = positions(p);
     start_.begin(p, h);
+    blocks_.begin(p, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {

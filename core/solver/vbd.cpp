@@ -46,8 +46,8 @@ class DescentPass final : public Pass<double> {
 
   void begin(Particles<double>& p, double t, double h) override {
     y_ = positions(p);
-    blocks_.begin(t, h);
     start_.begin(p, h);
+    blocks_.begin(p, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {

@@ -76,8 +76,12 @@ class VertexBlocks {
   void restart() {
     if (contacts_) contacts_->restart();
   }
-  void begin(double t, double h) {
-    if (contacts_) contacts_->begin(t, h);
+  /// p.x is where the sweeps start; whatever is inside a collider starts at its surface, so that a
+  /// sheet that lies flat on it has no strained links before all vertices are out.
+  void begin(Particles<double>& p, double t, double h) {
+    if (!contacts_) return;
+    contacts_->begin(t, h);
+    contacts_->put_outside(p);
   }
 
   /// One sweep: solve(i, x_i, links) returns where vertex i goes, links(visit) calls visit(j, u, C)

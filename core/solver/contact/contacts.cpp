@@ -115,6 +115,15 @@ void Contacts::find(const Particles<double>& p, std::vector<TouchingVertex>& all
   }
 }
 
+void Contacts::put_outside(Particles<double>& p) {
+  TouchingVertex at;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (std::size_t k = 0; p.w[i] > 0 && k < surfaces_.size(); ++k) {
+      const Vec3 x = p.x[i];
+      if (touches(i, k, x, p.previous[i], at) && at.gap(x) < 0) p.x.set(i, x - at.gap(x) * at.normal);
+    }
+}
+
 Vec3 Contacts::force_at(std::size_t vertex, const Vec3& x, const Vec3& previous) {
   Vec3 sum = Vec3::Zero();
   TouchingVertex at;

@@ -112,6 +112,9 @@ class Contacts {
   /// All that touch, of vertices that move.
   void find(const Particles<double>& p, std::vector<TouchingVertex>&);
 
+  /// Moves what is inside to the surface; forces stay as they are.
+  void put_outside(Particles<double>& p);
+
   /// Of a vertex at x [N], linearised there.
   Vec3 force_at(std::size_t vertex, const Vec3& x, const Vec3& previous);
   /// Settles the contacts of a vertex that has been moved to x, with this Hessian [N/m].
