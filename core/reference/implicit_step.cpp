@@ -87,7 +87,7 @@ ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, cons
   for (const Collider& c : scene.colliders) {
     const Motion& m = c.motion;
     const Eigen::Quaterniond turn = m.rotation(t + h) * m.rotation(t).conjugate();
-    Obstacle& obstacle = colliders_.emplace_back(shape_at(c, t + h), c.friction, Points{});
+    Obstacle& obstacle = colliders_.emplace_back(Obstacle{shape_at(c, t + h), c.friction, {}});
     for (const Vec3& x : from.x)
       obstacle.from.push_back(m.pivot + m.displacement(t + h) +
                               turn * (x - m.pivot - m.displacement(t)));

@@ -60,7 +60,7 @@ class ImplicitStep {
     double rest, stiffness;
   };
   struct Obstacle {
-    Shape shape;  ///< at the end of the step
+    taut::Shape shape;  ///< at the end of the step
     double friction;
     std::vector<Vec3> from;  ///< [n] m, where each vertex would be if it moved with the collider
   };

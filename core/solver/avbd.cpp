@@ -59,7 +59,7 @@ class AugmentedPass final : public Pass<double> {
     }
     y_ = positions(p);
     start_.begin(p, h);
-    blocks_.begin(p, t, h);
+    blocks_.begin(p, y_, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {

@@ -1,19 +1,15 @@
 #include "core/solver/global_system.hpp"
 
 #include <Eigen/SparseCholesky>
-#include <algorithm>
 #include <limits>
+
+#include "core/solver/contact/coupled_contacts.hpp"
 
 namespace taut {
 
 namespace {
 
-/// Sweeps over the contacts after a solution, at most; they end when the last moved nothing by more
-/// than this share of what the first did: the links' iterations go on from there.
-constexpr int kContactSweeps = 32;
-constexpr double kContactTolerance = 1e-3;
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using Rows = CoupledContacts::Rows;
 }  // namespace
 
 struct GlobalSystem::Factor {
@@ -30,6 +26,7 @@ struct GlobalSystem::Factor {
   }
   std::vector<Eigen::VectorXd> inverse;  ///< [rows] empty: not needed yet
 
+  CoupledContacts coupled;
   /// What a force at each of these rows moves the others by [m/N].
   Eigen::MatrixXd compliance;
   std::vector<int> rows;
@@ -94,9 +91,11 @@ void GlobalSystem::factor(double h) {
 
 void GlobalSystem::begin(const Particles<double>& p, double t, double h) {
   if (h != factored_for_) factor(h);
-  if (contacts_) contacts_->begin(t, h);
-  touching_.clear();
   y_ = positions(p);
+  if (contacts_) {
+    contacts_->begin(t, h);
+    contacts_->predict_new(p, h);
+  }
   if (bending_.empty()) return;
   auto& bends = factor_->bends;
   bends.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
@@ -143,6 +142,7 @@ void GlobalSystem::resolve_contacts(Particles<double>& p) {
   factor_->select_rows(rows);
   const Eigen::MatrixXd& compliance = factor_->compliance;
   Rows x(compliance.rows(), 3), change(compliance.rows(), 3);
+  std::vector<Eigen::Index> places;  // of each contact
   Eigen::Index place = -1;
   for (const TouchingVertex& at : touching_) {
     const int row = row_[at.vertex];
@@ -152,26 +152,15 @@ void GlobalSystem::resolve_contacts(Particles<double>& p) {
       change.row(place) = -factor_->held.row(row);  // normals have turned since
     }
     change.row(place) += at.total(contacts_->force(at.vertex, at.collider));
+    places.push_back(place);
   }
   x += compliance * change;
-  double first = 0;
-  for (int sweep = 0; sweep < kContactSweeps; ++sweep) {
-    double largest = 0;  // m, by which a force moves its own vertex
-    place = 0;
-    for (const TouchingVertex& at : touching_) {
-      while (rows[static_cast<std::size_t>(place)] != row_[at.vertex]) ++place;
-      const double own = compliance(place, place);
-      Vec3 moved = x.row(place).transpose();
-      const Vec3 by =
-          settle(at, IsotropicCompliance{own}, contacts_->force(at.vertex, at.collider), moved);
-      if (by.isZero(0)) continue;
-      largest = std::max(largest, own * by.norm());
-      change.row(place) += by.transpose();
-      for (Eigen::Index axis = 0; axis < 3; ++axis) x.col(axis) += by[axis] * compliance.col(place);
-    }
-    if (sweep == 0) first = largest;
-    if (largest <= kContactTolerance * first) break;
-  }
+  change += factor_->coupled.resolve(
+      compliance, touching_, places,
+      [&](std::size_t c) -> ContactForce& {
+        return contacts_->force(touching_[c].vertex, touching_[c].collider);
+      },
+      x);
   if (change.isZero(0)) return;
   Rows right = Rows::Zero(static_cast<Eigen::Index>(mass_.size()), 3);
   for (std::size_t c = 0; c < rows.size(); ++c)

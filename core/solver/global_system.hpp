@@ -26,9 +26,7 @@ namespace taut {
 ///
 /// In contact x is the minimum outside of the colliders, with friction: what a force at a vertex
 /// moves others by is a column of the inverse, solved for when the vertex first touches anything,
-/// and the forces come from sweeps over the contacts (projected Gauss-Seidel on the Delassus
-/// operator; Jean, Moreau, Contact Mechanics International Symposium 1992), from those of the last
-/// iteration on.
+/// and the forces are those of CoupledContacts, from those of the last iteration on.
 class GlobalSystem {
  public:
   /// Of what a solver is made; the springs' stiffness is the weight.

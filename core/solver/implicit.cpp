@@ -48,8 +48,8 @@ constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
 /// Beyond so many vertices that move, conjugate gradients take less time than a factor.
 constexpr std::size_t kFactorPays = 20000;
 /// Contact is stiffer than all else at its vertex by this factor: an iteration leaves less than its
-/// inverse of the error of a force.
-constexpr double kContactStiffer = 100;
+/// inverse of the error of a force; much stiffer, and sticking and slipping take turns.
+constexpr double kContactStiffer = 10;
 
 constexpr ParamSpec kOwn[] = {
     loop::iterations("50", "Newton iterations, at most; they end at 1e-9 of the forces of inertia"),

@@ -85,9 +85,12 @@ class ProjectivePass final : public Pass<double> {
   void restart() override { system_.restart(); }
 
   void begin(Particles<double>& p, double t, double h) override {
-    system_.begin(p, t, h);
     anderson_.begin();
-    if (anderson_.on()) y_ = positions(p), energy_ = std::numeric_limits<double>::infinity();
+    if (anderson_.on()) {
+      y_ = positions(p);
+      energy_ = std::numeric_limits<double>::infinity();
+    }
+    system_.begin(p, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {

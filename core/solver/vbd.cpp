@@ -47,7 +47,7 @@ class DescentPass final : public Pass<double> {
   void begin(Particles<double>& p, double t, double h) override {
     y_ = positions(p);
     start_.begin(p, h);
-    blocks_.begin(p, t, h);
+    blocks_.begin(p, y_, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {

@@ -76,12 +76,12 @@ class VertexBlocks {
   void restart() {
     if (contacts_) contacts_->restart();
   }
-  /// p.x is where the sweeps start; whatever is inside a collider starts at its surface, so that a
-  /// sheet that lies flat on it has no strained links before all vertices are out.
-  void begin(Particles<double>& p, double t, double h) {
+  /// p.x is where the sweeps start; what touches a collider starts where contact alone would leave
+  /// it (Contacts::predict). Sweeps would bring that about slowly, against stiff links.
+  void begin(Particles<double>& p, const std::vector<Vec3>& y, double t, double h) {
     if (!contacts_) return;
     contacts_->begin(t, h);
-    contacts_->put_outside(p);
+    contacts_->predict(p, y, h);
   }
 
   /// One sweep: solve(i, x_i, links) returns where vertex i goes, links(visit) calls visit(j, u, C)

@@ -1,6 +1,7 @@
 #include "core/solver/contact/contacts.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <optional>
 
 #include "core/model/index.hpp"
@@ -82,7 +83,10 @@ Contacts::Contacts(const Scene& scene, bool continuous)
 }
 Contacts::~Contacts() = default;
 
-void Contacts::restart() { forces_.assign(forces_.size(), {}); }
+void Contacts::restart() {
+  forces_.assign(forces_.size(), {});
+  y_.clear();
+}
 
 void Contacts::begin(double t, double h) {
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
@@ -115,13 +119,39 @@ void Contacts::find(const Particles<double>& p, std::vector<TouchingVertex>& all
   }
 }
 
-void Contacts::put_outside(Particles<double>& p) {
+bool Contacts::holds(std::size_t vertex) const {
+  const auto first = forces_.begin() + static_cast<std::ptrdiff_t>(vertex * surfaces_.size());
+  return std::any_of(first, first + static_cast<std::ptrdiff_t>(surfaces_.size()),
+                     [](const ContactForce& f) { return f.holds(); });
+}
+
+void Contacts::predict(Particles<double>& p, const std::vector<Vec3>& y, double h) {
   TouchingVertex at;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    for (std::size_t k = 0; p.w[i] > 0 && k < surfaces_.size(); ++k) {
-      const Vec3 x = p.x[i];
-      if (touches(i, k, x, p.previous[i], at) && at.gap(x) < 0) p.x.set(i, x - at.gap(x) * at.normal);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.w[i] == 0) continue;
+    const Vec3 previous = p.previous[i];
+    const IsotropicCompliance free{p.w[i] * h * h};
+    bool touching = false;
+    Vec3 x = y[i];
+    if (!y_.empty() && holds(i)) x += previous - y_[i];
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      if (!touches(i, k, x, previous, at)) continue;
+      touching = true;
+      settle(at, free, force(i, k), x);
     }
+    if (touching) p.x.set(i, x);
+  }
+  y_ = y;
+}
+
+void Contacts::predict_new(const Particles<double>& p, double h) {
+  TouchingVertex at;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    Vec3 x = p.x[i];
+    for (std::size_t k = 0; p.w[i] > 0 && k < surfaces_.size(); ++k)
+      if (!force(i, k).holds() && touches(i, k, x, p.previous[i], at))
+        settle(at, IsotropicCompliance{p.w[i] * h * h}, force(i, k), x);
+  }
 }
 
 Vec3 Contacts::force_at(std::size_t vertex, const Vec3& x, const Vec3& previous) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/model/scene.hpp"
 #include "core/model/vec3.hpp"
 #include "core/solver/contact/responses.hpp"
+#include "core/solver/layout/particles.hpp"
 
 namespace taut {
 
@@ -37,13 +39,14 @@ struct IsotropicCompliance {
   double value;
   Vec3 operator*(const Vec3& force) const { return value * force; }
   Vec3 force_for(const Vec3& way) const { return way / value; }
-  double largest() const { return value; }
+  double across(const Vec3&) const { return value; }
 };
 struct MatrixCompliance {
   Eigen::Matrix3d value, inverse;
   Vec3 operator*(const Vec3& force) const { return value * force; }
   Vec3 force_for(const Vec3& way) const { return inverse * way; }
-  double largest() const { return value.trace(); }  ///< at least the largest eigenvalue
+  /// At least the largest eigenvalue across the normal.
+  double across(const Vec3& normal) const { return value.trace() - normal.dot(value * normal); }
 };
 
 /// Changes the force so that x, which it moves by `compliance`, keeps out of the half-space and
@@ -70,10 +73,11 @@ Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce
     x += compliance * Vec3(sticking - before);
     return sticking - before;
   }
+  const double across = compliance.across(at.normal);
   constexpr int kRounds = 4;  // of a push that rubbing changes
   for (int round = 0; round < kRounds; ++round) {
     push();
-    Vec3 to = force.rub - at.slip(x) / compliance.largest();
+    Vec3 to = force.rub - at.slip(x) / across;
     const double length = to.norm(), most = at.friction * force.push;
     if (length > most) to *= most / length;
     x += compliance * Vec3(to - force.rub);
@@ -112,8 +116,12 @@ class Contacts {
   /// All that touch, of vertices that move.
   void find(const Particles<double>& p, std::vector<TouchingVertex>&);
 
-  /// Moves what is inside to the surface; forces stay as they are.
-  void put_outside(Particles<double>& p);
+  /// Where sweeps start. What begins to touch moves from y [m] out of the collider and against its
+  /// slip as if it had no link, which is all there is to a sheet that lands flat; what was held
+  /// ends as far from y as in the last substep, which is all there is to one that rests or slides.
+  void predict(Particles<double>& p, const std::vector<Vec3>& y, double h);
+  /// The forces of what newly touches as if it had no link; p.x is y, and stays.
+  void predict_new(const Particles<double>& p, double h);
 
   /// Of a vertex at x [N], linearised there.
   Vec3 force_at(std::size_t vertex, const Vec3& x, const Vec3& previous);
@@ -121,11 +129,15 @@ class Contacts {
   void settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian, const Vec3& previous,
                      Vec3& x);
 
-  std::size_t bytes() const { return forces_.size() * sizeof(ContactForce); }
+  std::size_t bytes() const {
+    return forces_.size() * sizeof(ContactForce) + y_.size() * sizeof(Vec3);
+  }
 
  private:
   std::vector<std::unique_ptr<Surface>> surfaces_;
-  std::vector<ContactForce> forces_;  ///< [vertex][collider]
+  bool holds(std::size_t vertex) const;  ///< any collider does
+  std::vector<ContactForce> forces_;     ///< [vertex][collider]
+  std::vector<Vec3> y_;                  ///< m, of the last predict(); empty: there was none
 };
 
 namespace loop {
