@@ -317,8 +317,13 @@ class NewtonPass final : public Pass<double> {
     std::vector<Vec3> x = positions(p);
     if (x == ended_at_) return;
     if (contacts_) contacts_->find(p, touching_);
-    const Vector g = gradient(x, h);
     const bool first = std::exchange(first_, false);
+    Vector g = gradient(x, h);
+    if (!first && g.norm() <= enough_ && contacts_) {  // at the minimum for these forces of contact
+      whole_step_ = true;
+      update_contacts(p, h);
+      g = gradient(x, h);
+    }
     if (g.norm() <= (first ? enough_at_first_ : enough_) ||
         !(first ? first_iteration(x, p, g, h) : iterate(x, g, h))) {
       ended_at_ = std::move(x);

@@ -50,41 +50,39 @@ struct MatrixCompliance {
 };
 
 /// Changes the force so that x, which it moves by `compliance`, keeps out of the half-space and
-/// obeys Coulomb: sticks while friction is at most mu times the push, else slips against it. Moves
-/// x and returns the change [N]. Exact where there is no friction or the vertex sticks, and where
-/// the compliance has no direction; else a projection whose fixed point is exact.
+/// obeys Coulomb: no force where it is outside without one; else it sticks while friction is at
+/// most mu times the push, and slips against it beyond. Moves x and returns the change [N].
 template <class Compliance>
 Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce& force, Vec3& x) {
   const Vec3 before = at.total(force);
-  const auto push = [&] {
-    const double change = -at.gap(x) / at.normal.dot(compliance * at.normal);
-    const double to = std::max(0.0, force.push + change);
-    x += compliance * Vec3((to - force.push) * at.normal);
-    force.push = to;
+  const Vec3 free = x - compliance * before;
+  const auto leave = [&](const ContactForce& now) {
+    force = now;
+    const Vec3 change = at.total(now) - before;
+    x += compliance * change;
+    return change;
   };
-  if (at.friction == 0) {
-    push();
-    return at.total(force) - before;
-  }
-  const Vec3 sticking = before + compliance.force_for(-at.slip(x) - at.gap(x) * at.normal);
-  const double normal = at.normal.dot(sticking);
-  if (const Vec3 rub = at.across(sticking); normal > 0 && rub.norm() <= at.friction * normal) {
-    force = {normal, rub};
-    x += compliance * Vec3(sticking - before);
-    return sticking - before;
-  }
+  if (at.gap(free) >= 0) return leave({});
+  const double along = at.normal.dot(compliance * at.normal);
+  if (at.friction == 0) return leave({-at.gap(free) / along, Vec3::Zero()});
+  const Vec3 sticking = compliance.force_for(-at.slip(free) - at.gap(free) * at.normal);
+  ContactForce now{at.normal.dot(sticking), at.across(sticking)};
+  if (now.push > 0 && now.rub.norm() <= at.friction * now.push) return leave(now);
+  // Slipping: push and rub in turn, which a compliance that differs by direction couples.
   const double across = compliance.across(at.normal);
-  constexpr int kRounds = 4;  // of a push that rubbing changes
+  constexpr int kRounds = 20;
+  now.rub = force.rub;
   for (int round = 0; round < kRounds; ++round) {
-    push();
-    Vec3 to = force.rub - at.slip(x) / across;
-    const double length = to.norm(), most = at.friction * force.push;
-    if (length > most) to *= most / length;
-    x += compliance * Vec3(to - force.rub);
-    force.rub = to;
-    if constexpr (std::is_same_v<Compliance, IsotropicCompliance>) break;
+    const double push = now.push;
+    now.push = std::max(0.0, -at.gap(free + compliance * now.rub) / along);
+    Vec3 rub = now.rub - at.slip(free + compliance * at.total(now)) / across;
+    const double length = rub.norm(), most = at.friction * now.push;
+    if (length > most) rub *= most / length;
+    const double moved = std::abs(now.push - push) + (rub - now.rub).norm();
+    now.rub = rub;
+    if (moved <= 1e-12 * now.push) break;
   }
-  return at.total(force) - before;
+  return leave(now);
 }
 
 /// Contact as a constraint of solvers that solve towards y: every vertex' forces, by collider, kept
@@ -101,9 +99,9 @@ class Contacts {
   Contacts(const Scene&, bool continuous);
   ~Contacts();
 
-  void restart();  ///< no force
-  void begin(double t,
-             double h);  ///< the substep [t, t + h]: colliders move, forces turn with them
+  void restart();  ///< no force, no substep before
+  /// The substep [t, t + h]: colliders move, forces turn with them.
+  void begin(double t, double h);
 
   /// Whether the vertex at x, which began the substep at `previous`, is held by the collider or
   /// inside it; if so, where.

@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr int kRounds = 4, kSweeps = 2;
-constexpr double kEnough = 1e-13;  ///< m, of gaps and slips
+constexpr double kEnough = 1e-14;  ///< of coordinates, of gaps and slips
 
 MatrixXd part(const MatrixXd& matrix, const std::vector<Index>& rows,
               const std::vector<Index>& columns) {
@@ -34,6 +34,7 @@ CoupledContacts::Rows CoupledContacts::resolve(
   force_ = &force;
   Rows change = Rows::Zero(x.rows(), 3);
   std::vector<Trial> trials(at.size());
+  const double enough = kEnough * x.cwiseAbs().maxCoeff();
   for (int round = 0; round < kRounds; ++round) {
     double away = 0;
     bool same = round > 0;
@@ -43,7 +44,7 @@ CoupledContacts::Rows CoupledContacts::resolve(
       away = std::max(away, now.away);
       trials[c] = now;
     }
-    if (away < kEnough) return change;
+    if (away <= enough) return change;
     if (same) break;
     solve(trials, x, change);
   }

@@ -13,10 +13,11 @@
 namespace taut::contact_conditions_test {
 namespace {
 
-constexpr double kStiffness = 2000;  // N/m
-const std::string kSprings = "structural=2000,shear=2000,bend=0";
+constexpr double kStiffness = 100;  // N/m: stiffer, and pd would take 20 times as long
+const std::string kSprings = "structural=100,shear=100,bend=0";
 
-/// A sheet of 9 x 9, half a metre wide, that falls on to the collider until it lies on it.
+/// A sheet of 9 x 9, half a metre wide, that has fallen on to the collider; without friction it
+/// soon slides off.
 Scene lying_on(const Shape& shape, double height, double friction, double thickness = 0.005) {
   Scene scene;
   scene.name = "lying";
@@ -32,7 +33,7 @@ Scene lying_on(const Shape& shape, double height, double friction, double thickn
   scene.dt = 1.0 / 64;
   scene.thickness = thickness;
   scene.colliders = {{.shape = shape, .motion = {}, .friction = friction}};
-  scene.start = simulate(scene, "implicit:" + kSprings, 40);
+  scene.start = simulate(scene, "implicit:" + kSprings, friction > 0 ? 40 : 14);
   return scene;
 }
 
@@ -47,6 +48,8 @@ std::vector<Scene> scenes() {
   }
   return all;
 }
+
+const char* name_of(const Scene& scene) { return type_name(scene.colliders[0].shape).data(); }
 
 /// How far, in the motion of a vertex by its own inertia [m], x is from the conditions of contact.
 double violation(const Scene& scene, const std::vector<Vec3>& x) {
@@ -78,16 +81,14 @@ double violation(const Scene& scene, const std::vector<Vec3>& x) {
     else
       worst = std::max(worst, per_force * (rub.norm() - most));
   }
-  EXPECT_GT(touching, 8) << "or nothing was asked";
+  EXPECT_GT(touching, 8) << name_of(scene) << ": or nothing was asked";
   return worst;
 }
-
-const char* name_of(const Scene& scene) { return type_name(scene.colliders[0].shape).data(); }
 
 TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
   for (const Scene& scene : scenes())
     for (const auto& [solver, few, many] :
-         {std::tuple("implicit", 2, 60), std::tuple("pd", 10, 20000), std::tuple("vbd", 10, 20000),
+         {std::tuple("implicit", 1, 60), std::tuple("pd", 10, 20000), std::tuple("vbd", 10, 20000),
           std::tuple("admm:links=elastic", 10, 20000)}) {
       const auto after = [&](int iterations) {
         return violation(
@@ -98,7 +99,8 @@ TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
       const double end = after(many);
       EXPECT_LT(end, 1e-8) << solver << " on a " << name_of(scene) << ", friction "
                            << scene.colliders[0].friction;
-      EXPECT_GT(after(few), 2 * end) << solver;
+      if (!std::holds_alternative<Plane>(scene.colliders[0].shape))  // there it is right at once
+        EXPECT_GT(after(few), 1e-6) << solver << " on a " << name_of(scene);
     }
 }
 
