@@ -109,12 +109,11 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
-  ResolvedSettings own{
+  const ResolvedSettings own{
       {"links", is_rigid(scene, params) ? "rigid" : describe_springs(scene, params)},
       {"links solved",
        "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};
-  if (!scene.colliders.empty()) own.emplace_back("order of passes", kLaggedContact);
   return loop::resolved_settings(scene, params, own, "constant terms of the factored system");
 }
 

@@ -318,15 +318,11 @@ class NewtonPass final : public Pass<double> {
     if (x == ended_at_) return;
     if (contacts_) contacts_->find(p, touching_);
     const bool first = std::exchange(first_, false);
-    Vector g = gradient(x, h);
-    if (!first && g.norm() <= enough_ && contacts_) {  // at the minimum for these forces of contact
-      whole_step_ = true;
-      update_contacts(p, h);
-      g = gradient(x, h);
-    }
+    const Vector g = gradient(x, h);
     if (g.norm() <= (first ? enough_at_first_ : enough_) ||
         !(first ? first_iteration(x, p, g, h) : iterate(x, g, h))) {
-      ended_at_ = std::move(x);
+      // the minimum for these forces of contact; the end if theirs is no other one
+      if (!contacts_ || !update_contacts(p, h)) ended_at_ = std::move(x);
       return;
     }
     for (std::size_t i = 0; i < p.size(); ++i)
@@ -385,7 +381,6 @@ class NewtonPass final : public Pass<double> {
 
   /// Moves x along the direction, by halves of it until the energy falls; false: it does not.
   bool take(std::vector<Vec3>& x, const Vector& direction, const Vector& g, double h) {
-    whole_step_ = true;
     if (!line_search_) {
       x = moved(x, direction, 1);
       return true;
@@ -402,7 +397,6 @@ class NewtonPass final : public Pass<double> {
       const bool rounds = now <= energy_before * (1 + 1e-12) && g_now.norm() < g.norm();
       if (!falls && !rounds) continue;
       clamped_ = clamped_ && (step < 1 || g_now.norm() < 0.25 * g.norm());
-      whole_step_ = step == 1;
       x = std::move(trial);
       return true;
     }
@@ -438,23 +432,27 @@ class NewtonPass final : public Pass<double> {
     return out;
   }
 
-  /// The forces become what acted, where the step was a whole one; what has newly come inside is
-  /// held from now on, at first by what its own inertia asks for.
-  void update_contacts(const Particles<double>& p, double h) {
+  /// The forces become what acts at p.x; what has newly come inside is held from now on, at first
+  /// by what its own inertia asks for. Whether a force changed by more than rounding.
+  bool update_contacts(const Particles<double>& p, double h) {
     contacts_->find(p, touching_);
+    double change = 0;
     for (const TouchingVertex& at : touching_) {
       ContactForce& held = contacts_->force(at.vertex, at.collider);
-      const double gap = at.gap(p.x[at.vertex]);
+      const Vec3 before = at.total(held), x = p.x[at.vertex];
+      const double gap = at.gap(x);
       if (!held.holds()) {
         held = {std::max(0.0, -gap) / (p.w[at.vertex] * h * h), Vec3::Zero()};
-      } else if (whole_step_) {
+      } else {
         const double k = contact_stiffness_[at.vertex];
         held.push = std::max(0.0, held.push - k * gap);
-        held.rub -= k * at.slip(p.x[at.vertex]);
+        held.rub -= k * at.slip(x);
         const double length = held.rub.norm(), most = at.friction * held.push;
         if (length > most) held.rub *= most / length;
       }
+      change = std::max(change, (at.total(held) - before).norm());
     }
+    return change > enough_;
   }
 
   /// p.x is x_t.
@@ -557,7 +555,7 @@ class NewtonPass final : public Pass<double> {
   std::unique_ptr<Contacts> contacts_;     ///< null: none
   std::vector<TouchingVertex> touching_;   ///< of this iteration
   std::vector<double> contact_stiffness_;  ///< [n] N/m, k; empty: no contact
-  bool clamped_ = true, first_ = true, whole_step_ = true;
+  bool clamped_ = true, first_ = true;
   double enough_ = 0, enough_at_first_ = 0;  ///< N, of |g| in this substep
   std::vector<Vec3> y_;                      ///< m, where they would go without links
   std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere
@@ -574,13 +572,12 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const std::size_t moving = to_index(scene.mesh.size()) - scene.pins.size();
-  ResolvedSettings own{
+  const ResolvedSettings own{
       {"links", describe_springs(scene, params)},
       {"links solved", std::string("implicit Euler by Newton's method, ") +
                            (factors(params, moving) ? "sparse LDLT, analysed once as set-up"
                                                     : "conjugate gradients")},
       {"work unit", "Newton iterations, not projections"}};
-  if (!scene.colliders.empty()) own.emplace_back("order of passes", kLaggedContact);
   return loop::resolved_settings(scene, params, own, "constant terms of the Hessian");
 }
 

@@ -75,8 +75,4 @@ inline std::string describe_springs(const Scene& scene, const Params& params) {
          });
 }
 
-/// What is said of contact by every solver that solves all links at once.
-inline constexpr std::string_view kLaggedContact =
-    "projected after each iteration, outside the links' system: a lagged projection";
-
 }  // namespace taut

@@ -275,7 +275,7 @@ TEST(EveryParameter, CountsAndNoneIsRememberedFromAnotherRun) {
     solver.load(scene.start);
     State state;
     try {
-      for (int n = 0; n < 3; ++n) solver.step(n * scene.dt, scene.dt);
+      for (int n = 0; n < 6; ++n) solver.step(n * scene.dt, scene.dt);
       solver.store(state);
     } catch (const SolverFailure&) {  // "exploded"
     }
