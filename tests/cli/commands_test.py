@@ -672,6 +672,11 @@ class Verbs(CommandLine):
         self.assertIn("toolchain", good)
         noise = [good.get(name, True) for name in ("load", "clock", "same code, twice")]
         self.assertEqual(facts_of(report)["timing_trusted"], all(noise))
+        made_of = {row["solver"]: row for row in rows_of(report, "fingerprints")}
+        self.assertEqual(made_of["vbd"]["layer"], made_of["jakobsen"]["layer"])
+        self.assertNotEqual(made_of["vbd"]["digest"], made_of["jakobsen"]["digest"])
+        self.assertNotIn(made_of["vbd"]["digest"], self.taut("doctor").out)
+        self.assertIn(made_of["vbd"]["digest"], self.taut("doctor", "--all").out)
 
     def test_effects_are_timed_beside_the_links_of_hang(self):
         def samples(bench, scene, what, side=0):
