@@ -8,7 +8,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/one_step.hpp"
 #include "experiments/report/plot/plot.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/convergence.hpp"
@@ -71,7 +71,7 @@ int run(const Options& options) {
   Answer answer = ask(options);
   const bool any = !answer.table("solvers").rows.empty();
   if (options.record) {
-    const Store store(options.out);
+    Store store(options.out);
     store.prepare();
     store.keep(answer);
   }
