@@ -46,8 +46,8 @@ void continue_in_one_program(const std::vector<std::string>& solvers) {
 Answer ask(const Options& options) {
   check_solvers(options.solvers);
   const Scene scene = load_scene(find_scene(options.scene), options.settings);
-  if (!scene.colliders.empty() || scene.self_collision)
-    throw InputError("converge: contact is no part of the exact step; take a scene without");
+  if (scene.self_collision)
+    throw InputError("converge: self-collision is no part of the exact step; take a scene without");
   const double at = std::round(options.at / scene.dt) * scene.dt;
   const State state = state_at(scene, parse_solver(options.from), at);
   return report::one_step_answer(
