@@ -39,31 +39,23 @@ struct RecordColumn {
 /// In the order of the documents.
 std::span<const RecordColumn> record_columns();
 
-template <class Value>
-Value& member_of(Record& r, Value Record::*member) {
+// A column's member of a record, const as the record is.
+template <class AnyRecord, class Value>
+auto& member_of(AnyRecord& r, Value Record::*member) {
   return r.*member;
 }
-template <class Value>
-Value& member_of(Record& r, Value CaseSpec::*member) {
+template <class AnyRecord, class Value>
+auto& member_of(AnyRecord& r, Value CaseSpec::*member) {
   return r.spec.*member;
 }
-template <class Value>
-Value& member_of(Record& r, Value Status::*member) {
+template <class AnyRecord, class Value>
+auto& member_of(AnyRecord& r, Value Status::*member) {
   return r.status.*member;
 }
-/// Calls `use` with the column's member of this record, of whichever type, and returns what it
-/// returns.
-template <class Use>
-auto with_member(Record& record, const RecordColumn& column, const Use& use) {
+/// Calls `use` with it, of whichever type, and returns what that returns.
+template <class AnyRecord, class Use>
+auto with_member(AnyRecord& record, const RecordColumn& column, const Use& use) {
   return std::visit([&](auto member) { return use(member_of(record, member)); }, column.member);
-}
-template <class Use>
-auto with_member(const Record& record, const RecordColumn& column, const Use& use) {
-  return std::visit(
-      [&](auto member) {
-        return use(std::as_const(member_of(const_cast<Record&>(record), member)));
-      },
-      column.member);
 }
 
 }  // namespace taut
