@@ -29,6 +29,11 @@ std::string Solver::log() const { return {}; }
 
 void set_solver_source(SolverSource source) { g_source = source; }
 
+const ResolvedSetting* find_setting(const ResolvedSettings& all, std::string_view name) {
+  const auto at = std::ranges::find(all, name, &ResolvedSetting::name);
+  return at == all.end() ? nullptr : &*at;
+}
+
 std::vector<const SolverEntry*> all_solvers() {
   std::vector<const SolverEntry*> all(solvers().begin(), solvers().end());
   if (!g_source.all) return all;

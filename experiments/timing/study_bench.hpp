@@ -6,18 +6,19 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
 
 /// One setting of one solver on one scene: what it costs and how far it is off.
 struct Candidate {
-  std::string solver;   ///< the entry's name
-  std::string setting;  ///< "jakobsen:substeps=16,iterations=1"
-  Interval cost;        ///< CPU seconds per simulated second
-  double error = 0;     ///< of the chosen metric, >= 0; NaN if the metric has no meaning here
-  std::string failure;  ///< why it is refused, such as "exploded (energy)"; empty: it ran
+  std::string solver;         ///< the entry's name
+  std::string setting;        ///< "jakobsen:substeps=16,iterations=1"
+  Interval cost;              ///< CPU seconds per simulated second
+  double error = 0;           ///< of the chosen metric, >= 0; NaN if the metric has no meaning here
+  std::string failure;        ///< why it is refused, such as "exploded (energy)"; empty: it ran
+  bool hardly_moves = false;  ///< which is why: its strain is that of cloth that stands still
 };
 
 /// What is asked for: the cheapest setting within an error, or the most accurate within a cost.
@@ -105,7 +106,7 @@ std::vector<std::string> solvers_of(const SceneBench&);
 
 /// Keeps every sample in place of what this host and build measured of the study before. Throws
 /// InputError; then the former stay.
-void keep(const Store&, const StudyBench&);
+void keep(Store&, const StudyBench&);
 
 /// What is stored of a study ("": of all): of this host and build, of this host, of others by name;
 /// of cases that are stored, in scenes that have any. Throws InputError: damaged.

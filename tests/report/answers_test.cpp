@@ -48,6 +48,7 @@ TEST(PageAnswers, HaveAValueOrWhyThereIsNoneAndMarkWhatIsBetterByMoreThanTheTole
   EXPECT_EQ(best(2), std::pair(false, false)) << "alone";
   EXPECT_EQ(best(3), std::pair(false, false)) << "both as good as nothing";
   EXPECT_EQ(table.rows[4][2].text(), "not run");
+  EXPECT_EQ(table.rows[4][2].state, Cell::State::not_run);
   EXPECT_EQ(table.rows[5][0].text(), "mean of 2 scenes");
   EXPECT_EQ(table.rows[5][0].note, "without box, drape, swing");
   EXPECT_NEAR(table.rows[5][1].number(), 0.02, 1e-12);
@@ -74,6 +75,7 @@ TEST(PageAnswers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
   EXPECT_EQ(last[1].number(), 0.002);
   EXPECT_EQ(last[2].number(), 0.03);
   EXPECT_EQ(last[3].text(), "cannot: no balls");
+  EXPECT_EQ(last[3].state, Cell::State::refused);
   EXPECT_FALSE(last[3].best);
   EXPECT_TRUE(last[1].best);
   EXPECT_EQ(answer.table("failures").rows.back()[3].number(), 0) << "no failure";
@@ -103,7 +105,7 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
   const Record cheap = ours;
   Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
-  dear.params["iterations"] = "1";  // nothing is cheaper: its cost is no upper bound
+  dear.sweeps = 1;  // nothing is cheaper: its cost is no upper bound
   const auto price = [&](double ratio, double noise) {
     const std::vector<double> one(12, 1e-3), other(12, 1e-3 * ratio);
     made.input.bench =
@@ -132,7 +134,7 @@ StudyBench bench_of(const std::vector<Timed>& all) {
     if (bench.scenes.empty() || bench.scenes.back().scene != scene)
       bench.scenes.push_back({scene, {0.99, 1, 1.01}, {}});
     Record r = synthetic::record(scene, solver, sweeps, 1.0 / 64);
-    r.params["substeps"] = std::to_string(substeps);
+    r.substeps = substeps;
     r.spec.solver += ",substeps=" + std::to_string(substeps);
     r.id += r.spec.solver, r.key += std::to_string(substeps) + "x" + std::to_string(sweeps);
     r.values = {{"stretch.rms", error}};
@@ -197,6 +199,9 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   Answer answer = made.answer();
   const Table& table = answer.table("stretch.rms");
   EXPECT_EQ(table.rows[0][3].note, "hardly moves: 49\u00A0% of the way");
+  EXPECT_EQ(table.rows[0][3].state, Cell::State::hardly_moves);
+  EXPECT_EQ(table.rows[0][0].scene, "swing");
+  EXPECT_EQ(table.rows.back()[0].scene, "") << "of all together";
   EXPECT_FALSE(table.rows[0][3].best);
   EXPECT_TRUE(table.rows[0][2].best) << "the best of those that move";
   EXPECT_TRUE(table.rows[1][3].best);
@@ -216,6 +221,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   answer = made.answer();
   EXPECT_EQ(answer.table("price").rows[0][3].text(), "not reached");
   EXPECT_EQ(answer.table("price").rows[0][3].note, "hardly moves: 40\u00A0% of the way");
+  EXPECT_EQ(answer.table("price").rows[0][3].state, Cell::State::hardly_moves);
   EXPECT_FALSE(answer.table("price").rows[0][1].best) << "alone";
 }
 
@@ -224,7 +230,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWorkEither) {
   Reported made;
   made.add("swing", "jakobsen", {{"stretch.rms", 0.03}, {"motion.share", 0.9}});
   Record& still = made.add("swing", "pd", {{"stretch.rms", 0.001}, {"motion.share", 0.49}});
-  still.params["iterations"] = "8";
+  still.sweeps = 8;
   const auto row = made.answer().table("stretch.rms").rows[0];
   EXPECT_EQ(row[1].note, "1 × 16");
   EXPECT_EQ(row[2].note, "hardly moves: 49\u00A0% of the way; 1 × 8");
@@ -295,10 +301,10 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   r.params = {{"simd", "auto"}};
   EXPECT_EQ(arithmetic(r, "avx2"), "double") << "no kernels of its own precision";
   EXPECT_EQ(link_order(r), "");
-  r.resolved_settings.emplace_back("link order", "the scene's");
+  r.resolved_settings.emplace_back(kLinkOrder, "the scene's", "mesh order");
   EXPECT_EQ(link_order(r), "mesh order");
-  r.resolved_settings.back().second = "coloured, of the links on no line";
-  EXPECT_EQ(link_order(r), "coloured");
+  r.resolved_settings.back() = {kLinkOrder, "as its program says"};
+  EXPECT_EQ(link_order(r), "as its program says");
 
   Reported made;
   made.add("hang", "jakobsen", {{"stretch.rms", 0.1}}), made.add("hang", "bullet", {});
@@ -306,7 +312,7 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
       bench_of({{"hang", "jakobsen", 20, 1, 0.005, 1e-3}, {"hang", "bullet", 1, 1, 0.005, 1e-3}});
   auto& cases = made.input.bench->scenes[0].cases;
   cases[0].record.resolved_settings = {{"link order", "coloured"}};
-  cases[1].record.resolved_settings = {{"link order", "the scene's"}};
+  cases[1].record.resolved_settings = {{kLinkOrder, "the scene's", "mesh order"}};
   const Answer answer = made.answer();
   const Table& price = answer.table("price");
   EXPECT_NE(price.caption.find("Jakobsen coloured, Bullet mesh order"), std::string::npos);

@@ -70,11 +70,12 @@ struct Records : std::vector<const Record*> {
 /// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
 std::string solver_title(std::string_view solver);
 
-/// Of kSweeps and kSubsteps the solver's own parameter, as its entry says; else the name itself.
-std::string parameter_of(std::string_view solver, std::string_view name);
+/// The record's parameters but for those that are its substeps and sweeps.
+std::map<std::string, std::string> other_settings(const Record&);
 
-/// The parameters that decide accuracy and cost, as the entry says: substeps and sweeps first.
-std::vector<std::string> accuracy_parameters(const std::string& solver);
+/// What this program's solver of that name has in labels beside substeps and sweeps, as its entry
+/// says; none of a solver that it does not have.
+std::vector<std::string> labelled_parameters(const std::string& solver);
 
 /// Accelerators that this case uses and that a solver with these parameters lacks ("tethers").
 std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);

@@ -1,4 +1,4 @@
-#include "experiments/study/database.hpp"
+#include "experiments/results/database.hpp"
 
 #include <sqlite3.h>
 #include <unistd.h>
@@ -77,6 +77,18 @@ SQLite::Statement& Database::prepared(const std::string& sql) {
   if (at == statements_.end())
     at = guarded([&] { return statements_.try_emplace(sql, *db_, sql).first; });
   return at->second;
+}
+
+void Database::run_with(const std::string& sql, const std::vector<Value>& values) {
+  SQLite::Statement& statement = prepared(sql);
+  int place = 0;
+  guarded([&] {
+    for (const Value& value : values)
+      std::visit([&](const auto& one) { bind(statement, ++place, one); }, value);
+  });
+  Rows all(*this, statement);
+  while (all.next()) {
+  }
 }
 
 void Database::script(const std::string& sql) {

@@ -1,6 +1,6 @@
 // The results file: whole cases or none, results that nothing replaces, numbers that keep every
 // bit.
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -15,6 +15,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/damaged_results.hpp"
@@ -32,6 +33,7 @@ Record some_record() {
   r.scene = "a sheet";  // no text is another one's
   r.solver = "jakobsen";
   r.params = {{"iterations", "8"}};
+  r.sweeps = 8, r.work_parameters = {"iterations"};
   r.log = "what it said";
   r.dt = 1.0 / 60;
   r.steps = 600;
@@ -77,7 +79,7 @@ TEST(RecordText, KeepsEveryBit) {
 
 TEST(RecordText, RefusesOtherSchemasAndNonsense) {
   std::string text = to_json(some_record());
-  text.replace(text.find("\"schema\":1"), 10, "\"schema\":2");
+  text.replace(text.find("\"schema\":2"), 10, "\"schema\":1");
   EXPECT_THROW(record_from_json(text, "x"), InputError);
   EXPECT_THROW(record_from_json("{}", "x"), InputError);
   EXPECT_THROW(record_from_json("[1", "x"), InputError);
@@ -117,6 +119,49 @@ TEST_F(StoreTest, ACaseIsThereAfterItsCommit) {
   EXPECT_EQ(names, std::vector<std::string>{"results.db"}) << "one file, and no journal stays";
 }
 
+/// Another value than that of a record which nobody filled.
+template <class Value>
+void fill(Value& value, int n) {
+  const std::string text = "text " + std::to_string(n);
+  if constexpr (std::is_same_v<Value, std::string>)
+    value = text;
+  else if constexpr (std::is_arithmetic_v<Value>)
+    value = static_cast<Value>(n);
+  else if constexpr (std::is_same_v<Value, Status::Kind>)
+    value = Status::Kind::extreme;
+  else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+    value = {text};
+  else if constexpr (std::is_same_v<Value, RecordColumn::Texts>)
+    value = {{"a", text}};
+  else if constexpr (std::is_same_v<Value, RecordColumn::Numbers>)
+    value = {{"a", n / 7.0}};
+  else if constexpr (std::is_same_v<Value, ResolvedSettings>)
+    value = {{"a", text, "token", n / 7.0}, {"b", "c"}};
+  else
+    value = {{text, 1, 2, 3, true}};
+}
+
+TEST_F(StoreTest, EveryFieldOfARecordIsKept) {
+  Record r;
+  int n = 0;
+  for (const RecordColumn& column : record_columns())
+    with_member(r, column, [&](auto& value) { fill(value, ++n); });
+  r.key = some_record().key;
+  EXPECT_EQ(to_json(record_from_json(to_json(r), "JSON")), to_json(r));
+  EXPECT_EQ(put(r), Store::Commit::stored);
+  ASSERT_TRUE(Store(root_).find(r.key));
+  EXPECT_EQ(to_json(*Store(root_).find(r.key)), to_json(r));
+}
+
+TEST_F(StoreTest, WhatASolverHasNotIsNull) {
+  put(some_record());
+  Database file(store_.file(), Database::Access::read);
+  Database::Rows row = file.rows("SELECT substeps, sweeps FROM cases");
+  ASSERT_TRUE(row.next());
+  EXPECT_TRUE(row.null(0));
+  EXPECT_EQ(row.integer(1), 8);
+}
+
 TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
   const Record r = some_record();
   store_.prepare();
@@ -131,7 +176,7 @@ TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
   write_file(staged / kFramesFile, frames);
   EXPECT_EQ(store_.commit(staged, r), Store::Commit::stored);
   EXPECT_FALSE(fs::exists(staged));
-  const Store other(root_);
+  Store other(root_);
   EXPECT_EQ(other.series(r.key).columns, series.columns);
   EXPECT_EQ(other.series(r.key).rows, series.rows);
   ASSERT_TRUE(other.has_frames(r.key));
@@ -233,7 +278,7 @@ TEST_F(StoreTest, ADamagedFileIsRefusedToReadersAndSetAsideByWriters) {
           << error.what();
     }
     EXPECT_EQ(read_text(root_ / "results.db"), bytes) << "reading changes nothing";
-    const Store again(root_, note);
+    Store again(root_, note);
     again.prepare();
     ASSERT_EQ(said_.size(), 1u);
     EXPECT_NE(said_[0].find("begun anew"), std::string::npos);
@@ -275,7 +320,7 @@ TEST_F(StoreTest, OfAProcessThatIsKilledWhileWritingNothingStays) {
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFSIGNALED(status));
-    const Store next(root_);
+    Store next(root_);
     next.prepare();
     EXPECT_EQ(next.keys(), std::vector{other.key}) << most;
     EXPECT_EQ(next.find(other.key)->status.kind, Status::Kind::timeout);
@@ -291,7 +336,7 @@ TEST_F(StoreTest, OfResultsThatComeAtOnceOneStaysAndTheOthersAreConflicts) {
   for (int i = 0; i < kWriters; ++i) {
     writers.push_back(fork());
     if (writers.back() != 0) continue;
-    const Store own(root_);
+    Store own(root_);
     for (int n = 0; n < kCases; ++n) {
       Record record = some_record();
       record.key = std::string(60, 'a') + std::to_string(1000 + n);
@@ -328,7 +373,7 @@ TEST_F(StoreTest, ManyCommitsTogetherAreAllOrNone) {
 
 TEST_F(StoreTest, TakesOverWhatAnotherHas) {
   const fs::path place = root_ / "other";
-  const Store other(place);
+  Store other(place);
   Record failed = some_record(), better = some_record(), fresh = some_record();
   failed.key[0] = better.key[0] = 'b', fresh.key[0] = 'c', fresh.values["new"] = -0.0;
   failed.status = {Status::Kind::timeout, "wall time", 5, -1};
@@ -372,14 +417,14 @@ TEST_F(StoreTest, ResultsOfAnEarlierTautAreSaidAndLeftAlone) {
 TEST_F(StoreTest, AFileOfAnotherVersionIsNeitherReadNorWritten) {
   put(some_record());
   change(store_, "PRAGMA user_version = 99");
-  const Store other(root_);
+  Store other(root_);
   for (const auto& use :
        {std::function([&] { other.keys(); }), std::function([&] { other.prepare(); })})
     try {
       use();
       ADD_FAILURE();
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 3)"), std::string::npos)
+      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 4)"), std::string::npos)
           << error.what();
     }
 }
