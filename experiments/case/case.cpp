@@ -43,7 +43,12 @@ Case CaseMaker::make(const CaseSpec& spec) {
   };
   const Loaded* found = nullptr;
   collect([&] { found = &scene(spec); });
-  collect([&] { one.choice = parse_solver(spec.solver); });
+  collect([&] {
+    one.choice = parse_solver(spec.solver);
+    if (!one.choice.entry->make)
+      throw InputError(spec.solver +
+                       ": is not started, for neither the command line nor a study names it");
+  });
   if (!wrong.empty()) throw InputError(wrong);
   const Loaded& loaded = *found;
   one.scene = loaded.scene;

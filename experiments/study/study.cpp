@@ -98,7 +98,11 @@ class StudyReader {
         if (std::ranges::count(study_.scenes, name) == 0) study_.scenes.push_back(name);
   }
   void read_solvers(Section& section) {
-    if (strings(section, "solvers", study_.solvers, parse_solver)) remember_solvers();
+    const auto read = [](const std::string& text) {
+      admit_solver(text);
+      parse_solver(text);
+    };
+    if (strings(section, "solvers", study_.solvers, read)) remember_solvers();
   }
   void read_set(Section& section) {
     if (strings(section, "set", study_.settings, [](const std::string&) {}))

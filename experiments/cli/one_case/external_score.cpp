@@ -35,7 +35,9 @@ std::vector<std::string> fitted(const Options& o) {
 }
 
 int run(const Options& o) {
-  const Case one = CaseMaker().make({o.scene, fitted(o), external::solver_text(o.motion)});
+  const std::string solver = external::solver_text(o.motion);
+  admit_solver(solver);
+  const Case one = CaseMaker().make({o.scene, fitted(o), solver});
   for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
     throw InputError(why);
   const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : 120});
