@@ -29,6 +29,9 @@ std::vector<std::string> fitted(const Options& o) {
     settings.push_back("time.dt=" + shortest(motion.frame_dt()));
     scene = load_scene(find_scene(o.scene), settings);
   }
+  if (motion.header().frames < 2)
+    throw InputError(o.motion.file.string() +
+                     ": has one frame; a motion has two at least, the start and what follows");
   if (const int steps = motion.header().frames - 1; steps < scene.steps)
     settings.push_back("time.duration=" + shortest(steps * motion.frame_dt()));
   return settings;
