@@ -24,8 +24,8 @@ const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
   for (const std::string& text : spec.overrides) address += '\n' + text;
   Loaded& loaded = scenes_[address];
   if (!loaded.scene) {
-    loaded.scene =
-        std::make_shared<const Scene>(load_scene(find_scene(spec.scene), spec.overrides));
+    loaded.scene = std::make_shared<const Scene>(
+        load_scene(find_scene(spec.scene), spec.overrides, &loaded.remarks));
     loaded.digest = digest(*loaded.scene);
   }
   return loaded;
@@ -52,6 +52,7 @@ Case CaseMaker::make(const CaseSpec& spec) {
   if (!wrong.empty()) throw InputError(wrong);
   const Loaded& loaded = *found;
   one.scene = loaded.scene;
+  one.remarks = loaded.remarks;
   one.spec.solver = one.choice.canonical();
   one.key = case_key(*loaded.scene, loaded.digest, one.choice);
   one.id = loaded.scene->name;

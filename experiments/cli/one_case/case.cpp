@@ -63,6 +63,7 @@ int run(const Options& options) try {
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into, options.frames);
 
+  tell_remarks(one.remarks);
   if (!options.trajectory.empty()) check_positions_name(options.trajectory);
   for (const std::string& file : {options.final_state, options.series, options.trajectory})
     if (!file.empty()) test_writable(file);
