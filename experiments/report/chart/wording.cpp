@@ -195,6 +195,8 @@ std::string solver_title(std::string_view solver) {
 }
 
 std::string parameter_of(std::string_view solver, std::string_view name) {
+  if (const auto colon = name.find(':'); name.substr(0, colon) == solver && colon != name.npos)
+    return std::string(name.substr(colon + 1));  // an axis of this solver alone
   std::string_view own;
   if (const SolverEntry* entry = find_entry(solver)) {
     if (name == kSweeps) own = entry->accuracy.sweeps;
