@@ -185,16 +185,19 @@ std::vector<PassCost> BulletSoftBody::solve_cost() const {
 
 /// How many links wait for the one before them, in the order that Bullet was given and in the one
 /// that it solves.
-std::string link_order(const Scene& scene, const Params& params) {
-  if (!params.is("reorder", "on")) return "the scene's";
+ResolvedSetting link_order(const Scene& scene, const Params& params) {
+  if (!params.is("reorder", "on")) return {kLinkOrder, "the scene's", "mesh order"};
   btSoftBodyWorldInfo info;
   const auto waiting = [&](bool reorder) {
     const auto body = build_cloth(info, scene, {.faces = false, .reorder = reorder});
     return std::to_string(waiting_links(*body));
   };
-  return "ReoptimizeLinkOrder: the same at every vertex; " + waiting(true) + " of " +
-         std::to_string(scene.links.size()) + " links share a vertex with the one before them (" +
-         waiting(false) + " in the scene's order)";
+  return {kLinkOrder,
+          "ReoptimizeLinkOrder: the same at every vertex; " + waiting(true) + " of " +
+              std::to_string(scene.links.size()) +
+              " links share a vertex with the one before them (" + waiting(false) +
+              " in the scene's order)",
+          "reordered"};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -225,15 +228,16 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const double h = static_cast<double>(bullet_ref::substep_length(scene, params));
   ResolvedSettings lines = bullet_ref::library_settings(scene, params);
-  lines.insert(lines.end(),
-               {{"integration", "symplectic Euler; the same positions as Verlet"},
-                {"projection", "sqrt-free, weighted by inverse mass, kLST " +
-                                   bullet_ref::short_text(params.real("stiffness"))},
-                {"link order", link_order(scene, params)},
-                {"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)"},
-                {"damping",
-                 "kDP " + bullet_ref::short_text(-std::expm1(-scene.damping * h)) + " per substep"},
-                {"normals", params.is("faces", "on") ? "computed every substep" : "off"}});
+  lines.insert(
+      lines.end(),
+      {{"integration", "symplectic Euler; the same positions as Verlet"},
+       {"projection", "sqrt-free, weighted by inverse mass, kLST " +
+                          bullet_ref::short_text(params.real("stiffness"))},
+       link_order(scene, params),
+       {"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)", "the scene's"},
+       {"damping",
+        "kDP " + bullet_ref::short_text(-std::expm1(-scene.damping * h)) + " per substep"},
+       {"normals", params.is("faces", "on") ? "computed every substep" : "off"}});
   if (scene.wind)
     lines.emplace_back("wind", "our face law through addForce; Bullet's own medium is empty");
   if (scene.colliders.empty()) return lines;

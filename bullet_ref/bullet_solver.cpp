@@ -214,10 +214,11 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 
 ResolvedSettings library_settings(const Scene& scene, const Params& params) {
   const std::string precision(params.choice("precision"));
+  const std::string step = short_text(static_cast<double>(substep_length(scene, params))) +
+                           " s x " + std::string(params.value("substeps"));
   return {{"library", "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
                           std::to_string(BT_BULLET_VERSION % 100) + ", " + precision},
-          {"time step", short_text(static_cast<double>(substep_length(scene, params))) + " s x " +
-                            std::string(params.value("substeps")) + ", as binary32"},
+          {"time step", step + ", as binary32", step},
           {"precision", precision}};
 }
 

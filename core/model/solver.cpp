@@ -35,6 +35,11 @@ void admit_solver(std::string_view text) {
   if (g_source.admit) g_source.admit(name, text.substr(std::min(text.size(), name.size() + 1)));
 }
 
+const ResolvedSetting* find_setting(const ResolvedSettings& all, std::string_view name) {
+  const auto at = std::ranges::find(all, name, &ResolvedSetting::name);
+  return at == all.end() ? nullptr : &*at;
+}
+
 std::vector<const SolverEntry*> all_solvers() {
   std::vector<const SolverEntry*> all(solvers().begin(), solvers().end());
   if (!g_source.names) return all;

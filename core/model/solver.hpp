@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -66,9 +67,28 @@ struct SolverFailure : std::runtime_error {
   std::string status, log;
 };
 
-/// A resolved setting: what the solver makes of a setting ("time step", "1/64 s, as
-/// binary32").
-using ResolvedSettings = std::vector<std::pair<std::string, std::string>>;
+/// What the solver makes of a setting.
+struct ResolvedSetting {
+  std::string name;   ///< "time step"
+  std::string text;   ///< for people: "1/64 s, as binary32"
+  std::string token;  ///< by which solvers are compared: "coloured"; "": by the text
+  double number;      ///< what the text says, in SI; NaN: nothing that is computed with
+
+  ResolvedSetting(std::string_view name_, std::string_view text_, std::string_view token_ = {},
+                  double number_ = std::numeric_limits<double>::quiet_NaN())
+      : name(name_), text(text_), token(token_), number(number_) {}
+  const std::string& compared() const { return token.empty() ? text : token; }
+  /// NaN is NaN.
+  bool operator==(const ResolvedSetting& other) const {
+    return name == other.name && text == other.text && token == other.token &&
+           (number == other.number || (number != number && other.number != other.number));
+  }
+};
+using ResolvedSettings = std::vector<ResolvedSetting>;
+/// A setting that the page shows with each solver, by its token.
+inline constexpr std::string_view kLinkOrder = "link order";
+/// The one of that name; nullptr: there is none.
+const ResolvedSetting* find_setting(const ResolvedSettings&, std::string_view name);
 
 /// The parameters that decide how accurate a result is and what it costs, and what a search for a
 /// setting may try of them (experiments/timing/search.hpp). Names and values as typed.

@@ -108,8 +108,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const std::string of = lines ? ", of the links on no line" : "";
   ResolvedSettings own{
       {"projection", std::string(params.choice("projection")) + ", weighted by inverse mass" + of},
-      {"link order",
-       (params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))) + of}};
+      loop::link_order(params, of)};
   if (lines)
     own.emplace_back("links solved",
                      "the structural ones of each row, then of each column, at once");

@@ -292,6 +292,12 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
           std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
 }
 
+ResolvedSetting link_order(const Params& params, const std::string& of) {
+  const std::string order(params.choice("order"));
+  if (order == "mesh") return {kLinkOrder, "the scene's" + of, "mesh order"};
+  return {kLinkOrder, order + of, order};
+}
+
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
                                    const ResolvedSettings& own, std::string_view bending) {
   const double h = scene.dt / params.integer("substeps");
@@ -304,7 +310,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
                                       shortest(scene.bending->weft) + " N m along the weft, " +
                                       std::string(bending));
   lines.emplace_back("gravity", "the scene's");
-  lines.emplace_back("precision", precision_of(scene, params));
+  lines.emplace_back("precision", precision_of(scene, params),
+                     in_float(params) ? "float" : "double");
   if (scene.damping > 0)
     lines.emplace_back("damping",
                        "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");

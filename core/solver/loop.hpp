@@ -95,6 +95,9 @@ ResolvedSettings resolved_settings(
     const Scene&, const Params&, const ResolvedSettings& own,
     std::string_view bending = "projected after the links with compliance and multipliers (XPBD)");
 
+/// That setting by the parameter `order`; `of`: which links it is the order of.
+ResolvedSetting link_order(const Params&, const std::string& of = "");
+
 // The loop's parameters. `iterations` (one without it), `tethers` and `precision` (double without
 // it) may be left out.
 constexpr ParamSpec iterations(std::string_view default_value, std::string_view help) {

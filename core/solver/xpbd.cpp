@@ -77,8 +77,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                                        shortest(
                                                            all[static_cast<std::size_t>(family)]);
                                               })},
-       {"link order",
-        params.is("order", "mesh") ? "the scene's" : std::string(params.choice("order"))}});
+       loop::link_order(params)});
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};

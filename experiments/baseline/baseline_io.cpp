@@ -17,14 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::tuple kSpec{Field{"scene", &CaseSpec::scene},
+                           Field{"overrides", &CaseSpec::overrides},
+                           Field{"solver", &CaseSpec::solver}};
+
 std::string line_of(const BaselineRow& row) {
-  Json json{{"id", row.id},
-            {"scene", row.spec.scene},
-            {"overrides", row.spec.overrides},
-            {"solver", row.spec.solver},
-            {"content", row.scene},
-            {"status", row.status},
-            {"projections", row.projections}};
+  Json json{{"id", row.id}};
+  json.update(json_of(row.spec, kSpec));
+  json["content"] = row.scene;
+  json["status"] = row.status;
+  json["projections"] = row.projections;
   if (!row.frontier.empty()) json["frontier"] = row.frontier;
   if (row.flaky) json["flaky"] = true;
   json["values"] = row.values;  // null: no meaning
@@ -34,7 +36,7 @@ std::string line_of(const BaselineRow& row) {
 BaselineRow row_of(const JsonReader& json) {
   BaselineRow row;
   row.id = printable(json.at("id").text());  // goes to the terminal
-  read_into(json, row.spec);
+  read_into(json, row.spec, kSpec);
   row.scene = json.at("content").text();
   row.status = json.at("status").text();
   row.projections = json.at("projections").count();

@@ -4,14 +4,17 @@
 
 namespace taut {
 
-/// Digest of what a solver is made of: sources, compiler, flags, library versions; empty for a
-/// solver that is not part of the program (test doubles). `solver` is its name: that of its
-/// TAUT_SOLVER line with hyphens for underscores. Generated at build time
-/// (cmake/fingerprint.cmake).
+// Generated at build time (cmake/fingerprint.cpp). Comments and blank lines change no digest.
+
+/// Digest of what a solver is made of: the sources that it uses, compiler, flags, library versions;
+/// empty for a solver that is not part of the program (test doubles). `solver` is its name: that of
+/// its TAUT_SOLVER line with hyphens for underscores.
 std::string_view implementation(std::string_view solver);
-/// Digest of what turns states into numbers: metrics, divergence, run_case. Generated likewise.
+/// Digest of all sources of the solver's layer, core/solver or bullet_ref, with core/model.
+std::string_view layer_digest(std::string_view solver);
+/// Digest of what turns states into numbers: metrics, divergence, run_case, references.
 std::string_view measurement();
-/// Compiler, flags and library versions, for people. Generated likewise.
+/// Compiler, flags and library versions, for people.
 std::string_view toolchain();
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/model/solver.hpp"
@@ -46,8 +47,11 @@ struct CaseSpec {
   std::string solver;  ///< "jakobsen:iterations=8,..."
 };
 
+/// The resolved setting whose number is the rounding of a file of positions, as an RMS of strain.
+inline constexpr std::string_view kFloorOfStrain = "floor of strain";
+
 /// A case that was run: one line of every table. Everything that metrics, plots, reports and checks
-/// need.
+/// need. How it is written and kept: record_columns().
 struct Record {
   std::string
       key;  ///< SHA-256 over content, solver, implementation, parameters and metrics version; hex
@@ -56,7 +60,10 @@ struct Record {
   std::string scene;                          ///< its name
   std::string solver;                         ///< the entry's name
   std::map<std::string, std::string> params;  ///< all of the solver's
-  double dt = 0;                              ///< s
+  /// Of a step, and of a substep, by the solver's AccuracyParameters; -1: it has no such parameter.
+  int substeps = -1, sweeps = -1;
+  std::vector<std::string> work_parameters;  ///< which of the parameters these are
+  double dt = 0;                             ///< s
   int steps = 0;
   int vertices = 0, links = 0;
   Status status;

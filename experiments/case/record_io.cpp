@@ -6,35 +6,35 @@
 #include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/record_columns.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
 
 namespace {
 
-constexpr std::tuple kResult{Field{"status", &Record::status},
-                             Field{"values", &Record::values},
-                             Field{"projections", &Record::projections},
-                             Field{"step_cost", &Record::step_cost},
-                             Field{"resolved_settings", &Record::resolved_settings},
-                             Field{"digest", &Record::digest}};
-constexpr std::tuple kCase{Field{"key", &Record::key},
-                           Field{"id", &Record::id},
-                           Field{"spec", &Record::spec},
-                           Field{"scene", &Record::scene},
-                           Field{"solver", &Record::solver},
-                           Field{"params", &Record::params},
-                           Field{"dt", &Record::dt},
-                           Field{"steps", &Record::steps},
-                           Field{"vertices", &Record::vertices},
-                           Field{"links", &Record::links}};
-constexpr std::tuple kSpec{Field{"scene", &CaseSpec::scene},
-                           Field{"overrides", &CaseSpec::overrides},
-                           Field{"solver", &CaseSpec::solver}};
 constexpr std::tuple kPassCost{Field{"pass", &PassCost::pass}, Field{"items", &PassCost::items},
                                Field{"repeats", &PassCost::repeats},
                                Field{"bytes", &PassCost::bytes},
                                Field{"projections", &PassCost::projections}};
+
+/// "status" and "kind" of "status.kind"; "" and "scene" of "scene".
+std::pair<std::string, std::string> object_and_key(std::string_view path) {
+  const std::size_t dot = path.find('.');
+  if (dot == path.npos) return {"", std::string(path)};
+  return {std::string(path.substr(0, dot)), std::string(path.substr(dot + 1))};
+}
+
+/// Appends what the columns say, or those alone that are part of the result.
+void append_columns(Json& json, const Record& record, bool result_alone) {
+  for (const RecordColumn& column : record_columns()) {
+    if (result_alone && !column.is_result) continue;
+    const auto [object, key] = object_and_key(column.json);
+    Json value = with_member(record, column, [](const auto& member) { return Json(member); });
+    if (column.may_be_absent() && value == "") continue;
+    (object.empty() ? json : json[object])[key] = std::move(value);
+  }
+}
 
 /// Doubles in shortest exact form, NaN as an empty field.
 template <class Values>
@@ -45,14 +45,9 @@ std::string csv_line(const Values& values) {
 
 }  // namespace
 
-void read_into(const JsonReader& j, CaseSpec& spec) { read_into(j, spec, kSpec); }
-
-void read_into(const JsonReader& j, Status& status) {
-  const JsonReader kind = j.at("kind");
-  if (!is_status(kind.text())) kind.fail("unknown status '" + kind.text() + "'");
-  status.kind = status_kind(kind.text());
-  read_into(j.at("reason"), status.reason);
-  read_into(j.at("step"), status.step), read_into(j.at("vertex"), status.vertex);
+void read_into(const JsonReader& j, Status::Kind& kind) {
+  if (!is_status(j.text())) j.fail("unknown status '" + j.text() + "'");
+  kind = status_kind(j.text());
 }
 
 void read_into(const JsonReader& j, std::vector<PassCost>& all) {
@@ -60,19 +55,24 @@ void read_into(const JsonReader& j, std::vector<PassCost>& all) {
 }
 
 void read_into(const JsonReader& j, ResolvedSettings& all) {
-  for (const JsonReader& e : j.items()) {
-    const std::vector<JsonReader> pair = e.items(2);
-    all.emplace_back(pair[0].text(), pair[1].text());
+  for (const JsonReader& one : j.items()) {
+    all.emplace_back(one.at("name").text(), one.at("text").text());
+    if (const auto token = one.find("token")) all.back().token = token->text();
+    if (const auto number = one.find("number")) all.back().number = number->number();
   }
 }
 
 Record record_of(const JsonReader& j) {
   j.require_schema(kRecordSchema);
-  Record r = read_as(j, kCase);
-  read_into(j, r, kResult);
+  Record r;
+  for (const RecordColumn& column : record_columns()) {
+    const auto [object, key] = object_and_key(column.json);
+    const JsonReader within = object.empty() ? j : j.at(object.c_str());
+    if (const auto value = within.find(key.c_str()); value || !column.may_be_absent())
+      with_member(r, column, [&](auto& member) { read_into(within.at(key.c_str()), member); });
+  }
   if (!is_key(r.key)) j.at("key").fail("expected 64 hexadecimal digits");
   if (!(r.dt > 0)) j.at("dt").fail("expected a time step greater than 0");
-  if (const auto log = j.find("log")) r.log = log->text();
   return r;
 }
 
@@ -89,10 +89,8 @@ std::string describe(const Status& status) {
 }
 
 std::string to_json(const Record& r, int indent) {
-  Json j = json_of(r, kResult);
-  j["schema"] = kRecordSchema;
-  j.update(json_of(r, kCase));
-  if (!r.log.empty()) j["log"] = r.log;
+  Json j{{"schema", kRecordSchema}};
+  append_columns(j, r, false);
   return to_text(j, indent);
 }
 
@@ -104,7 +102,11 @@ bool is_key(std::string_view text) {
   return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == text.npos;
 }
 
-std::string result_digest(const Record& r) { return sha256(to_text(json_of(r, kResult))); }
+std::string result_digest(const Record& r) {
+  Json j;
+  append_columns(j, r, true);
+  return sha256(to_text(j));
+}
 
 std::string to_csv(const Series& series) {
   std::string text = join(series.columns, ",") + '\n';

@@ -17,7 +17,7 @@ bool completed(const Status&);
 std::string describe(const Status&);
 
 /// Version of every JSON text below; readers refuse others.
-inline constexpr int kRecordSchema = 1;
+inline constexpr int kRecordSchema = 2;
 
 /// Found by the JSON library, wherever one of them becomes JSON.
 template <class Json>
@@ -29,19 +29,17 @@ void to_json(Json& json, const PassCost& p) {
           {"projections", p.projections}};
 }
 template <class Json>
-void to_json(Json& json, const CaseSpec& spec) {
-  json = {{"scene", spec.scene}, {"overrides", spec.overrides}, {"solver", spec.solver}};
+void to_json(Json& json, const ResolvedSetting& s) {
+  json = {{"name", s.name}, {"text", s.text}};
+  if (!s.token.empty()) json["token"] = s.token;
+  if (s.number == s.number) json["number"] = s.number;
 }
 template <class Json>
-void to_json(Json& json, const Status& status) {
-  json = {{"kind", to_string(status.kind)},
-          {"reason", status.reason},
-          {"step", status.step},
-          {"vertex", status.vertex}};
+void to_json(Json& json, const Status::Kind& kind) {
+  json = std::string(to_string(kind));
 }
 // These throw InputError.
-void read_into(const JsonReader&, CaseSpec&);
-void read_into(const JsonReader&, Status&);
+void read_into(const JsonReader&, Status::Kind&);
 void read_into(const JsonReader&, std::vector<PassCost>&);
 void read_into(const JsonReader&, ResolvedSettings&);
 

@@ -73,13 +73,24 @@ class SceneMetrics {
 
 }  // namespace
 
+void describe_solver(Record& record, const SolverChoice& choice) {
+  record.solver = choice.entry->name;
+  for (const ParamSpec& param : choice.entry->params)
+    record.params[std::string(param.name)] = choice.params.value(param.name);
+  const AccuracyParameters& named = choice.entry->accuracy;
+  for (const auto& [name, into] :
+       {std::pair{named.substeps, &record.substeps}, {named.sweeps, &record.sweeps}}) {
+    if (name.empty()) continue;
+    *into = choice.params.integer(name);
+    record.work_parameters.emplace_back(name);
+  }
+}
+
 Record describe(const Scene& scene, const SolverChoice& choice) {
   Record record;
   record.spec = {scene.name, {}, choice.canonical()};
   record.scene = scene.name;
-  record.solver = choice.entry->name;
-  for (const ParamSpec& param : choice.entry->params)
-    record.params[std::string(param.name)] = choice.params.value(param.name);
+  describe_solver(record, choice);
   record.dt = scene.dt;
   record.steps = scene.steps;
   record.vertices = scene.mesh.size();

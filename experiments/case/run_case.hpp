@@ -43,5 +43,7 @@ CaseRun run_case(const Scene&, const SolverChoice&, const RunOptions& = {});
 
 /// What is known of a case before it runs.
 Record describe(const Scene&, const SolverChoice&);
+/// Sets what is known of the solver: its name, its parameters, substeps and sweeps.
+void describe_solver(Record&, const SolverChoice&);
 
 }  // namespace taut

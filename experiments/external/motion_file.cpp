@@ -12,6 +12,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/record.hpp"
 #include "experiments/external/connection.hpp"
 #include "experiments/system/text.hpp"
 
@@ -307,22 +308,23 @@ ResolvedSettings MotionFile::settings(const Scene& scene) {
   const char* rounding = about.rounding == Rounding::binary32   ? "float32"
                          : about.rounding == Rounding::binary64 ? "float64"
                                                                 : "text";
-  return {
-      {"frames", std::to_string(about.frames) + " of " + std::to_string(about.vertices) +
-                     " vertices, " + rounding +
-                     (about.frames > scene.steps + 1
-                          ? "; scored are the first " + std::to_string(scene.steps + 1) +
-                                ", with which the scene ends"
-                          : "")},
-      {"time step",
-       shortest(frame_dt_) + " s a frame, " +
-           (options_.fps > 0 ? "as said" : "assumed: the scene's; fps says otherwise")},
-      {"unit", place()},
-      {"vertex order", order_said_},
-      {"floor of strain", formatted("%.1e", least.rms) + " RMS, " + formatted("%.1e", least.max) +
-                              " at most: the rounding of the file"},
-      {"velocity", "differences between frames"},
-      {"cost", "not measured"}};
+  return {{"frames", std::to_string(about.frames) + " of " + std::to_string(about.vertices) +
+                         " vertices, " + rounding +
+                         (about.frames > scene.steps + 1
+                              ? "; scored are the first " + std::to_string(scene.steps + 1) +
+                                    ", with which the scene ends"
+                              : "")},
+          {"time step",
+           shortest(frame_dt_) + " s a frame, " +
+               (options_.fps > 0 ? "as said" : "assumed: the scene's; fps says otherwise")},
+          {"unit", place()},
+          {"vertex order", order_said_},
+          {kFloorOfStrain,
+           formatted("%.1e", least.rms) + " RMS, " + formatted("%.1e", least.max) +
+               " at most: the rounding of the file",
+           "", least.rms},
+          {"velocity", "differences between frames"},
+          {"cost", "not measured"}};
 }
 
 const SolverEntry kPositions = {

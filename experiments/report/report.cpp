@@ -151,9 +151,8 @@ class Builder {
       std::string settings;
       for (const ComparedSolver& compared : compared_.all)
         if (compared.name == solver)
-          for (const auto& [key, value] : compared.cases.front()->params)
-            if (key != parameter_of(solver, kSweeps) && key != parameter_of(solver, kSubsteps))
-              settings += (settings.empty() ? "" : ", ") + key + "=" + retyped(value);
+          for (const auto& [key, value] : other_settings(*compared.cases.front()))
+            settings += (settings.empty() ? "" : ", ") + key + "=" + retyped(value);
       one["settings"] = settings;
       add_if(one, "arithmetic", arithmetic_of(solver));
       all.push_back(std::move(one));

@@ -56,7 +56,7 @@ Record slim(Record r) {
   r.digest = std::string(), r.log = std::string();
   r.step_cost = std::vector<PassCost>();  // `= {}` would keep its memory
   std::erase_if(r.resolved_settings,
-                [](const auto& line) { return line.first != "floor of strain"; });
+                [](const ResolvedSetting& one) { return one.name != kFloorOfStrain; });
   r.resolved_settings.shrink_to_fit();
   std::erase_if(r.values, [](const auto& value) { return !std::isfinite(value.second); });
   return r;

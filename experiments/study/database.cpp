@@ -79,6 +79,18 @@ SQLite::Statement& Database::prepared(const std::string& sql) {
   return at->second;
 }
 
+void Database::run_with(const std::string& sql, const std::vector<Value>& values) {
+  SQLite::Statement& statement = prepared(sql);
+  int place = 0;
+  guarded([&] {
+    for (const Value& value : values)
+      std::visit([&](const auto& one) { bind(statement, ++place, one); }, value);
+  });
+  Rows all(*this, statement);
+  while (all.next()) {
+  }
+}
+
 void Database::script(const std::string& sql) {
   guarded([&] { db_->exec(sql); });
 }

@@ -9,6 +9,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <variant>
+#include <vector>
 
 namespace taut {
 
@@ -64,6 +66,9 @@ class Database {
     while (all.next()) {
     }
   }
+  /// As many values as there are "?", of a statement that is made of a list of columns.
+  using Value = std::variant<std::nullptr_t, std::int64_t, double, std::string>;
+  void run_with(const std::string& sql, const std::vector<Value>& values);
   /// Several statements, separated by semicolons.
   void script(const std::string& sql);
   /// The first column of the first row of a query that has one.

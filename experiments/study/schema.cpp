@@ -1,35 +1,29 @@
 #include "experiments/study/schema.hpp"
 
+#include "core/model/text.hpp"
+#include "experiments/case/record_columns.hpp"
+
 namespace taut {
 
-const char* const kTables = R"SQL(
-CREATE TABLE cases (
-  case_id INTEGER PRIMARY KEY,
-  key TEXT NOT NULL UNIQUE,
-  id TEXT NOT NULL,
-  scene TEXT NOT NULL,
-  scene_file TEXT NOT NULL,
-  settings TEXT NOT NULL,
-  solver TEXT NOT NULL,
-  solver_text TEXT NOT NULL,
-  parameters TEXT NOT NULL,
-  dt REAL NOT NULL,
-  steps INTEGER NOT NULL,
-  vertices INTEGER NOT NULL,
-  links INTEGER NOT NULL,
-  status TEXT NOT NULL,
-  is_result INTEGER NOT NULL,
-  reason TEXT NOT NULL,
-  step INTEGER,
-  vertex INTEGER,
-  projections INTEGER NOT NULL,
-  passes TEXT NOT NULL,
-  resolved_settings TEXT NOT NULL,
-  state_digest TEXT NOT NULL,
-  result_digest TEXT NOT NULL,
-  log TEXT NOT NULL,
-  errors TEXT NOT NULL);
+namespace {
 
+std::string sql_type(const RecordColumn& column) {
+  const std::string_view type = column.type();
+  const std::string name = type == "number" ? "REAL" : type == "whole number" ? "INTEGER" : "TEXT";
+  return name + (column.may_be_null() ? "" : " NOT NULL");
+}
+
+std::string table_of_cases() {
+  std::string sql = "CREATE TABLE cases (\n  case_id INTEGER PRIMARY KEY,\n";
+  for (const RecordColumn& column : record_columns())
+    if (!column.column.empty())
+      sql += "  " + std::string(column.column) + " " + sql_type(column) + ",\n";
+  return sql +
+         "  is_result INTEGER NOT NULL,\n  result_digest TEXT NOT NULL,\n"
+         "  errors TEXT NOT NULL,\n  UNIQUE (key));\n";
+}
+
+constexpr const char* kOtherTables = R"SQL(
 CREATE TABLE metrics (
   metric_id INTEGER PRIMARY KEY,
   name TEXT NOT NULL UNIQUE,
@@ -117,14 +111,14 @@ CREATE TABLE samples (
 
 CREATE VIEW results AS
 SELECT study, scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
-  parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
+  substeps, sweeps AS iterations,
   metrics.name AS metric, numbers.value, metrics.unit, status, cases.key, parameters, settings
 FROM metrics CROSS JOIN cases LEFT JOIN numbers USING (case_id, metric_id)
   LEFT JOIN planned ON planned.key = cases.key;
 
 CREATE VIEW curves AS
 SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
-  parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
+  substeps, sweeps AS iterations,
   CAST(json_extract(columns, '$.step[' || point.key || ']') AS INTEGER) AS step,
   json_extract(columns, '$.t[' || point.key || ']') AS t, line.key AS metric,
   point.value, metrics.unit, status, cases.key
@@ -144,11 +138,22 @@ medians AS (
     avg(wall) FILTER (WHERE by_wall IN ((rounds + 1) / 2, (rounds + 2) / 2)) AS wall
   FROM ranked GROUP BY timing_id)
 SELECT study, cases.scene, solver, substr(cases.id, length(cases.scene) + 2) AS setting, dt,
-  parameters ->> '$.substeps' + 0 AS substeps, parameters ->> '$.iterations' + 0 AS iterations,
+  substeps, sweeps AS iterations,
   cpu, cpu / dt AS cpu_per_second, wall, peak_bytes AS memory, coalesce(rounds, 0) AS rounds,
   failure, remark, status, host, build, cases.key
 FROM timings JOIN benches USING (bench_id) JOIN cases USING (key)
   LEFT JOIN medians USING (timing_id);
 )SQL";
+
+}  // namespace
+
+std::string tables() { return table_of_cases() + kOtherTables; }
+
+std::vector<std::string> case_columns() {
+  std::vector<std::string> names;
+  for (const RecordColumn& column : record_columns())
+    if (!column.column.empty()) names.emplace_back(column.column);
+  return names;
+}
 
 }  // namespace taut

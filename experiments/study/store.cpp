@@ -8,6 +8,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/database.hpp"
@@ -40,35 +41,48 @@ std::string text_if_there(const fs::path& file) {
   return fs::exists(file) ? read_text(file) : std::string();
 }
 
-constexpr const char* kCaseColumns =
-    "key, id, scene, scene_file, settings, solver, solver_text, parameters, dt, steps, vertices, "
-    "links, status, reason, step, vertex, projections, passes, resolved_settings, state_digest, "
-    "result_digest, log";
-
 /// -1 where the column is NULL.
 int place(const Database::Rows& row, int column) {
   return row.null(column) ? -1 : static_cast<int>(row.integer(column));
 }
 
-/// All but the values, of kCaseColumns. Throws InputError where a text is not what it has to be.
+// What a column of a record is in the file, and back. Texts of JSON hold what is no single value.
+
+Database::Value kept(const std::string& text) { return text; }
+Database::Value kept(double number) { return number; }
+Database::Value kept(std::size_t count) { return static_cast<std::int64_t>(count); }
+Database::Value kept(int number) {
+  if (number < 0) return nullptr;
+  return std::int64_t{number};
+}
+Database::Value kept(Status::Kind kind) { return std::string(to_string(kind)); }
+template <class Value>
+Database::Value kept(const Value& value) {
+  return to_text(Json(value));
+}
+
+void read(const Database::Rows& row, int column, std::string& text) { text = row.text(column); }
+void read(const Database::Rows& row, int column, double& number) { number = row.number(column); }
+void read(const Database::Rows& row, int column, int& number) { number = place(row, column); }
+void read(const Database::Rows& row, int column, std::size_t& count) {
+  count = static_cast<std::size_t>(row.integer(column));
+}
+void read(const Database::Rows& row, int column, Status::Kind& kind) {
+  kind = status_kind(row.text(column));
+}
+template <class Value>
+void read(const Database::Rows& row, int column, Value& value) {
+  read_json(row.text(column), case_columns()[static_cast<std::size_t>(column)],
+            [&](const JsonReader& j) { return read_into(j, value), true; });
+}
+
+/// All but the values, of case_columns(). Throws InputError where a text is not what it has to be.
 Record record_in(const Database::Rows& row) {
-  const auto parse = [&](int column, auto& into) {
-    read_json(row.text(column), "column " + std::to_string(column + 1),
-              [&](const JsonReader& j) { return read_into(j, into), true; });
-  };
   Record r;
-  r.key = row.text(0), r.id = row.text(1), r.scene = row.text(2);
-  r.spec = {row.text(3), {}, row.text(6)};
-  parse(4, r.spec.overrides);
-  r.solver = row.text(5);
-  parse(7, r.params);
-  r.dt = row.number(8);
-  r.steps = place(row, 9), r.vertices = place(row, 10), r.links = place(row, 11);
-  r.status = {status_kind(row.text(12)), row.text(13), place(row, 14), place(row, 15)};
-  r.projections = static_cast<std::size_t>(row.integer(16));
-  parse(17, r.step_cost), parse(18, r.resolved_settings);
-  r.digest = row.text(19);
-  r.log = row.text(21);
+  int at = 0;
+  for (const RecordColumn& column : record_columns())
+    if (!column.column.empty())
+      with_member(r, column, [&](auto& member) { read(row, at++, member); });
   if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)
     throw InputError("its sizes are none");
   return r;
@@ -140,7 +154,7 @@ Database& Store::writing() const {
   auto database = std::make_unique<Database>(file(), Database::Access::write);
   database->transaction([&] {  // which shows that the disk takes it
     if (const std::int64_t version = database->number_of("PRAGMA user_version"); version == 0)
-      database->script(kTables);
+      database->script(tables());
     else
       require_version(file(), version);
     database->script("PRAGMA user_version = " + std::to_string(kSchemaVersion));
@@ -169,12 +183,12 @@ std::optional<Record> Store::sound_record(Database& database, const std::string&
   std::optional<Record> record;
   std::string result;
   {
-    Database::Rows row =
-        database.rows(std::string("SELECT ") + kCaseColumns + " FROM cases WHERE key = ?", key);
+    Database::Rows row = database.rows(
+        "SELECT " + join(case_columns(), ", ") + ", result_digest FROM cases WHERE key = ?", key);
     if (!row.next()) return {};
     try {
       record = record_in(row);
-      result = row.text(20);
+      result = row.text(static_cast<int>(case_columns().size()));
     } catch (const InputError& error) {
       why = error.what();
       return {};
@@ -245,17 +259,18 @@ fs::path Store::stage(const std::string& key) const {
 }
 
 void Store::insert(Database& database, const Record& r, const CaseFiles& files) const {
-  const auto or_null = [](int place) { return place < 0 ? std::nan("") : place; };
   database.run("DELETE FROM cases WHERE key = ?", r.key);
-  database.run(std::string("INSERT INTO cases (") + kCaseColumns +
-                   ", is_result, errors) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-                   "?, ?, ?, ?, ?, ?, ?, ?)",
-               r.key, r.id, r.scene, r.spec.scene, to_text(Json(r.spec.overrides)), r.solver,
-               r.spec.solver, to_text(Json(r.params)), r.dt, r.steps, r.vertices, r.links,
-               std::string(to_string(r.status.kind)), r.status.reason, or_null(r.status.step),
-               or_null(r.status.vertex), r.projections, to_text(Json(r.step_cost)),
-               to_text(Json(r.resolved_settings)), r.digest, result_digest(r), r.log,
-               static_cast<int>(r.status.is_result()), files.errors);
+  std::vector<Database::Value> values;
+  std::string marks;
+  for (const RecordColumn& column : record_columns()) {
+    if (column.column.empty()) continue;
+    values.push_back(with_member(r, column, [](const auto& member) { return kept(member); }));
+    marks += "?, ";
+  }
+  values.insert(values.end(), {std::int64_t{r.status.is_result()}, result_digest(r), files.errors});
+  database.run_with("INSERT INTO cases (" + join(case_columns(), ", ") +
+                        ", is_result, result_digest, errors) VALUES (" + marks + "?, ?, ?)",
+                    values);
   const std::int64_t id = database.number_of("SELECT last_insert_rowid()");
   for (const auto& [name, value] : r.values) {
     std::int64_t& metric = state_->metrics[name];
@@ -367,7 +382,7 @@ std::vector<Answer> Store::answers(const std::string& kind, std::string_view pro
 void Store::take(const Store& other) const {
   if (!other.reading()) return;
   Database& database = writing();
-  const std::string columns = std::string(kCaseColumns) + ", is_result, errors";
+  const std::string columns = join(case_columns(), ", ") + ", is_result, result_digest, errors";
   database.run("ATTACH ? AS other", fs::absolute(other.file()).string());
   try {
     database.transaction([&] {

@@ -105,9 +105,8 @@ TEST(BulletReadBack, ReorderedItHoldsTheSameLinksInTheSameOrderAtEveryVertex) {
   EXPECT_EQ(links_of_vertices(held), links_of_vertices(scene));
   EXPECT_LT(waiting(held), waiting(scene) / 10);
   const SolverChoice choice = parse_solver("bullet:reorder=on");
-  std::string said;
-  for (const auto& [name, text] : choice.entry->resolved_settings(scene, choice.params))
-    if (name == "link order") said = text;
+  const ResolvedSettings settings = choice.entry->resolved_settings(scene, choice.params);
+  const std::string said = find_setting(settings, kLinkOrder)->text;
   EXPECT_NE(said.find(" " + std::to_string(waiting(held)) + " of "), std::string::npos) << said;
   EXPECT_NE(said.find("(" + std::to_string(waiting(scene)) + " in the"), std::string::npos) << said;
   std::vector<std::string> passes;

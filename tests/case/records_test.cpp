@@ -12,6 +12,7 @@
 #include "experiments/case/case.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/question.hpp"
+#include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/reference_store.hpp"
 #include "experiments/system/files.hpp"
@@ -74,6 +75,9 @@ TEST(CaseText, ThatDidNotRunHasAllButResults) {
   EXPECT_EQ(r.links, 17 + 12);
   EXPECT_EQ(r.steps, 640);
   EXPECT_EQ(r.params.at("iterations"), "1");
+  EXPECT_EQ(r.sweeps, 1);
+  EXPECT_EQ(std::to_string(r.substeps), r.params.at("substeps"));
+  EXPECT_EQ(r.work_parameters, (std::vector<std::string>{"substeps", "iterations"}));
   EXPECT_EQ(r.status.kind, Status::Kind::timeout);
   EXPECT_TRUE(r.values.empty());
   EXPECT_TRUE(std::isnan(r.value("stretch.rms")));
@@ -132,22 +136,34 @@ Record small_record() {
   r.values = {{"a", 0.5}, {"b", std::nan("")}};
   r.projections = 60;
   r.step_cost = {{"links", 7, 8, 9, true}, {"wind", 1, 2, 3, false}};
-  r.resolved_settings = {{"time step", "1/4 s"}};
+  r.resolved_settings = {{"time step", "1/4 s"}, {"order", "of a mesh", "mesh", 0.25}};
+  r.substeps = 2, r.sweeps = 8, r.work_parameters = {"p"};
   r.digest = "beef";
   return r;
 }
 
+TEST(RecordLine, HasEveryColumnOnce) {
+  std::set<std::string_view> names, columns;
+  for (const RecordColumn& column : record_columns()) {
+    EXPECT_TRUE(names.insert(column.json).second) << column.json;
+    EXPECT_TRUE(column.column.empty() || columns.insert(column.column).second) << column.column;
+    EXPECT_FALSE(column.help.empty()) << column.json;
+  }
+  EXPECT_EQ(names.size(), columns.size() + 1) << "the values have a table of their own";
+}
+
 TEST(RecordLine, IsThisOneLine) {
   const std::string text =
-      R"({"status":{"kind":"exploded","reason":"energy","step":17,"vertex":3},)"
+      R"({"schema":2,"key":")" + std::string(63, '0') +
+      R"(f","id":"an id","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
+      R"("scene":"hang","solver":"xpbd","params":{"p":"q"},"substeps":2,"sweeps":8,)"
+      R"("work_parameters":["p"],"dt":0.25,"steps":6,"vertices":4,"links":5,)"
+      R"("status":{"kind":"exploded","reason":"energy","step":17,"vertex":3},)"
       R"("values":{"a":0.5,"b":null},"projections":60,)"
       R"("step_cost":[{"pass":"links","items":7,"repeats":8,"bytes":9,"projections":true},)"
       R"({"pass":"wind","items":1,"repeats":2,"bytes":3,"projections":false}],)"
-      R"("resolved_settings":[["time step","1/4 s"]],"digest":"beef","schema":1,"key":")" +
-      std::string(63, '0') +
-      R"(f","id":"an id","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
-      R"("scene":"hang","solver":"xpbd","params":{"p":"q"},"dt":0.25,"steps":6,"vertices":4,)"
-      R"("links":5})";
+      R"("resolved_settings":[{"name":"time step","text":"1/4 s"},)"
+      R"({"name":"order","text":"of a mesh","token":"mesh","number":0.25}],"digest":"beef"})";
   EXPECT_EQ(to_json(small_record()), text);
   const Record r = record_from_json(text, "file");
   EXPECT_EQ(to_json(r), text);
@@ -177,12 +193,13 @@ TEST(RecordLine, IsThisOneLine) {
   EXPECT_NE(changed("0f\"", "0F\"").find("expected 64 hexadecimal digits"), std::string::npos);
   EXPECT_NE(changed("00f\"", "0f\"").find("expected 64 hexadecimal digits"), std::string::npos);
   EXPECT_NE(changed("\"exploded\"", "\"burst\"").find("unknown status 'burst'"), std::string::npos);
-  for (const char* key : {"steps\":6", "vertices\":4", "links\":5"}) {
-    const std::string all = key, name = all.substr(0, all.find('"'));
-    EXPECT_NE(changed(all, name + "\":-1").find(name), std::string::npos);
-    EXPECT_EQ(changed(all, name + "\":0"), "none");
+  for (const char* key : {"\"steps\":6", "\"vertices\":4", "\"links\":5"}) {
+    const std::string all = key, name = all.substr(1, all.find('"', 1) - 1);
+    EXPECT_NE(changed(all, "\"" + name + "\":-1").find(name), std::string::npos);
+    EXPECT_EQ(changed(all, "\"" + name + "\":0"), "none");
   }
   EXPECT_NE(changed("\"step\":17", "\"step\":-2").find("step"), std::string::npos);
+  EXPECT_NE(changed("\"step\":17,", "").find("has no 'step'"), std::string::npos);
   EXPECT_EQ(changed("\"step\":17", "\"step\":-1"), "none");
 }
 

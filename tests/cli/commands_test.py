@@ -301,7 +301,8 @@ class Verbs(CommandLine):
     def test_the_documentation_names_every_key_of_a_record(self):
         text = (pathlib.Path(__file__).parents[2] / "experiments/cli/README.md").read_text()
         keys = json.loads(self.taut("case", "./small.toml", "jakobsen", "--json").out)
-        for key in [*keys, *keys["step_cost"][0], *keys["status"], *keys["spec"]]:
+        within = [f"{key}.{inner}" for key in ("status", "spec") for inner in keys.pop(key)]
+        for key in [*keys, *within, *keys["step_cost"][0], *keys["resolved_settings"][0]]:
             self.assertIn(f"`{key}`", text)
 
     def test_every_verb_has_help_with_an_example(self):
@@ -411,7 +412,7 @@ class Verbs(CommandLine):
         self.assertEqual([(int(n), float(t)) for n, t, _ in steps], [(n, float(f"{n / 128:.6g}")) for n in range(33)])
         self.assertEqual(float(steps[0][2]), 0)
         self.assertGreater(float(steps[3][2]), 0)
-        for name, value in json.loads(plain.out)["resolved_settings"]:
+        for name, value in ((one["name"], one["text"]) for one in json.loads(plain.out)["resolved_settings"]):
             self.assertIn(f"{name}: {value}\n", verbose.err)
 
     def test_float_bullet_runs_in_its_own_program(self):
@@ -672,6 +673,11 @@ class Verbs(CommandLine):
         self.assertIn("toolchain", good)
         noise = [good.get(name, True) for name in ("load", "clock", "same code, twice")]
         self.assertEqual(facts_of(report)["timing_trusted"], all(noise))
+        made_of = {row["solver"]: row for row in rows_of(report, "fingerprints")}
+        self.assertEqual(made_of["vbd"]["layer"], made_of["jakobsen"]["layer"])
+        self.assertNotEqual(made_of["vbd"]["digest"], made_of["jakobsen"]["digest"])
+        self.assertNotIn(made_of["vbd"]["digest"], self.taut("doctor").out)
+        self.assertIn(made_of["vbd"]["digest"], self.taut("doctor", "--all").out)
 
     def test_effects_are_timed_beside_the_links_of_hang(self):
         def samples(bench, scene, what, side=0):

@@ -40,7 +40,7 @@ def documented_names():
     """verb -> what its row of the README names, with the keys of a record where it speaks of one"""
     text = (pathlib.Path(__file__).resolve().parents[2] / "experiments/cli/README.md").read_text()
     table, record = text.split("## A record", 1)
-    of_record, rows = set(re.findall(r"`([\w.]+)`", record)), {}
+    of_record, rows = {part for name in re.findall(r"`([\w.]+)`", record) for part in name.split(".")}, {}
     for names, what in re.findall(r"^\| (`.*?) \| (.*) \|$", table, re.MULTILINE):
         for name in re.findall(r"`([a-z ]+?)(?: [A-Z]+| --\w+)?`", names):
             rows.setdefault(name, set()).update(re.findall(r"`([\w.]+)`", what))

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The tables of keys in the documents of scenes and of studies are what `taut list keys` prints.
+"""The tables of keys in the documents of scenes and of studies are what `taut list keys` prints, those of a record what
+`taut list record` does.
 
 Usage: keys_test.py BUILD [--write]     --write: writes the tables anew"""
 
@@ -11,6 +12,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENES, STUDIES = ROOT / "experiments/scenes/README.md", ROOT / "experiments/studies/README.md"
+VERBS, RESULTS = ROOT / "experiments/cli/README.md", ROOT / "experiments/study/RESULTS.md"
 
 
 def rows_of(answer, name):
@@ -53,22 +55,27 @@ def replaced(text, heading, table):
 
 def main():
     program = pathlib.Path(sys.argv[1]) / "taut"
-    answer = json.loads(subprocess.run([program, "list", "keys", "--json"], check=True, capture_output=True).stdout)
-    scenes, studies = SCENES.read_text(), STUDIES.read_text()
-    keys = rows_of(answer, "keys")
+    answer, record = (json.loads(subprocess.run([program, "list", what, "--json"], check=True, capture_output=True).stdout)
+                      for what in ("keys", "record"))
+    scenes, studies, verbs, results = (file.read_text() for file in (SCENES, STUDIES, VERBS, RESULTS))
+    keys, fields = rows_of(answer, "keys"), rows_of(record, "record")
     assert len(keys) > 50, "the keys of scenes"
     for heading, table in scene_tables(keys).items():
         scenes = replaced(scenes, f"\n### {heading}\n", table)
     studies = replaced(studies, "# Studies\n", markdown(
         ["key", "meaning"], [[f"`{row['key']}`", row["help"]] for row in rows_of(answer, "study_keys")]))
+    verbs = replaced(verbs, "\n## A record\n", markdown(["key", "column", "type", "meaning"], [
+        [f"`{row['key']}`", f"`{row['column']}`" if row["column"] else "", row["type"], row["help"]] for row in fields]))
+    columns = ", ".join(["case_id", *(row["column"] for row in fields if row["column"]), "is_result", "result_digest", "errors"])
+    results = re.sub(r"(?<=\n\| cases \| a record each \| ).*(?= \|\n)", columns, results)
     wrong = 0
-    for file, text in (SCENES, scenes), (STUDIES, studies):
+    for file, text in (SCENES, scenes), (STUDIES, studies), (VERBS, verbs), (RESULTS, results):
         if file.read_text() == text:
             continue
         if "--write" in sys.argv:
             file.write_text(text)
         else:
-            print(f"{file.relative_to(ROOT)} has other keys than `taut list keys`: tests/cli/keys_test.py BUILD --write")
+            print(f"{file.relative_to(ROOT)} has other keys than `taut list`: tests/cli/keys_test.py BUILD --write")
             wrong = 1
     return wrong
 

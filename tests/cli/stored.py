@@ -2,6 +2,8 @@
 
 import contextlib
 import json
+import pathlib
+import re
 import sqlite3
 
 
@@ -29,15 +31,24 @@ def keys(folder):
     return [row["key"] for row in query(folder, "SELECT key FROM cases ORDER BY key")]
 
 
+# key of the JSON, column of the file, type: the document's, which keys_test.py holds to the program's
+DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "experiments/cli/README.md"
+FIELDS = re.findall(r"^\| `([\w.]+)` \| `?(\w*)`? ?\| (text|number|whole number|JSON) \|", DOCUMENT.read_text(), re.MULTILINE)
+
+
 def records(folder):
     values = {}
     for row in query(folder, "SELECT case_id, name, value FROM numbers JOIN metrics USING (metric_id) ORDER BY name"):
         values.setdefault(row["case_id"], {})[row["name"]] = row["value"]
-    return [{"status": {"kind": row["status"], "reason": row["reason"], "step": -1 if row["step"] is None else row["step"],
-                        "vertex": -1 if row["vertex"] is None else row["vertex"]},
-             "values": values.get(row["case_id"], {}), "projections": row["projections"], "step_cost": json.loads(row["passes"]),
-             "resolved_settings": json.loads(row["resolved_settings"]), "digest": row["state_digest"], "schema": 1, "key": row["key"],
-             "id": row["id"], "spec": {"scene": row["scene_file"], "overrides": json.loads(row["settings"]), "solver": row["solver_text"]},
-             "scene": row["scene"], "solver": row["solver"], "params": json.loads(row["parameters"]), "dt": row["dt"], "steps": row["steps"],
-             "vertices": row["vertices"], "links": row["links"], **({"log": row["log"]} if row["log"] else {})}
-            for row in query(folder, "SELECT * FROM cases ORDER BY key")]
+    return [record_of(row, values.get(row["case_id"], {})) for row in query(folder, "SELECT * FROM cases ORDER BY key")]
+
+
+def record_of(row, values):
+    record = {"schema": 2}
+    for key, column, kind in FIELDS:
+        value = values if not column else -1 if row[column] is None else json.loads(row[column]) if kind == "JSON" else row[column]
+        if key == "log" and not value:
+            continue
+        within, _, name = key.rpartition(".")
+        (record.setdefault(within, {}) if within else record)[name] = value
+    return record

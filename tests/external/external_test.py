@@ -110,7 +110,7 @@ class Toys(Programs):
             record = self.case("external:cmd='python3 knows.py'", "./soft.toml")
             self.assertEqual(record["status"]["kind"], kind, record)
             if kind == "ok":
-                self.assertIn(["read", "{'structural': 500.0, 'shear': None, 'bend': None} [[0.0, -9.0, 1.0]]"], record["resolved_settings"])
+                self.assertIn({"name": "read", "text": "{'structural': 500.0, 'shear': None, 'bend': None} [[0.0, -9.0, 1.0]]"}, record["resolved_settings"])
             else:
                 self.assertIn("links of 500 N/m", record["status"]["reason"])
                 self.assertIn("a capsule", record["status"]["reason"])
@@ -127,7 +127,7 @@ class Toys(Programs):
         self.assertEqual([r["status"]["kind"] for r in records], ["ok"] * 4)
         mine = [r for r in records if r["solver"] == "mine"]
         self.assertEqual(sorted(r["params"]["iterations"] for r in mine), ["1", "4"])
-        self.assertIn(["program", "toy-cpp 1"], mine[0]["resolved_settings"])
+        self.assertIn({"name": "program", "text": "toy-cpp 1"}, mine[0]["resolved_settings"])
         self.assertEqual({r["projections"] for r in mine}, {42, 168})
         self.taut("plot", study)
         plan = self.taut("plan", "./small.toml", "mine:iterations=3").out
@@ -260,7 +260,7 @@ class Everywhere(Programs):
         records = {r["solver"]: r for r in self.records()}
         self.assertEqual({r["status"]["kind"] for r in records.values()}, {"ok"})
         file, = [name for name in records if name.startswith("positions-")]
-        inside, floor = records["jakobsen"]["values"], float(dict(records[file]["resolved_settings"])["floor of strain"].split()[0])
+        inside, floor = records["jakobsen"]["values"], next(s["number"] for s in records[file]["resolved_settings"] if s["name"] == "floor of strain")
         self.assertTrue(1e-9 < floor < 1e-6, floor)
         for name, value in inside.items():
             if name.startswith(("stretch", "shear", "structural", "compression")):

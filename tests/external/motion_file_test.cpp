@@ -231,9 +231,9 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
 
 /// The value of a line of the settings.
 std::string setting(const Scene& scene, const MotionOptions& options, const std::string& name) {
-  for (const auto& [line, value] : MotionFile(scene, options).settings(scene))
-    if (line == name) return value;
-  return "";
+  const ResolvedSettings all = MotionFile(scene, options).settings(scene);
+  const ResolvedSetting* one = find_setting(all, name);
+  return one ? one->text : "";
 }
 
 TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {

@@ -103,7 +103,7 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
   const Record cheap = ours;
   Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
-  dear.params["iterations"] = "1";  // nothing is cheaper: its cost is no upper bound
+  dear.sweeps = 1;  // nothing is cheaper: its cost is no upper bound
   const auto price = [&](double ratio, double noise) {
     const std::vector<double> one(12, 1e-3), other(12, 1e-3 * ratio);
     made.input.bench =
@@ -132,7 +132,7 @@ StudyBench bench_of(const std::vector<Timed>& all) {
     if (bench.scenes.empty() || bench.scenes.back().scene != scene)
       bench.scenes.push_back({scene, {0.99, 1, 1.01}, {}});
     Record r = synthetic::record(scene, solver, sweeps, 1.0 / 64);
-    r.params["substeps"] = std::to_string(substeps);
+    r.substeps = substeps;
     r.spec.solver += ",substeps=" + std::to_string(substeps);
     r.id += r.spec.solver, r.key += std::to_string(substeps) + "x" + std::to_string(sweeps);
     r.values = {{"stretch.rms", error}};
@@ -224,7 +224,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWorkEither) {
   Reported made;
   made.add("swing", "jakobsen", {{"stretch.rms", 0.03}, {"motion.share", 0.9}});
   Record& still = made.add("swing", "pd", {{"stretch.rms", 0.001}, {"motion.share", 0.49}});
-  still.params["iterations"] = "8";
+  still.sweeps = 8;
   const auto row = made.answer().table("stretch.rms").rows[0];
   EXPECT_EQ(row[1].note, "1 × 16");
   EXPECT_EQ(row[2].note, "hardly moves: 49\u00A0% of the way; 1 × 8");
@@ -295,10 +295,10 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   r.params = {{"simd", "auto"}};
   EXPECT_EQ(arithmetic(r, "avx2"), "double") << "no kernels of its own precision";
   EXPECT_EQ(link_order(r), "");
-  r.resolved_settings.emplace_back("link order", "the scene's");
+  r.resolved_settings.emplace_back(kLinkOrder, "the scene's", "mesh order");
   EXPECT_EQ(link_order(r), "mesh order");
-  r.resolved_settings.back().second = "coloured, of the links on no line";
-  EXPECT_EQ(link_order(r), "coloured");
+  r.resolved_settings.back() = {kLinkOrder, "as its program says"};
+  EXPECT_EQ(link_order(r), "as its program says");
 
   Reported made;
   made.add("hang", "jakobsen", {{"stretch.rms", 0.1}}), made.add("hang", "bullet", {});
@@ -306,7 +306,7 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
       bench_of({{"hang", "jakobsen", 20, 1, 0.005, 1e-3}, {"hang", "bullet", 1, 1, 0.005, 1e-3}});
   auto& cases = made.input.bench->scenes[0].cases;
   cases[0].record.resolved_settings = {{"link order", "coloured"}};
-  cases[1].record.resolved_settings = {{"link order", "the scene's"}};
+  cases[1].record.resolved_settings = {{kLinkOrder, "the scene's", "mesh order"}};
   const Answer answer = made.answer();
   const Table& price = answer.table("price");
   EXPECT_NE(price.caption.find("Jakobsen coloured, Bullet mesh order"), std::string::npos);

@@ -33,7 +33,7 @@ ReportInput chosen() {
     Record r = synthetic::record(scene, solver, sweeps, 0.01);
     r.id = scene + solver + std::to_string(sweeps);
     r.key = short_key(scene, solver, sweeps) + std::string(30, 'k');
-    r.params["substeps"] = "1";
+    r.substeps = 1;
     r.values = {{"stretch.rms", stretch}};
     return input.studies[study].records.emplace_back(r);
   };
@@ -72,10 +72,10 @@ TEST(Chosen, ASceneHasItsFactsItsStatusesAndWhoRefusesIt) {
   EXPECT_EQ(fact(hang, "vertices"), "400");
   EXPECT_EQ(fact(ball, "cases"), "3");
   ReportInput more = chosen();
-  for (const int sweeps : {2, 1024})
-    more.studies[0].records.push_back(more.studies[0].records[0]),
-        more.studies[0].records.back().params["iterations"] = more.studies[0].records.back().key =
-            std::to_string(sweeps);
+  for (const int sweeps : {2, 1024}) {
+    Record& one = more.studies[0].records.emplace_back(more.studies[0].records[0]);
+    one.sweeps = sweeps, one.key = std::to_string(sweeps);
+  }
   EXPECT_EQ(fact(by_id(model_of(more)["scenes"], "hang"), "sweeps per substep"),
             "2 to 1024 (5 values)");
   EXPECT_EQ(hang["statuses"], (Json{{"jakobsen", {{"ok", 3}}}, {"bullet", {{"ok", 3}}}}));

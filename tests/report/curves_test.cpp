@@ -41,7 +41,7 @@ TEST(Slices, KeepWhatHasNoSuchSetting) {
   for (const int sweeps : {1, 4, 4, 16, 64})
     all.push_back(synthetic::record("hang", "jakobsen", sweeps, 0.01));
   all.push_back(synthetic::record("hang", "mass-spring", 1, 0.01));
-  all.back().params.erase("iterations");
+  all.back().params.erase("iterations"), all.back().sweeps = -1;
   const Slice slice = hold(all, "iterations", 16);
   EXPECT_EQ(slice.value, 4);
   ASSERT_EQ(slice.records.size(), 3u);
@@ -54,9 +54,9 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweepsAndPointsOverTheStep) {
   StudyResult study{"iterations", "?", synthetic::iterations("hang"), 0, {}};
   for (const double dt : {1.0 / 64, 1.0 / 32}) {
     Record file = synthetic::record("hang", "file", 1, dt);
-    file.params.erase("iterations");
+    file.params.erase("iterations"), file.sweeps = -1;
     file.values = {{"stretch.rms", dt}};
-    file.resolved_settings = {{"floor of strain", "1e-7"}};
+    file.resolved_settings = {{kFloorOfStrain, "1e-7", "", 1e-7}};
     study.records.push_back(file);
   }
   Record failed =
@@ -112,11 +112,11 @@ TEST(Curves, NameASettingWhereItsValueAloneSaysNothing) {
 
 TEST(Curves, AreOrderedAlongTheirSettingWhatHasNoneLast) {
   std::vector<Record> all;
-  for (const char* sweeps : {"8", "", "2", "4"}) {
+  for (const int sweeps : {8, -1, 2, 4}) {
     Record r = at_step(0.01);
-    r.params["iterations"] = sweeps;
+    r.sweeps = sweeps;
     r.values["stretch.rms"] = 1;
-    if (!*sweeps) r.params.erase("iterations");
+    if (sweeps < 0) r.params.erase("iterations");
     all.push_back(r);
   }
   const auto curves = make_curves(all, "dt", "stretch.rms", "iterations");
@@ -137,7 +137,7 @@ TEST(Quantities, ReadARecordsSettingsSizesAndValues) {
   r.steps = 7, r.vertices = 5, r.links = 6, r.projections = 9;
   r.values["stretch.rms"] = 0.5;
   r.spec.overrides = {"wind.strength=2", "wind.strength=3", "wind.strengths=4", "a=1x"};
-  r.resolved_settings = {{"time step", "1"}, {"floor of strain", "1.5e-7, of binary32"}};
+  r.resolved_settings = {{"time step", "1"}, {kFloorOfStrain, "of binary32", "", 1.5e-7}};
   for (const auto& [name, value] : {std::pair<std::string, double>{"dt", 0.01},
                                     {"steps", 7},
                                     {"vertices", 5},
@@ -168,9 +168,9 @@ TEST(Quantities, ReadARecordsSettingsSizesAndValues) {
 TEST(Settings, ArePutIntoFewWords) {
   EXPECT_EQ(solver_title("my_own-solver"), "My own solver");
   EXPECT_EQ(solver_title("bullet-deformable"), "Bullet deformable");
-  EXPECT_EQ(accuracy_parameters("jakobsen"),
-            (Names{"substeps", "iterations", "omega", "order", "tethers", "levels", "precision"}));
-  EXPECT_EQ(accuracy_parameters("nobody's"), (Names{"substeps", "iterations"}));
+  EXPECT_EQ(labelled_parameters("jakobsen"),
+            (Names{"omega", "order", "tethers", "levels", "precision"}));
+  EXPECT_EQ(labelled_parameters("nobody's"), Names{});
   EXPECT_EQ(brief_settings("jakobsen:substeps=2,iterations=8,order=mesh"), "2 × 8, order=mesh");
   EXPECT_EQ(brief_settings("mass-spring:substeps=4,drag=2"), "4 substeps, drag=2");
   EXPECT_EQ(brief_settings("nosuch:abc"), "abc");
@@ -180,9 +180,9 @@ TEST(Settings, ArePutIntoFewWords) {
   EXPECT_EQ((Work{0, 0}).text(), "0 × 0");
   Record r = at_step(0.01);
   EXPECT_EQ(work_of(r), (Work{1, 16})) << "whole steps are one substep";
-  r.params["substeps"] = "5";
+  r.substeps = 5;
   EXPECT_EQ(work_of(r), (Work{5, 16}));
-  r.params.erase("iterations");
+  r.sweeps = -1;
   EXPECT_EQ(work_of(r), (Work{5, -1}));
 }
 
@@ -201,7 +201,7 @@ std::vector<Record> at_work(const std::vector<std::pair<std::string, std::vector
   for (const auto& [solver, works] : all)
     for (const Work& work : works) {
       records.push_back(synthetic::record("hang", solver, work.sweeps, 0.01));
-      records.back().params["substeps"] = std::to_string(work.substeps);
+      records.back().substeps = work.substeps;
     }
   return records;
 }

@@ -224,7 +224,7 @@ TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndTheMotionsOfTheQuotedCases) {
   for (const Record* r : compared.scenes.at(0).cases) {
     ASSERT_TRUE(r);
     EXPECT_EQ(r->dt, 1.0 / 64);
-    EXPECT_EQ(r->params.at("iterations"), "16");
+    EXPECT_EQ(r->sweeps, 16);
     quoted.insert(r->key);
   }
   ASSERT_EQ(quoted.size(), 2u);

@@ -176,8 +176,8 @@ TEST(GlobalSolvers, SayThatContactIsALaggedProjectionAndKeepClothOutOfAPlane) {
   for (const char* solver : {"implicit:iterations=8", "pd", "admm"}) {
     const SolverChoice choice = parse_solver(solver);
     const ResolvedSettings lines = choice.entry->resolved_settings(scene, choice.params);
-    EXPECT_TRUE(std::ranges::any_of(lines, [](const auto& line) {
-      return line.second.find("a lagged projection") != std::string::npos;
+    EXPECT_TRUE(std::ranges::any_of(lines, [](const ResolvedSetting& one) {
+      return one.text.find("a lagged projection") != std::string::npos;
     })) << solver;
     for (const Vec3& x : simulate(scene, solver, 40).x) EXPECT_GE(x.y(), -1.2 - 1e-12) << solver;
   }

@@ -2,4 +2,4 @@
 # Fails when a C++ file is not formatted as .clang-format says; the mend: clang-format -i FILE.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-find core bullet_ref experiments tests -name '*.[ch]pp' -print0 | xargs -0 -r clang-format --dry-run -Werror
+find cmake core bullet_ref experiments tests -name '*.[ch]pp' -print0 | xargs -0 -r clang-format --dry-run -Werror

@@ -15,6 +15,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/damaged_results.hpp"
@@ -32,6 +33,7 @@ Record some_record() {
   r.scene = "a sheet";  // no text is another one's
   r.solver = "jakobsen";
   r.params = {{"iterations", "8"}};
+  r.sweeps = 8, r.work_parameters = {"iterations"};
   r.log = "what it said";
   r.dt = 1.0 / 60;
   r.steps = 600;
@@ -77,7 +79,7 @@ TEST(RecordText, KeepsEveryBit) {
 
 TEST(RecordText, RefusesOtherSchemasAndNonsense) {
   std::string text = to_json(some_record());
-  text.replace(text.find("\"schema\":1"), 10, "\"schema\":2");
+  text.replace(text.find("\"schema\":2"), 10, "\"schema\":1");
   EXPECT_THROW(record_from_json(text, "x"), InputError);
   EXPECT_THROW(record_from_json("{}", "x"), InputError);
   EXPECT_THROW(record_from_json("[1", "x"), InputError);
@@ -115,6 +117,49 @@ TEST_F(StoreTest, ACaseIsThereAfterItsCommit) {
   std::vector<std::string> names;
   for (const auto& one : fs::directory_iterator(root_)) names.push_back(one.path().filename());
   EXPECT_EQ(names, std::vector<std::string>{"results.db"}) << "one file, and no journal stays";
+}
+
+/// Another value than that of a record which nobody filled.
+template <class Value>
+void fill(Value& value, int n) {
+  const std::string text = "text " + std::to_string(n);
+  if constexpr (std::is_same_v<Value, std::string>)
+    value = text;
+  else if constexpr (std::is_arithmetic_v<Value>)
+    value = static_cast<Value>(n);
+  else if constexpr (std::is_same_v<Value, Status::Kind>)
+    value = Status::Kind::extreme;
+  else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+    value = {text};
+  else if constexpr (std::is_same_v<Value, RecordColumn::Texts>)
+    value = {{"a", text}};
+  else if constexpr (std::is_same_v<Value, RecordColumn::Numbers>)
+    value = {{"a", n / 7.0}};
+  else if constexpr (std::is_same_v<Value, ResolvedSettings>)
+    value = {{"a", text, "token", n / 7.0}, {"b", "c"}};
+  else
+    value = {{text, 1, 2, 3, true}};
+}
+
+TEST_F(StoreTest, EveryFieldOfARecordIsKept) {
+  Record r;
+  int n = 0;
+  for (const RecordColumn& column : record_columns())
+    with_member(r, column, [&](auto& value) { fill(value, ++n); });
+  r.key = some_record().key;
+  EXPECT_EQ(to_json(record_from_json(to_json(r), "JSON")), to_json(r));
+  EXPECT_EQ(put(r), Store::Commit::stored);
+  ASSERT_TRUE(Store(root_).find(r.key));
+  EXPECT_EQ(to_json(*Store(root_).find(r.key)), to_json(r));
+}
+
+TEST_F(StoreTest, WhatASolverHasNotIsNull) {
+  put(some_record());
+  Database file(store_.file(), Database::Access::read);
+  Database::Rows row = file.rows("SELECT substeps, sweeps FROM cases");
+  ASSERT_TRUE(row.next());
+  EXPECT_TRUE(row.null(0));
+  EXPECT_EQ(row.integer(1), 8);
 }
 
 TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
@@ -379,7 +424,7 @@ TEST_F(StoreTest, AFileOfAnotherVersionIsNeitherReadNorWritten) {
       use();
       ADD_FAILURE();
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 3)"), std::string::npos)
+      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 4)"), std::string::npos)
           << error.what();
     }
 }

@@ -194,10 +194,16 @@ TEST(Key, DiffersWithEverythingThatMatters) {
 }
 
 TEST(Key, EverySolverHasAnImplementationDigest) {
-  for (const SolverEntry* entry : solvers())
+  std::set<std::string_view> digests;
+  for (const SolverEntry* entry : solvers()) {
     EXPECT_EQ(implementation(entry->name).size(), 64u) << entry->name;
+    EXPECT_EQ(layer_digest(entry->name).size(), 64u) << entry->name;
+    digests.insert(implementation(entry->name));
+  }
+  EXPECT_EQ(digests.size(), solvers().size()) << "each has its own";
   EXPECT_EQ(measurement().size(), 64u);
-  EXPECT_NE(implementation("jakobsen"), implementation("bullet"));
+  EXPECT_EQ(layer_digest("jakobsen"), layer_digest("vbd"));
+  EXPECT_NE(layer_digest("jakobsen"), layer_digest("bullet"));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ inline Record record(const std::string& scene, const std::string& solver, int sw
   r.scene = scene;
   r.solver = solver;
   r.params = {{"iterations", std::to_string(sweeps)}, {"precision", "double"}};
+  r.sweeps = sweeps, r.work_parameters = {"iterations"};
   r.spec = {scene, {}, solver + ":iterations=" + std::to_string(sweeps) + ",precision=double"};
   r.id = scene + " dt=" + std::to_string(dt) + " " + r.spec.solver;
   r.key = "k" + std::to_string(std::hash<std::string>{}(r.id));

@@ -83,8 +83,8 @@ int run(const Options& options) try {
   else
     print(answer_of(result.record, "case"), {});
   if (options.verbose)
-    for (const auto& [name, value] : result.record.resolved_settings)
-      std::cerr << name << ": " << value << '\n';
+    for (const ResolvedSetting& setting : result.record.resolved_settings)
+      std::cerr << setting.name << ": " << setting.text << '\n';
   return result.record.status.is_result() ? kPass : kRegression;
 } catch (const std::bad_alloc&) {  // while the scene was read
   if (options.into.empty()) throw;

@@ -47,8 +47,8 @@ int run(const Options& o) {
   if (!o.series.empty()) write_durably(o.series, to_csv(scored.series));
   Answer answer = answer_of(scored.record, "external score");
   Table read{"read", "what was made of the file", {{"what"}, {"how", "found"}}};
-  for (const auto& [name, value] : scored.record.resolved_settings)
-    read.rows.push_back({name, value});
+  for (const ResolvedSetting& setting : scored.record.resolved_settings)
+    read.rows.push_back({setting.name, setting.text});
   answer.add(std::move(read));
   if (!o.picture.empty()) {
     RunRequest both{

@@ -3,6 +3,7 @@
 #include "core/model/scene_keys.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/record_columns.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/study/study.hpp"
@@ -117,6 +118,15 @@ void list_keys(Answer& all) {
   all.add(std::move(studies));
 }
 
+void list_record(Answer& all) {
+  Table table{"record",
+              "fields of a record",
+              {{"key"}, {"column", "column of cases"}, {"type"}, {"help", "meaning"}}};
+  for (const RecordColumn& column : record_columns())
+    table.rows.push_back({column.json, column.column, column.type(), column.help});
+  all.add(std::move(table));
+}
+
 /// What publications assert.
 void list_assertions(Answer& all) {
   Table table{"assertions",
@@ -135,9 +145,15 @@ void list_assertions(Answer& all) {
 }
 
 constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {
-    {"scenes", list_scenes},        {"solvers", list_solvers}, {"metrics", list_metrics},
-    {"studies", list_studies},      {"keys", list_keys},       {"fabrics", list_fabrics},
-    {"assertions", list_assertions}};
+    {"scenes", list_scenes},         {"solvers", list_solvers}, {"metrics", list_metrics},
+    {"studies", list_studies},       {"keys", list_keys},       {"fabrics", list_fabrics},
+    {"assertions", list_assertions}, {"record", list_record}};
+
+std::vector<std::string> kinds() {
+  std::vector<std::string> names;
+  for (const auto& [kind, list] : kKinds) names.emplace_back(kind);
+  return names;
+}
 
 int run(const Options& options) {
   Answer all{"list"};
@@ -150,18 +166,19 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option(
          "WHAT", o.what,
-         "scenes | solvers | metrics | studies | keys | fabrics | assertions (default: all)")
-      ->check(known("kind",
-                    {"scenes", "solvers", "metrics", "studies", "keys", "fabrics", "assertions"}));
+         "scenes | solvers | metrics | studies | keys | fabrics | assertions | record (default: "
+         "all)")
+      ->check(known("kind", kinds()));
   add_format(app, o.format, "Types, ranges and examples of keys, too");
 }
 
 }  // namespace
 }  // namespace taut::verb::list
 
-TAUT_VERB(list) = {
-    .name = "list",
-    .group = VerbGroup::one_case,
-    .summary = "Names scenes, solvers with parameters, metrics, studies, keys, fabrics, assertions",
-    .example = "taut list solvers",
-    .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};
+TAUT_VERB(list) = {.name = "list",
+                   .group = VerbGroup::one_case,
+                   .summary =
+                       "Names scenes, solvers with parameters, metrics, studies, keys, fabrics, "
+                       "assertions",
+                   .example = "taut list solvers",
+                   .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "core/model/solver.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/store.hpp"
@@ -94,6 +95,21 @@ std::vector<Check> examine() {
   return all;
 }
 
+/// What keys of stored results contain of each solver. One that is a program of its own is in no
+/// layer of this one.
+Table fingerprints() {
+  Table table{"fingerprints",
+              "what solvers are made of",
+              {{"solver"}, {"digest"}, {"layer", "of its layer"}}};
+  for (const SolverEntry* entry : all_solvers()) {
+    const std::string_view own = entry->implementation;
+    table.rows.push_back(
+        {entry->name, own.empty() ? implementation(entry->name) : own, layer_digest(entry->name)});
+  }
+  table.detail = true;
+  return table;
+}
+
 int run(const Format& format) {
   Answer answer{"doctor"};
   Table table{"findings", "", {{"name", "what"}, {"value", "found"}, {"good"}}};
@@ -106,11 +122,14 @@ int run(const Format& format) {
   answer.add({"timing_trusted", "timing can be trusted here"},
              Cell(trusted).with(trusted ? "" : "it is for display only: the machine is not quiet"));
   answer.add(std::move(table));
+  answer.add(fingerprints());
   print(answer, format);
   return kPass;
 }
 
-void add_options(CLI::App& app, Format& format) { add_format(app, format); }
+void add_options(CLI::App& app, Format& format) {
+  add_format(app, format, "the digests of solvers and of their layers");
+}
 
 }  // namespace
 }  // namespace taut::verb::doctor

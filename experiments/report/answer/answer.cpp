@@ -48,13 +48,8 @@ std::string arithmetic(const Record& r, const std::string& vectors) {
 }
 
 std::string link_order(const Record& r) {
-  if (const auto reorder = r.params.find("reorder");
-      reorder != r.params.end() && reorder->second == "on")
-    return "reordered";
-  for (const auto& [line, text] : r.resolved_settings)
-    if (line == "link order")
-      return text == "the scene's" ? "mesh order" : text.substr(0, text.find_first_of(",:;"));
-  return "";
+  const ResolvedSetting* order = find_setting(r.resolved_settings, kLinkOrder);
+  return order ? order->compared() : "";
 }
 
 bool is_compared(const Cell& cell) {

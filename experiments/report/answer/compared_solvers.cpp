@@ -11,18 +11,12 @@ namespace taut::report {
 
 namespace {
 
-std::map<std::string, std::string> choice_of(const Record& r) {
-  auto params = r.params;
-  params.erase(parameter_of(r.solver, kSweeps)), params.erase(parameter_of(r.solver, kSubsteps));
-  return params;
-}
-
 ComparedSolver choose(const std::string& solver, const std::vector<const Record*>& cases) {
   std::vector<std::vector<const Record*>> groups;
   std::map<std::map<std::string, std::string>, std::size_t> index;
   std::map<std::pair<std::string, std::string>, std::size_t> having;  // groups with that setting
   for (const Record* r : cases) {
-    const auto choice = choice_of(*r);
+    const auto choice = other_settings(*r);
     const auto [at, fresh] = index.try_emplace(choice, groups.size());
     if (fresh) groups.emplace_back();
     if (fresh)
@@ -31,7 +25,7 @@ ComparedSolver choose(const std::string& solver, const std::vector<const Record*
   }
   const auto most = std::ranges::max_element(groups, {}, [](const auto& g) { return g.size(); });
   ComparedSolver chosen{solver, solver_title(solver), *most};
-  for (const auto& setting : choice_of(*most->front()))
+  for (const auto& setting : other_settings(*most->front()))
     if (having.at(setting) < groups.size()) chosen.label += " " + setting.second;
   return chosen;
 }

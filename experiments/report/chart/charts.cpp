@@ -19,7 +19,9 @@ using Settings = std::map<std::string, std::string>;
 
 /// Everything that tells two cases of one solver apart, by name, but for what is free.
 Settings settings(const Record& record, const std::vector<std::string>& free) {
-  Settings all = record.params;
+  Settings all = other_settings(record);
+  if (record.substeps >= 0) all[kSubsteps] = std::to_string(record.substeps);
+  if (record.sweeps >= 0) all[kSweeps] = std::to_string(record.sweeps);
   all["dt"] = quantity("dt").text(record.dt, 3);
   all["scene"] = record.scene;
   for (const std::string& text : record.spec.overrides)
@@ -27,17 +29,18 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
       if (const auto equals = text.find('='); equals != std::string::npos)
         all[text.substr(0, equals)] = text.substr(equals + 1);
   for (const std::string& name : free) {
-    all.erase(name == "vertices" ? "cloth.grid" : parameter_of(record.solver, name));
+    all.erase(name == "vertices" ? "cloth.grid" : own_parameter(record.solver, name));
     if (name != "setting") continue;
-    for (const std::string& parameter : accuracy_parameters(record.solver)) all.erase(parameter);
+    for (const char* work : {kSubsteps, kSweeps}) all.erase(work);
+    for (const std::string& parameter : labelled_parameters(record.solver)) all.erase(parameter);
   }
   return all;
 }
 
 /// What a setting adds to a label: "mesh" speaks for itself, "4" and "on" do not.
-std::string in_label(const Record& record, const std::string& key, const std::string& value) {
-  for (const auto& [name, counted] : {std::pair{kSweeps, " sweeps"}, {kSubsteps, " substeps"}})
-    if (key == parameter_of(record.solver, name)) return value + counted;
+std::string in_label(const std::string& key, const std::string& value) {
+  if (key == kSweeps) return value + " sweeps";
+  if (key == kSubsteps) return value + " substeps";
   const bool word = value != "on" && value != "off" &&
                     value.find_first_not_of("0123456789.+-e/") != std::string::npos;
   return word ? value : key + "=" + value;
@@ -148,7 +151,7 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
     if (fresh) {
       Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
       for (const auto& [key, value] : all)
-        if (varies(record, key)) curve.label += " " + in_label(record, key, value);
+        if (varies(record, key)) curve.label += " " + in_label(key, value);
       curves.push_back(std::move(curve));
     }
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};

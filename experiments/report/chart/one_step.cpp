@@ -7,6 +7,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/run_case.hpp"
 #include "experiments/report/chart/format.hpp"
 
 namespace taut::report {
@@ -21,11 +22,10 @@ Record record_of(const Answer& found, const Table& points, const std::vector<Cel
   const std::string solver = points.at(row, "solver").text();
   const SolverChoice choice = parse_solver(solver);
   r.scene = found.fact("scene").text(), r.dt = found.fact("dt").number();
-  r.solver = choice.entry->name, r.spec = {r.scene, {}, solver};
-  for (const ParamSpec& param : choice.entry->params)
-    r.params[std::string(param.name)] = choice.params.value(param.name);
-  r.params[parameter_of(r.solver, kSweeps)] = shortest(number("iterations"));
-  r.params[parameter_of(r.solver, kSubsteps)] = "1";
+  r.spec = {r.scene, {}, solver};
+  describe_solver(r, choice);
+  r.substeps = 1;
+  r.sweeps = static_cast<int>(number("iterations"));
   for (const std::string& kind : step_kinds()) r.values[step_value(kind)] = number(kind.c_str());
   r.id = r.scene + " " + solver + " " + shortest(number("iterations"));
   return r;

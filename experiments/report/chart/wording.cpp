@@ -13,6 +13,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/run_case.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/text.hpp"
 
@@ -142,21 +143,28 @@ std::string title_from(std::string_view name) {
 
 }  // namespace
 
+std::string own_parameter(std::string_view solver, std::string_view name) {
+  const auto colon = name.find(':');
+  const bool of_it = colon != name.npos && name.substr(0, colon) == solver;
+  return std::string(of_it ? name.substr(colon + 1) : name);
+}
+
 double value_of(const Record& record, std::string_view name) {
   if (name == "dt") return record.dt;
   if (name == "steps") return record.steps;
   if (name == "vertices") return record.vertices;
   if (name == "links") return record.links;
   if (name == "projections") return static_cast<double>(record.projections);
+  if (name == kSubsteps && record.substeps >= 0) return record.substeps;
+  if (name == kSweeps && record.sweeps >= 0) return record.sweeps;
   if (name == kStrainFloor) {
-    for (const auto& [line, text] : record.resolved_settings)
-      if (line == "floor of strain") return std::strtod(text.c_str(), nullptr);
-    return kNaN;
+    const ResolvedSetting* floor = find_setting(record.resolved_settings, kFloorOfStrain);
+    return floor ? floor->number : kNaN;
   }
   const std::string key(name);
   if (const auto value = record.values.find(key); value != record.values.end())
     return value->second;
-  const auto param = record.params.find(parameter_of(record.solver, key));
+  const auto param = record.params.find(own_parameter(record.solver, key));
   return param == record.params.end() ? overridden(record, key) : number(param->second);
 }
 
@@ -194,22 +202,19 @@ std::string solver_title(std::string_view solver) {
   return capitalised(title);
 }
 
-std::string parameter_of(std::string_view solver, std::string_view name) {
-  if (const auto colon = name.find(':'); name.substr(0, colon) == solver && colon != name.npos)
-    return std::string(name.substr(colon + 1));  // an axis of this solver alone
-  std::string_view own;
-  if (const SolverEntry* entry = find_entry(solver)) {
-    if (name == kSweeps) own = entry->accuracy.sweeps;
-    if (name == kSubsteps) own = entry->accuracy.substeps;
-  }
-  return std::string(own.empty() ? name : own);
+std::map<std::string, std::string> other_settings(const Record& r) {
+  std::map<std::string, std::string> others = r.params;
+  for (const std::string& name : r.work_parameters) others.erase(name);
+  return others;
 }
 
-std::vector<std::string> accuracy_parameters(const std::string& solver) {
-  std::vector<std::string> all{parameter_of(solver, kSubsteps), parameter_of(solver, kSweeps)};
+std::vector<std::string> labelled_parameters(const std::string& solver) {
   const SolverEntry* entry = find_entry(solver);
-  for (const std::string& name : parts_of(entry ? entry->accuracy.labelled : ""))
-    push_unique(all, name);
+  if (!entry) return {};
+  std::vector<std::string> all = parts_of(entry->accuracy.labelled);
+  std::erase_if(all, [&](const std::string& name) {
+    return name == entry->accuracy.substeps || name == entry->accuracy.sweeps;
+  });
   return all;
 }
 
@@ -232,44 +237,21 @@ std::string Work::text() const {
 }
 
 Work work_of(const Record& r) {
-  const auto number = [&](std::string_view name) {
-    const double value = value_of(r, name);
-    return std::isfinite(value) ? static_cast<int>(value) : -1;
-  };
-  const int substeps = number(kSubsteps), sweeps = number(kSweeps);
-  return {sweeps >= 0 ? std::max(1, substeps) : substeps, sweeps};  // whole steps are one substep
+  // whole steps are one substep
+  return {r.sweeps >= 0 ? std::max(1, r.substeps) : r.substeps, r.sweeps};
 }
-
-namespace {
-
-std::optional<int> whole_number(const std::string& text) {
-  int value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) return {};
-  return value;
-}
-
-}  // namespace
 
 std::string brief_settings(const std::string& solver) try {
   const SolverChoice choice = parse_solver(solver);
-  const std::string sweeps = parameter_of(choice.entry->name, kSweeps),
-                    substeps = parameter_of(choice.entry->name, kSubsteps);
-  Work work;
+  Record described;
+  describe_solver(described, choice);
   std::string text;
   for (const ParamSpec& spec : choice.params.specs()) {
-    const std::string value(choice.params.value(spec.name));
-    const std::optional<int> number =
-        whole_number(value);  // of a solver from outside it may be none
-    if (number && spec.name == sweeps)
-      work.sweeps = *number;
-    else if (number && spec.name == substeps)
-      work.substeps = *number;
-    else if (value != spec.default_value)
-      text += ", " + std::string(spec.name) + "=" + value;
+    const std::string name(spec.name), value(choice.params.value(spec.name));
+    const bool is_work = std::ranges::count(described.work_parameters, name) > 0;
+    if (!is_work && value != spec.default_value) text += ", " + name + "=" + value;
   }
-  if (work.sweeps >= 0) work.substeps = std::max(1, work.substeps);
+  const Work work = work_of(described);
   if (work == Work{} && !text.empty()) return text.substr(2);
   return work.text() + text;
 } catch (const InputError&) {
@@ -298,30 +280,48 @@ std::string unequal_work(const Records& records) {
   return common.empty() ? text + " (substeps × sweeps)" : "";
 }
 
+namespace {
+
+/// The value of one of the labelled parameters, kSubsteps or kSweeps, as text; nothing: none.
+std::optional<std::string> setting_of(const Record& r, const std::string& name) {
+  if (name == kSubsteps || name == kSweeps) {
+    const int value = name == kSubsteps ? r.substeps : r.sweeps;
+    if (value >= 0) return std::to_string(value);
+  }
+  const auto at = r.params.find(name);
+  if (at == r.params.end()) return {};
+  return at->second;
+}
+
+std::vector<std::string> names_in_labels(const std::string& solver) {
+  std::vector<std::string> all{kSubsteps, kSweeps};
+  for (const std::string& name : labelled_parameters(solver)) push_unique(all, name);
+  return all;
+}
+
+}  // namespace
+
 SettingLabels::SettingLabels(const Records& all) {
   for (const Record* r : all)
-    for (const std::string& name : accuracy_parameters(r->solver))
-      if (const auto at = r->params.find(name); at != r->params.end())
-        seen_[{r->solver, name}].insert(at->second);
+    for (const std::string& name : names_in_labels(r->solver))
+      if (const auto value = setting_of(*r, name)) seen_[{r->solver, name}].insert(*value);
 }
 
 std::string SettingLabels::of(const Record& record) const {
-  const std::string sweeps = parameter_of(record.solver, kSweeps),
-                    substeps = parameter_of(record.solver, kSubsteps);
   std::string text;
   bool work = false;
-  for (const std::string& name : accuracy_parameters(record.solver)) {
-    const auto at = record.params.find(name);
-    if (at == record.params.end()) continue;
+  for (const std::string& name : names_in_labels(record.solver)) {
+    const auto value = setting_of(record, name);
+    if (!value || *value == "off") continue;
     const auto seen = seen_.find({record.solver, name});
-    const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(at->second);
-    if (!varies || at->second == "off") continue;
-    if (name == substeps || name == sweeps)
+    const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(*value);
+    if (!varies) continue;
+    if (name == kSubsteps || name == kSweeps)
       work = true;
+    else if (*value == "on")
+      text += ", " + name;
     else
-      text += ", " + (at->second == "on"                  ? name
-                      : std::isfinite(number(at->second)) ? name + "=" + at->second
-                                                          : at->second);
+      text += ", " + (std::isfinite(number(*value)) ? name + "=" + *value : *value);
   }
   if (work) return work_of(record).text() + text;
   return text.empty() ? "" : text.substr(2);

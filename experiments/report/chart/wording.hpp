@@ -31,10 +31,15 @@ std::string joined(const std::vector<std::string>& names);
 inline constexpr const char *kSweeps = "iterations", *kSubsteps = "substeps";
 
 /// What a record holds under `name`: "dt" [s], "steps", "vertices", "links", "projections" (per
-/// step), kSweeps, kSubsteps, any numeric parameter of its solver ("omega"), any metric value
+/// step), kSweeps, kSubsteps, any numeric parameter of its solver ("omega", "xpbd:omega"), any
+/// metric value
 /// ("stretch.rms"), kStrainFloor, any scene key that its case sets to a number ("wind.strength").
 /// NaN if it has none.
 double value_of(const Record&, std::string_view name);
+
+/// The parameter that an axis of this solver alone varies, "structural" of "xpbd:structural"; the
+/// name itself of any other.
+std::string own_parameter(std::string_view solver, std::string_view name);
 
 /// What people are told of a quantity.
 struct Quantity {
@@ -70,11 +75,12 @@ struct Records : std::vector<const Record*> {
 /// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
 std::string solver_title(std::string_view solver);
 
-/// Of kSweeps and kSubsteps the solver's own parameter, as its entry says; else the name itself.
-std::string parameter_of(std::string_view solver, std::string_view name);
+/// The record's parameters but for those that are its substeps and sweeps.
+std::map<std::string, std::string> other_settings(const Record&);
 
-/// The parameters that decide accuracy and cost, as the entry says: substeps and sweeps first.
-std::vector<std::string> accuracy_parameters(const std::string& solver);
+/// What this program's solver of that name has in labels beside substeps and sweeps, as its entry
+/// says; none of a solver that it does not have.
+std::vector<std::string> labelled_parameters(const std::string& solver);
 
 /// Accelerators that this case uses and that a solver with these parameters lacks ("tethers").
 std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);

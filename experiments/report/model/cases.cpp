@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -48,37 +49,39 @@ Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& 
     if (!r) continue;
     cases.push_back(r);
     table.columns.emplace_back(r->solver, compared.all[i].label);
-    for (const auto& [name, value] : r->resolved_settings) push_unique(names, name);
+    for (const ResolvedSetting& one : r->resolved_settings) push_unique(names, one.name);
   }
-  const auto row = [&](const std::string& name, const auto& cell) -> std::vector<Cell>& {
+  /// `setting` of a record is a ResolvedSetting; one without a name: the solver has none of it,
+  /// which is no difference.
+  const auto row = [&](const std::string& name, const auto& setting) -> std::vector<Cell>& {
     std::vector<Cell> cells{name};
-    for (const Record* r : cases) cells.emplace_back(typeset(cell(*r)));
-    // A dash says that the solver has no such setting, not that it differs; what follows the same
-    // beginning is a remark.
-    const std::string first = cells[1].text();
-    if (!std::ranges::all_of(cells.begin() + 1, cells.end(), [&](const Cell& c) {
-          const std::string v = c.text();
-          return v == "–" || first == "–" || v.starts_with(first) || first.starts_with(v);
-        }))
-      cells[0].note = "differs";
+    std::set<std::string> compared;
+    for (const Record* r : cases) {
+      const ResolvedSetting one = setting(*r);
+      cells.emplace_back(one.name.empty() ? "–" : typeset(one.text));
+      if (!one.name.empty()) compared.insert(one.compared());
+    }
+    if (compared.size() > 1) cells[0].note = "differs";
     return table.rows.emplace_back(std::move(cells));
   };
   if (cases.empty()) return table;
-  auto& work = row("substeps × sweeps", [](const Record& r) { return work_of(r).text(); });
+  auto& work = row("substeps × sweeps",
+                   [](const Record& r) { return ResolvedSetting("work", work_of(r).text()); });
   for (std::size_t i = 0; i < cases.size(); ++i) work[i + 1].key = refs.key(*cases[i]);
   for (const std::string& name : names)
     row(name, [&](const Record& r) {
-      const auto at =
-          std::ranges::find(r.resolved_settings, name, [](const auto& e) { return e.first; });
-      return at == r.resolved_settings.end() ? std::string("–") : at->second;
+      const ResolvedSetting* setting = find_setting(r.resolved_settings, name);
+      return setting ? *setting : ResolvedSetting("", "");
     });
   row("passes of a step, in order", [](const Record& r) {
-    return join(r.step_cost, ", ", [](const PassCost& pass) {
-      return pass.pass + (pass.repeats > 1 ? " × " + std::to_string(pass.repeats) : "");
-    });
+    return ResolvedSetting("passes", join(r.step_cost, ", ", [](const PassCost& pass) {
+                             return pass.pass +
+                                    (pass.repeats > 1 ? " × " + std::to_string(pass.repeats) : "");
+                           }));
   });
-  row("work: constraint projections per step",
-      [](const Record& r) { return std::to_string(r.projections); });
+  row("work: constraint projections per step", [](const Record& r) {
+    return ResolvedSetting("projections", std::to_string(r.projections));
+  });
   return table;
 }
 

@@ -1,0 +1,71 @@
+#include "experiments/case/record_columns.hpp"
+
+#include <type_traits>
+
+namespace taut {
+
+namespace {
+
+constexpr bool kResult = true, kMayLack = true;
+
+const RecordColumn kColumns[] = {
+    {"key", "key", &Record::key, "SHA-256 of everything that decides the result"},
+    {"id", "id", &Record::id, "the case for people"},
+    {"spec.scene", "scene_file", &CaseSpec::scene, "the scene as it was asked for"},
+    {"spec.overrides", "settings", &CaseSpec::overrides, "settings of the scene, in their order"},
+    {"spec.solver", "solver_text", &CaseSpec::solver, "the solver with all its parameters"},
+    {"scene", "scene", &Record::scene, "name of the scene"},
+    {"solver", "solver", &Record::solver, "name of the solver"},
+    {"params", "parameters", &Record::params, "all parameters of the solver, as text"},
+    {"substeps", "substeps", &Record::substeps,
+     "substeps of a step; -1: the solver names no parameter for them", !kResult, kMayLack},
+    {"sweeps", "sweeps", &Record::sweeps,
+     "sweeps of a substep; -1: the solver names no parameter for them", !kResult, kMayLack},
+    {"work_parameters", "work_parameters", &Record::work_parameters,
+     "the parameters that these two are"},
+    {"dt", "dt", &Record::dt, "time step [s]"},
+    {"steps", "steps", &Record::steps, "of the whole case"},
+    {"vertices", "vertices", &Record::vertices, "of the cloth"},
+    {"links", "links", &Record::links, "of the cloth"},
+    {"status.kind", "status", &Status::kind,
+     "ok, exploded, unsettled, extreme, unsupported, timeout, oom, crash, protocol, error",
+     kResult},
+    {"status.reason", "reason", &Status::reason, "why, of a status that is not ok", kResult},
+    {"status.step", "step", &Status::step, "where it happened; -1: not known", kResult, kMayLack},
+    {"status.vertex", "vertex", &Status::vertex, "the first vertex concerned; -1: not known",
+     kResult, kMayLack},
+    {"values", "", &Record::values,
+     "metric values by name; `taut list metrics` says what each is and its unit", kResult},
+    {"projections", "projections", &Record::projections, "constraint projections per step",
+     kResult},
+    {"step_cost", "passes", &Record::step_cost,
+     "passes of a step: `pass`, `items`, `repeats`, `bytes` that exist because of it, whether it "
+     "`projections` constraints",
+     kResult},
+    {"resolved_settings", "resolved_settings", &Record::resolved_settings,
+     "what the solver made of the scene: `name`, `text`; `token`, by which it is compared, and "
+     "`number` in SI where it has them",
+     kResult},
+    {"digest", "state_digest", &Record::digest, "SHA-256 of the final state", kResult},
+    {"log", "log", &Record::log,
+     "the end of what a solver's own program wrote to standard error; absent if nothing", !kResult,
+     kMayLack},
+};
+
+template <class Struct, class Value>
+std::string_view type_of(Value Struct::*) {
+  if (std::is_same_v<Value, std::string> || std::is_same_v<Value, Status::Kind>) return "text";
+  if (std::is_same_v<Value, double>) return "number";
+  if (std::is_integral_v<Value>) return "whole number";
+  return "JSON";
+}
+
+}  // namespace
+
+std::string_view RecordColumn::type() const {
+  return std::visit([](auto any) { return type_of(any); }, member);
+}
+
+std::span<const RecordColumn> record_columns() { return kColumns; }
+
+}  // namespace taut

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "experiments/case/record.hpp"
+
+// The fields of a record, as scene_keys() has the keys of a scene. From the table come its JSON
+// (record_io), its row in a results file (experiments/study), `taut list record` and the tables of
+// the documents. A field more is a member of Record and its row here.
+
+namespace taut {
+
+struct RecordColumn {
+  using Texts = std::map<std::string, std::string>;
+  using Numbers = std::map<std::string, double>;
+  using Member =
+      std::variant<std::string Record::*, double Record::*, int Record::*, std::size_t Record::*,
+                   std::vector<std::string> Record::*, Texts Record::*, Numbers Record::*,
+                   std::vector<PassCost> Record::*, ResolvedSettings Record::*,
+                   std::string CaseSpec::*, std::vector<std::string> CaseSpec::*,
+                   Status::Kind Status::*, std::string Status::*, int Status::*>;
+
+  std::string_view json;    ///< its key; "status.kind": of an object in it
+  std::string_view column;  ///< of the table cases; "": it has a table of its own
+  Member member;
+  std::string_view help;   ///< one line
+  bool is_result = false;  ///< part of result_digest(): the same key must always give the same
+  bool may_lack = false;   ///< a number of -1 is NULL in the file, a text of "" is not in the JSON
+
+  std::string_view type() const;  ///< "text", "number", "whole number", "JSON"
+  bool may_be_null() const { return may_lack && type() == "whole number"; }
+  bool may_be_absent() const { return may_lack && type() == "text"; }
+};
+/// In the order of the documents.
+std::span<const RecordColumn> record_columns();
+
+template <class Value>
+Value& member_of(Record& r, Value Record::*member) {
+  return r.*member;
+}
+template <class Value>
+Value& member_of(Record& r, Value CaseSpec::*member) {
+  return r.spec.*member;
+}
+template <class Value>
+Value& member_of(Record& r, Value Status::*member) {
+  return r.status.*member;
+}
+/// Calls `use` with the column's member of this record, of whichever type, and returns what it
+/// returns.
+template <class Use>
+auto with_member(Record& record, const RecordColumn& column, const Use& use) {
+  return std::visit([&](auto member) { return use(member_of(record, member)); }, column.member);
+}
+template <class Use>
+auto with_member(const Record& record, const RecordColumn& column, const Use& use) {
+  return std::visit(
+      [&](auto member) {
+        return use(std::as_const(member_of(const_cast<Record&>(record), member)));
+      },
+      column.member);
+}
+
+}  // namespace taut
