@@ -66,6 +66,11 @@ int run(const Options& options) {
     if (options.format.is_data()) print(answer, options.format);
     return kNothing;
   }
+  constexpr int kLarge = 100'000;
+  if (one.scene->mesh.size() > kLarge)
+    progress() << "setting up " << one.scene->mesh.size() << " vertices and "
+               << one.scene->links.size() << " links: it may take some seconds per million, with "
+               << "bullet-deformable half a minute\n";
   const SetUp made = set_up(one);
   made.solver->load(one.scene->start);
   print(answer_of(one, made), options.format);
