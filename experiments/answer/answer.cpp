@@ -9,21 +9,38 @@
 
 namespace taut {
 
+std::string_view to_string(Cell::State state) {
+  constexpr std::string_view kNames[] = {"value", "none", "refused", "not_run", "hardly_moves"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
 Cell::Cell(double number) {
-  if (std::isfinite(number)) value = number;
+  if (!std::isfinite(number)) return;
+  value = number;
+  state = State::value;
 }
 
 Cell::Cell(const Interval& i) {
-  if (std::isfinite(i.low) && std::isfinite(i.mid) && std::isfinite(i.high))
-    value = i;
-  else
-    *this = Cell(i.mid);
+  *this = Cell(i.mid);
+  if (std::isfinite(i.low) && std::isfinite(i.mid) && std::isfinite(i.high)) value = i;
+}
+
+Cell Cell::lacking(State why, std::string words) {
+  Cell cell(std::move(words));
+  cell.state = why;
+  return cell;
 }
 
 Cell Cell::with(std::string a_note) const {
   Cell noted = *this;
   noted.note = std::move(a_note);
   return noted;
+}
+
+Cell Cell::of_scene(std::string name) const {
+  Cell named = *this;
+  named.scene = std::move(name);
+  return named;
 }
 
 std::string Cell::text() const {

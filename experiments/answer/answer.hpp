@@ -16,16 +16,27 @@ namespace taut {
 /// One value of an answer: nothing (it has no meaning, or was not measured), a text, a number or an
 /// interval in SI units, yes or no.
 struct Cell {
+  /// Whether there is a value. What has none may say so in words ("not run"), which are its text.
+  enum class State {
+    value,
+    none,         ///< no meaning, not reached, or the case failed
+    refused,      ///< the solver cannot run it
+    not_run,      ///< nobody ran or timed it
+    hardly_moves  ///< of cloth that stands still: where there is a number, it is not compared
+  };
+
   std::variant<std::monostate, std::string, double, Interval, bool> value;
+  State state = State::none;
   std::string note;   ///< what a reader has to know of it
   std::string key;    ///< of the case that it comes from
+  std::string scene;  ///< of a row's first cell: the name of the scene that the row is of
   bool best = false;  ///< of its row, by more than what is noise
 
   Cell() = default;
-  Cell(std::string text) : value(std::move(text)) {}
+  Cell(std::string text) : value(std::move(text)), state(State::value) {}
   Cell(std::string_view text) : Cell(std::string(text)) {}
   Cell(const char* text) : Cell(std::string(text)) {}
-  Cell(bool yes) : value(yes) {}
+  Cell(bool yes) : value(yes), state(State::value) {}
   Cell(double number);  ///< nothing if it is none, or not finite
   template <std::integral Number>
   requires(!std::same_as<Number, bool>) Cell(Number number) : Cell(static_cast<double>(number)) {}
@@ -35,7 +46,11 @@ struct Cell {
     if (one) *this = Cell(*one);
   }
 
+  /// These words in place of a value.
+  static Cell lacking(State why, std::string words);
+
   Cell with(std::string a_note) const;
+  Cell of_scene(std::string name) const;
   bool empty() const { return value.index() == 0; }
   /// The text; "" of anything else.
   std::string text() const;
@@ -44,6 +59,7 @@ struct Cell {
   double number() const;
   bool operator==(const Cell&) const = default;
 };
+std::string_view to_string(Cell::State);
 
 /// What a cell says: its name in data ("cpu"), in words, and its unit.
 struct Column {

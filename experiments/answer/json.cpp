@@ -16,9 +16,21 @@ Json json_of(const Cell& cell) {
   return nullptr;
 }
 
+/// What a cell is unless its notes say otherwise.
+Cell::State usual_state(const Cell& cell) {
+  return cell.empty() ? Cell::State::none : Cell::State::value;
+}
+
+bool has_notes(const Cell& cell) {
+  return !cell.note.empty() || !cell.key.empty() || !cell.scene.empty() || cell.best ||
+         cell.state != usual_state(cell);
+}
+
 void add_notes(Json& json, const Cell& cell) {
+  if (cell.state != usual_state(cell)) json["state"] = std::string(to_string(cell.state));
   if (!cell.note.empty()) json["note"] = cell.note;
   if (!cell.key.empty()) json["key"] = cell.key;
+  if (!cell.scene.empty()) json["scene"] = cell.scene;
   if (cell.best) json["best"] = true;
 }
 
@@ -47,7 +59,7 @@ Json json_of(const Table& table) {
     for (std::size_t c = 0; c < table.rows[r].size(); ++c) {
       const Cell& cell = table.rows[r][c];
       row.push_back(json_of(cell));
-      if (cell.note.empty() && cell.key.empty() && !cell.best) continue;
+      if (!has_notes(cell)) continue;
       json["notes"].push_back({{"row", r}, {"column", table.columns[c].name}});
       add_notes(json["notes"].back(), cell);
     }
@@ -67,9 +79,18 @@ Cell read_cell(const JsonReader& json) {
   return json.number();
 }
 
+Cell::State read_state(const JsonReader& json) {
+  for (const auto state : {Cell::State::value, Cell::State::none, Cell::State::refused,
+                           Cell::State::not_run, Cell::State::hardly_moves})
+    if (to_string(state) == json.text()) return state;
+  json.fail("unknown state '" + json.text() + "'");
+}
+
 void read_notes(Cell& cell, const JsonReader& json) {
+  if (const auto state = json.find("state")) cell.state = read_state(*state);
   if (const auto note = json.find("note")) cell.note = note->text();
   if (const auto key = json.find("key")) cell.key = key->text();
+  if (const auto scene = json.find("scene")) cell.scene = scene->text();
   if (const auto best = json.find("best")) cell.best = best->flag();
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/answer/number.hpp"
@@ -18,11 +19,9 @@ namespace taut {
 
 namespace {
 
-std::string status_text(const Status& status) {
-  const std::string name(to_string(status.kind));
-  return status.reason.empty() || status.kind == Status::Kind::unsupported
-             ? name
-             : name + " (" + status.reason + ")";
+RowStatus row_status(const Status& status) {
+  const bool with_reason = status.kind != Status::Kind::unsupported;
+  return {std::string(to_string(status.kind)), with_reason ? status.reason : ""};
 }
 
 std::string digits(double value, int count) { return formatted("%.*g", count, value); }
@@ -58,8 +57,10 @@ class RowComparison {
       : now_(now), result_(result) {
     ++result_.cases;
     if (before.status != now.status) {
-      add(Change::Kind::status_changed, "status " + before.status + " -> " + now.status);
-      result_.findings.back().scene = now_.spec.scene, result_.findings.back().value = "status";
+      add(Change::Kind::status_changed,
+          "status " + before.status.text() + " -> " + now.status.text());
+      result_.findings.back().scene = now_.spec.scene;
+      result_.findings.back().value = "status";
     }
     if (before.flaky || now.flaky) {
       if (!before.flaky) add(Change::Kind::value_new, "does not repeat bit for bit: now flaky");
@@ -173,7 +174,7 @@ const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
 }
 
 BaselineRow baseline_row(const Record& record, const std::string& scene) {
-  BaselineRow row{record.id,          record.spec,  scene, status_text(record.status),
+  BaselineRow row{record.id,          record.spec,  scene, row_status(record.status),
                   record.projections, record.values};
   row.spec.solver = parse_solver(record.spec.solver).brief();
   return row;
@@ -299,12 +300,20 @@ std::vector<MovedValue> roll_up(const Comparison& comparison,
   return all;
 }
 
-std::string_view to_string(Change::Kind kind) {
-  constexpr std::string_view kNames[] = {"value moved",      "status changed", "case missing",
-                                         "case new",         "case renamed",   "scene changed",
-                                         "solver missing",   "solver new",     "value missing",
-                                         "value unrecorded", "value new"};
-  return kNames[static_cast<std::size_t>(kind)];
+namespace {
+constexpr std::string_view kKindNames[] = {"value moved",      "status changed", "case missing",
+                                           "case new",         "case renamed",   "scene changed",
+                                           "solver missing",   "solver new",     "value missing",
+                                           "value unrecorded", "value new"};
+}
+
+std::string_view to_string(Change::Kind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
+
+Change::Kind change_kind(std::string_view name) {
+  const auto at = std::ranges::find(kKindNames, name);
+  if (at == std::end(kKindNames))
+    throw InputError("unknown kind of change '" + std::string(name) + "'");
+  return static_cast<Change::Kind>(at - std::begin(kKindNames));
 }
 
 }  // namespace taut

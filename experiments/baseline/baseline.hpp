@@ -13,13 +13,21 @@
 
 namespace taut {
 
+/// How the case or the frontier of a row ended.
+struct RowStatus {
+  std::string kind;         ///< "ok", "exploded", "bracketed"
+  std::string reason = {};  ///< "energy"; "" of what is unsupported, whose reason is a sentence
+  std::string text() const { return reason.empty() ? kind : kind + " (" + reason + ")"; }
+  bool operator==(const RowStatus&) const = default;
+};
+
 /// One case of a baseline: what was run and what came out of it.
 struct BaselineRow {
   std::string id;  ///< of the case in its study
   CaseSpec spec;
-  std::string scene;            ///< digest of the scene's content: another one is another question
-  std::string status;           ///< "ok", "exploded (energy)": see status_text
-  std::size_t projections = 0;  ///< constraint projections per step
+  std::string scene;  ///< digest of the scene's content: another one is another question
+  RowStatus status;
+  std::size_t projections = 0;           ///< constraint projections per step
   std::map<std::string, double> values;  ///< by metric value; NaN: no meaning for this case
   std::string frontier;  ///< options of `taut frontier` if the row is a frontier, else empty
   bool flaky = false;    ///< two runs differed in a bit: only its status is compared
@@ -87,6 +95,7 @@ struct Change {
 
 /// "value moved", "case new", ...
 std::string_view to_string(Change::Kind);
+Change::Kind change_kind(std::string_view);  ///< the inverse; throws InputError
 
 struct Comparison {
   std::vector<Change> findings;  ///< sorted by solver and id

@@ -25,7 +25,8 @@ std::string line_of(const BaselineRow& row) {
   Json json{{"id", row.id}};
   json.update(json_of(row.spec, kSpec));
   json["content"] = row.scene;
-  json["status"] = row.status;
+  json["status"] = row.status.kind;
+  add_if(json, "reason", row.status.reason);
   json["projections"] = row.projections;
   if (!row.frontier.empty()) json["frontier"] = row.frontier;
   if (row.flaky) json["flaky"] = true;
@@ -38,7 +39,11 @@ BaselineRow row_of(const JsonReader& json) {
   row.id = printable(json.at("id").text());  // goes to the terminal
   read_into(json, row.spec, kSpec);
   row.scene = json.at("content").text();
-  row.status = json.at("status").text();
+  row.status.kind = json.at("status").text();
+  if (row.status.kind.find(" (") != std::string::npos)
+    json.at("status").fail(
+        "is of an earlier taut: remove the file, and `taut baseline update` writes it anew");
+  if (const auto reason = json.find("reason")) row.status.reason = reason->text();
   row.projections = json.at("projections").count();
   if (const auto frontier = json.find("frontier")) row.frontier = frontier->text();
   if (const auto flaky = json.find("flaky")) row.flaky = flaky->flag();
@@ -173,7 +178,7 @@ BaselineRow frontier_row(const FrontierQuestion& question, const CaseFrontier& f
   row.spec.solver = base.choice.brief();
   row.scene = digest(*base.scene);
   row.frontier = options_of(question);
-  row.status = to_string(found.frontier.kind);
+  row.status.kind = to_string(found.frontier.kind);
   row.values["frontier.stable_above"] = static_cast<double>(found.frontier.stable_above.size());
   if (found.frontier.kind == Frontier::Kind::bracketed) {
     row.values["frontier.stable"] = found.frontier.stable;

@@ -105,31 +105,4 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
   return result;
 }
 
-Table findings_table() {
-  return {"findings",
-          "all that differs",
-          {{"study"},
-           {"kind"},
-           {"case"},
-           {"change"},
-           {"command"},
-           Column("solver").in_detail(),
-           Column("scene").in_detail(),
-           Column("value").in_detail(),
-           Column("before", "", kNumber, 7).in_detail(),
-           Column("now", "", kNumber, 7).in_detail()}};
-}
-
-void add_findings(Table& table, const BaselineStudy& study, const Comparison& comparison) {
-  for (const Change& finding : comparison.findings) {
-    const BaselineRow* row = find_row(study.now, finding.id);
-    const bool number = finding.kind == Change::Kind::value_moved;
-    table.rows.push_back({study.name, to_string(finding.kind),
-                          finding.id.empty() ? "solver " + finding.solver : finding.id,
-                          finding.text, row ? Cell(reproduce(*row)) : Cell(), finding.solver,
-                          finding.scene, finding.value, number ? Cell(finding.before) : Cell(),
-                          number ? Cell(finding.now) : Cell()});
-  }
-}
-
 }  // namespace taut

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/answer/answer.hpp"
-#include "experiments/baseline/baseline.hpp"
+#include "experiments/baseline/check_answer.hpp"
 #include "experiments/study/campaign.hpp"
 
 namespace taut {
@@ -37,10 +37,6 @@ struct BaselineStudy {
 /// Loads the study and its baseline and runs the cases that the store does not have; nothing is run
 /// if there is no baseline and `needs_baseline`. Throws InputError.
 BaselineStudy baseline_study(const std::string& study, const BaselineOptions&, bool needs_baseline);
-
-/// A table of findings, empty: every change with the command that runs its case again.
-Table findings_table();
-void add_findings(Table&, const BaselineStudy&, const Comparison&);
 
 /// File in a baseline's folder that says what it was made with.
 inline constexpr const char* kToolchainFile = "toolchain.txt";

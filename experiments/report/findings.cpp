@@ -7,46 +7,33 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
-#include "experiments/baseline/baseline.hpp"
+#include "experiments/baseline/check_answer.hpp"
 #include "experiments/report/chart/one_step.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/require/requirement_answer.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/truths/verification.hpp"
 
 namespace taut::report {
 
 namespace {
 
-/// A row of the findings of `taut verify`, by the names of their columns.
-struct Found {
-  const Table& table;
-  const std::vector<Cell>& row;
-  std::string text(const char* column) const { return table.at(row, column).text(); }
-  double number(const char* column) const { return table.at(row, column).number(); }
-
-  /// How far a finding is on the way to its tolerance; 1: at it.
-  double share_of_tolerance() const {
-    const double off = std::abs(number("measured") - number("expected"));
-    return number("tolerance") > 0 ? off / number("tolerance") : off;
-  }
-};
-
 /// A row of the model: a closed form or a published number beside what was measured.
-Json row_of(const Found& truth, const Found& finding) {
-  const std::string si = finding.text("unit"), unit = si == "1" ? "" : " " + si,
-                    verdict = finding.text("verdict");
-  const double expected = finding.number("expected"), slack = finding.number("tolerance");
-  Json row{{"section", truth.text("section_title")},
-           {"statement", typeset(truth.text("statement"))},
-           {"source", typeset(truth.text("source"))},
-           {"subject", finding.text("subject")},
+Json row_of(const CheckedTruth& truth, const Finding& finding) {
+  const std::string unit = finding.unit == "1" ? "" : " " + finding.unit;
+  const double measured = finding.measured, expected = finding.expected, slack = finding.tolerance;
+  Json row{{"section", truth.section_title},
+           {"statement", typeset(truth.statement)},
+           {"source", typeset(truth.source)},
+           {"subject", finding.subject},
            {"expected", ""},
            {"measured", ""},
-           {"verdict", verdict}};
-  add_if(row, "why", typeset(finding.text("why")));
-  if (verdict == "not applicable") return row;
-  const double measured = finding.number("measured");
+           {"verdict", std::string(to_string(finding.verdict))}};
+  add_if(row, "why", typeset(finding.why));
+  if (finding.verdict == TruthVerdict::not_applicable) return row;
   const auto say = [&](const std::string& wanted, const std::string& found) {
-    row["expected"] = typeset(wanted), row["measured"] = typeset(found);
+    row["expected"] = typeset(wanted);
+    row["measured"] = typeset(found);
     return row;
   };
   if (expected == 0)
@@ -80,44 +67,31 @@ std::optional<Value> only(std::vector<Value> all) {
   return all.empty() ? std::nullopt : std::optional(std::move(all.front()));
 }
 
-std::size_t count(const Answer& answer, const char* fact) {
-  const double number = answer.fact(fact).number();
-  if (!(number >= 0 && number < 1e15)) throw InputError("has no number of " + std::string(fact));
-  return static_cast<std::size_t>(number);
-}
-
 /// Of each truth the finding nearest to its tolerance, and all that did not simply pass.
 Truths truths_of(const Answer& answer) {
-  const Table &all = answer.table("truths"), &findings = answer.table("findings"),
-              &assertions = answer.table("assertions");
+  const Verification found = verification_in(answer);
   Truths truths;
   std::map<std::string, int> verdicts;
+  std::size_t findings = 0;
   Json rows;
-  for (const auto& own : all.rows) {
-    const Found truth{all, own};
-    std::optional<std::size_t> nearest;
+  for (const CheckedTruth& truth : found.truths) {
+    const Finding* nearest = nullptr;
     Json apart;
-    for (std::size_t i = 0; i < findings.rows.size(); ++i) {
-      const Found finding{findings, findings.rows[i]};
-      if (finding.text("truth") != truth.text("name")) continue;
-      const std::string verdict = finding.text("verdict");
-      ++verdicts[verdict];
-      if (verdict != "passed")
+    for (const Finding& finding : truth.findings) {
+      ++findings;
+      ++verdicts[std::string(to_string(finding.verdict))];
+      if (finding.verdict != TruthVerdict::passed)
         apart.push_back(row_of(truth, finding));
-      else if (!nearest || finding.share_of_tolerance() >
-                               Found{findings, findings.rows[*nearest]}.share_of_tolerance())
-        nearest = i;
+      else if (!nearest || share_of_tolerance(finding) > share_of_tolerance(*nearest))
+        nearest = &finding;
     }
-    if (nearest) rows.push_back(row_of(truth, {findings, findings.rows[*nearest]}));
+    if (nearest) rows.push_back(row_of(truth, *nearest));
     for (Json& row : apart) rows.push_back(std::move(row));
   }
-  truths.shown = {
-      {"truths", all.rows.size()}, {"findings", findings.rows.size()}, {"verdicts", verdicts}};
+  truths.shown = {{"truths", found.truths.size()}, {"findings", findings}, {"verdicts", verdicts}};
   add_if(truths.shown, "rows", std::move(rows));
-  for (const auto& row : assertions.rows) {
-    const Found one{assertions, row};
-    truths.assertions[one.text("assertion")] = {one.text("verdict"), one.text("figure")};
-  }
+  for (const JudgedAssertion& one : found.assertions)
+    truths.assertions[one.assertion] = {one.verdict, one.figure};
   return truths;
 }
 
@@ -125,14 +99,10 @@ Truths truths_of(const Answer& answer) {
 
 Json stored_requirements(const Store& store, std::string_view program) {
   Json rows;
-  for (Json& row : found(store, "require", program, [](const Answer& answer) {
-         const auto text = [&](const char* fact) { return answer.fact(fact).text(); };
-         const double left = answer.fact("time_left").number();
-         return Json::array({text("scene"), solver_title(solver_name(text("solver"))),
-                             text("chaotic"), text("kept"), text("can_go"), text("required"),
-                             std::isnan(left) ? "-" : number_text(left, kShare, 2)});
-       }))
-    rows.push_back(std::move(row));
+  for (const RequirementSummary& one : found(store, "require", program, requirement_in))
+    rows.push_back(Json::array(
+        {one.scene, solver_title(solver_name(one.solver)), one.chaotic, one.kept, one.can_go,
+         one.required, std::isnan(one.time_left) ? "-" : number_text(one.time_left, kShare, 2)}));
   return rows;
 }
 
@@ -156,15 +126,12 @@ std::optional<Truths> stored_truths(const Store& store, std::string_view program
 
 std::optional<Json> stored_regressions(const Store& store, std::string_view program) {
   return only(found(store, "check", program, [](const Answer& answer) {
-    const Table& findings = answer.table("findings");
-    Json regressions{{"cases", count(answer, "cases")}, {"values", count(answer, "values")}};
-    for (const auto& row : findings.rows) {
-      const Found one{findings, row};
-      if (one.text("kind") == to_string(Change::Kind::value_new)) continue;  // for information
-      regressions["rows"].push_back({{"study", one.text("study")},
-                                     {"case", one.text("case")},
-                                     {"change", one.text("change")}});
-    }
+    const Regressions found = regressions_in(answer);
+    Json regressions{{"cases", found.cases}, {"values", found.values}};
+    for (const Regressions::Row& row : found.rows)
+      if (row.kind != Change::Kind::value_new)  // for information
+        regressions["rows"].push_back(
+            {{"study", row.study}, {"case", row.id}, {"change", row.change}});
     return regressions;
   }));
 }

@@ -8,7 +8,7 @@ std::string hardly_moves(const Record& r) {
   for (const ValueSpec* value : values_with_role())
     if (const double share = r.value(std::string(value->name));
         value->role == Role::motion && share < kLeastMotion)
-      return kHardlyMoves + shown(value->unit, share) + " of the way";
+      return "hardly moves: " + shown(value->unit, share) + " of the way";
   return "";
 }
 

@@ -10,10 +10,8 @@ namespace taut {
 /// links keep their lengths where nothing moves.
 inline constexpr double kLeastMotion = 0.5;
 
-/// How what hardly_moves() says begins.
-inline constexpr const char* kHardlyMoves = "hardly moves: ";
-
-/// "hardly moves: 5 % of the way"; "": it moves, or the scene has no reference in motion.
+/// "hardly moves: 5 % of the way", for people; "": it moves, or the scene has no reference in
+/// motion.
 std::string hardly_moves(const Record&);
 
 }  // namespace taut

@@ -109,9 +109,9 @@ std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
   for (const BenchedCase& c : cases) {
     std::string failure = c.timing.failure;
     if (failure.empty() && !c.stable()) failure = describe(c.record.status);
-    if (failure.empty() && of_strain) failure = hardly_moves(c.record);
+    const std::string still = failure.empty() && of_strain ? hardly_moves(c.record) : "";
     all.push_back({c.record.solver, c.record.spec.solver, c.cost(),
-                   std::abs(c.record.value(metric)), failure});
+                   std::abs(c.record.value(metric)), failure + still, !still.empty()});
   }
   return all;
 }

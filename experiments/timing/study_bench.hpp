@@ -13,11 +13,12 @@ namespace taut {
 
 /// One setting of one solver on one scene: what it costs and how far it is off.
 struct Candidate {
-  std::string solver;   ///< the entry's name
-  std::string setting;  ///< "jakobsen:substeps=16,iterations=1"
-  Interval cost;        ///< CPU seconds per simulated second
-  double error = 0;     ///< of the chosen metric, >= 0; NaN if the metric has no meaning here
-  std::string failure;  ///< why it is refused, such as "exploded (energy)"; empty: it ran
+  std::string solver;         ///< the entry's name
+  std::string setting;        ///< "jakobsen:substeps=16,iterations=1"
+  Interval cost;              ///< CPU seconds per simulated second
+  double error = 0;           ///< of the chosen metric, >= 0; NaN if the metric has no meaning here
+  std::string failure;        ///< why it is refused, such as "exploded (energy)"; empty: it ran
+  bool hardly_moves = false;  ///< which is why: its strain is that of cloth that stands still
 };
 
 /// What is asked for: the cheapest setting within an error, or the most accurate within a cost.

@@ -66,6 +66,8 @@ class MadeUp {
     Cell made = kinds[up_to(5)];
     if (up_to(3) == 0) made.note = word();
     if (up_to(5) == 0) made.key = "0123abcd";
+    if (up_to(5) == 0) made.state = static_cast<Cell::State>(up_to(4));
+    if (up_to(5) == 0) made.scene = word();
     made.best = up_to(5) == 0;
     return made;
   }
@@ -262,6 +264,12 @@ TEST(Answers, ShowACellInTheUnitOfItsColumn) {
   EXPECT_TRUE(Cell(std::numeric_limits<double>::infinity()).empty());
   EXPECT_EQ(Cell(Interval{-std::numeric_limits<double>::infinity(), 2, 3}), Cell(2.0));
   EXPECT_EQ(Column("cpu_per_step").heading, "cpu per step");
+  EXPECT_EQ(Cell(1).state, Cell::State::value);
+  EXPECT_EQ(Cell("a name").state, Cell::State::value);
+  EXPECT_EQ(Cell(std::nan("")).state, Cell::State::none);
+  const Cell cannot = Cell::lacking(Cell::State::refused, "cannot: no balls");
+  EXPECT_EQ(cannot.state, Cell::State::refused);
+  EXPECT_EQ(text(cannot, Column("a")), "cannot: no balls");
 }
 
 TEST(Answers, AreFoundByNameAndDamagedOnesAreNamed) {
@@ -280,6 +288,7 @@ TEST(Answers, AreFoundByNameAndDamagedOnesAreNamed) {
   for (const auto& [good, bad] : std::vector<std::pair<std::string, std::string>>{
            {"taut-answer-1", "taut-answer-0"},
            {"\"kind\"", "\"kinds\""},
+           {"\"notes\": []", R"("notes": [{"row": 0, "column": "x", "state": "gone"}])"},
            {"2.0", "{}"},
            {"\"rows\": [", "\"rows\": [[1],"},
            {"\"notes\": []", R"("notes": [{"row": 1, "column": "x", "note": ""}])"}}) {

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "core/model/input_error.hpp"
-#include "experiments/baseline/assertions_baseline.hpp"
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/truths/assertions/judged.hpp"
 
 namespace taut::frontier_rows_test {
 namespace {
@@ -86,13 +86,13 @@ TEST_F(FrontierFiles, WhatWasFoundIsARowOfItsBaseline) {
             (std::tuple{std::string("hang"), std::string("mass-spring"), question.base.overrides}));
   EXPECT_EQ(row.scene, digest(*base.scene));
   EXPECT_EQ(row.frontier, "--of substeps --from 2 --to 64 --tolerance 0.125");
-  EXPECT_EQ(row.status, "bracketed");
+  EXPECT_EQ(row.status.kind, "bracketed");
   EXPECT_EQ(row.values,
             (std::map<std::string, double>{
                 {"frontier.stable", 5}, {"frontier.unstable", 6}, {"frontier.stable_above", 2}}));
   found.frontier.kind = Frontier::Kind::all_stable, found.frontier.stable_above.clear();
   row = frontier_row(question, found);
-  EXPECT_EQ(row.status, "all stable");
+  EXPECT_EQ(row.status.kind, "all stable");
   EXPECT_EQ(row.values, (std::map<std::string, double>{{"frontier.stable_above", 0}}));
 }
 

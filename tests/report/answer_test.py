@@ -207,7 +207,7 @@ class Answer(unittest.TestCase):
         self.one(table, metric, cells, last, label, marks)
         for scene, row in table.rows.items():
             for solver, (value, note) in row.items():
-                self.assertEqual(note.get("note", "").startswith("hardly moves: "), (scene, solver) in still)
+                self.assertEqual(note.get("state") == "hardly_moves", (scene, solver) in still)
         self.seen["hardly moves"] += len(still)
         for scene, row in table.rows.items():  # each cell leads to its case
             for solver, case in report.compared(scene).items():

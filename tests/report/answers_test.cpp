@@ -48,6 +48,7 @@ TEST(PageAnswers, HaveAValueOrWhyThereIsNoneAndMarkWhatIsBetterByMoreThanTheTole
   EXPECT_EQ(best(2), std::pair(false, false)) << "alone";
   EXPECT_EQ(best(3), std::pair(false, false)) << "both as good as nothing";
   EXPECT_EQ(table.rows[4][2].text(), "not run");
+  EXPECT_EQ(table.rows[4][2].state, Cell::State::not_run);
   EXPECT_EQ(table.rows[5][0].text(), "mean of 2 scenes");
   EXPECT_EQ(table.rows[5][0].note, "without box, drape, swing");
   EXPECT_NEAR(table.rows[5][1].number(), 0.02, 1e-12);
@@ -74,6 +75,7 @@ TEST(PageAnswers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
   EXPECT_EQ(last[1].number(), 0.002);
   EXPECT_EQ(last[2].number(), 0.03);
   EXPECT_EQ(last[3].text(), "cannot: no balls");
+  EXPECT_EQ(last[3].state, Cell::State::refused);
   EXPECT_FALSE(last[3].best);
   EXPECT_TRUE(last[1].best);
   EXPECT_EQ(answer.table("failures").rows.back()[3].number(), 0) << "no failure";
@@ -197,6 +199,9 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   Answer answer = made.answer();
   const Table& table = answer.table("stretch.rms");
   EXPECT_EQ(table.rows[0][3].note, "hardly moves: 49\u00A0% of the way");
+  EXPECT_EQ(table.rows[0][3].state, Cell::State::hardly_moves);
+  EXPECT_EQ(table.rows[0][0].scene, "swing");
+  EXPECT_EQ(table.rows.back()[0].scene, "") << "of all together";
   EXPECT_FALSE(table.rows[0][3].best);
   EXPECT_TRUE(table.rows[0][2].best) << "the best of those that move";
   EXPECT_TRUE(table.rows[1][3].best);
@@ -216,6 +221,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   answer = made.answer();
   EXPECT_EQ(answer.table("price").rows[0][3].text(), "not reached");
   EXPECT_EQ(answer.table("price").rows[0][3].note, "hardly moves: 40\u00A0% of the way");
+  EXPECT_EQ(answer.table("price").rows[0][3].state, Cell::State::hardly_moves);
   EXPECT_FALSE(answer.table("price").rows[0][1].best) << "alone";
 }
 

@@ -14,44 +14,32 @@
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/truths/verification.hpp"
 #include "tests/support/damaged_results.hpp"
 
 namespace taut::report::findings_test {
 namespace {
 
-using Cells = std::vector<Cell>;
-
-Cells finding(const std::string& subject, double expected, double tolerance, double measured,
-              const std::string& verdict = "passed", const std::string& unit = "m") {
-  return {verdict,  "",       subject,   unit,
-          measured, expected, tolerance, verdict == "passed" ? "" : "reasons >= pi"};
+Finding finding(const std::string& subject, double expected, double tolerance, double measured,
+                TruthVerdict verdict = TruthVerdict::passed, const std::string& unit = "m") {
+  Finding f{subject, "", unit, measured, expected, tolerance};
+  f.verdict = verdict;
+  if (verdict != TruthVerdict::passed) f.why = "reasons >= pi";
+  return f;
 }
 
-Truths truths_of(const std::vector<std::vector<Cells>>& findings) {
+Truths truths_of(const std::vector<std::vector<Finding>>& findings) {
   const Scratch scratch;
-  Answer all{"verify"};
-  all.add(Table{"truths", "", {{"name"}, {"section_title"}, {"statement"}, {"source"}}});
-  all.add(Table{"findings",
-                "",
-                {{"verdict"},
-                 {"truth"},
-                 {"subject"},
-                 {"unit"},
-                 {"measured"},
-                 {"expected"},
-                 {"tolerance"},
-                 {"why"}}});
-  all.add(Table{"assertions", "", {{"assertion"}, {"verdict"}, {"figure"}}, {{"c", "holds", "f"}}});
-  for (std::size_t i = 0; i < findings.size(); ++i) {
-    const std::string name = "truth" + std::to_string(i);
-    all.tables[0].rows.push_back({name, "S", "T^2", "Q x 2"});
-    for (Cells row : findings[i]) {
-      row[1] = name;
-      all.tables[1].rows.push_back(row);
-    }
+  Verification all;
+  all.assertions = {{"source", "1", "c", "holds", "f"}};
+  for (const std::vector<Finding>& own : findings) {
+    CheckedTruth& truth = all.truths.emplace_back();
+    truth.name = "truth" + std::to_string(all.truths.size());
+    truth.section_title = "S", truth.statement = "T^2", truth.source = "Q x 2";
+    truth.findings = own;
   }
   const Store store(scratch.path());
-  store.keep(all);
+  store.keep(answer_of(all));
   EXPECT_FALSE(stored_truths(store, "another"));
   return *stored_truths(store, program_digest());
 }
@@ -59,8 +47,8 @@ Truths truths_of(const std::vector<std::vector<Cells>>& findings) {
 TEST(StoredTruths, ShowOfEachTruthTheFindingNearestToItsTolerance) {
   const auto [shown, assertions] =
       truths_of({{finding("far", 1, 0.1, 1.02), finding("near", 1, 0.1, 0.92),
-                  finding("apart", 1, 0.1, 1.5, "deviates"), finding("wide", 1, 1, 1.5),
-                  finding("none", 1, 0.1, 1, "not applicable")},
+                  finding("apart", 1, 0.1, 1.5, TruthVerdict::deviates), finding("wide", 1, 1, 1.5),
+                  finding("none", 1, 0.1, 1, TruthVerdict::not_applicable)},
                  {finding("exact", 2, 0, 2), finding("off", 2, 0, 2.5)},
                  {}});
   EXPECT_EQ(shown["truths"], 3);
@@ -96,9 +84,9 @@ TEST(StoredTruths, WriteAsManyDigitsAsTheToleranceLetsMatter) {
         Written{1, 1e-7, 1.00000001, "m", "1.00000 ± 10⁻⁷ m", "1.00000 m"},
         Written{2e6, 1, 2000001, "1", "2×10⁶ ± 1.0", "2×10⁶"},
         Written{2.5, 0, 2.5, "m/s^2", "exactly 2.50 m/s²", "2.50 m/s²"}}) {
-    const Json rows =
-        truths_of({{finding("x", one.expected, one.tolerance, one.measured, "passed", one.unit)}})
-            .shown["rows"];
+    const Json rows = truths_of({{finding("x", one.expected, one.tolerance, one.measured,
+                                          TruthVerdict::passed, one.unit)}})
+                          .shown["rows"];
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_EQ(rows[0]["expected"], one.says) << one.tolerance;
     EXPECT_EQ(rows[0]["measured"], one.found) << one.tolerance;

@@ -28,12 +28,12 @@ experiments/timing       | (core/(model|reference)|experiments/(answer|system|ca
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|study|truths|baseline))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|study|timing|require))/
-experiments/truths       | (core/(model|reference)|experiments/(answer|metrics|case|truths))/
+experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
 experiments/render/film  | (core/(model|io)|experiments/(system|case|study|render/(picture|film)|report))/
-experiments/report       | (core/model|experiments/(answer|system|metrics|case|study|timing|baseline|truths|report))/
+experiments/report       | (core/model|experiments/(answer|system|metrics|case|study|timing|require|baseline|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|report/chart))/|experiments/report/input
 experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/

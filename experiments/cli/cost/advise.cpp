@@ -50,6 +50,10 @@ struct Without {
   double cost = 0;  ///< CPU s per simulated s
 };
 
+struct Refused {
+  std::string solver, why;
+};
+
 /// What was searched and found.
 struct Result {
   Target target;
@@ -59,9 +63,9 @@ struct Result {
   std::optional<Candidate> too_dear;
   std::vector<Without> without;
   std::vector<Candidate> tried;
-  std::vector<std::string> unsupported;  ///< "xpbd: why"
-  std::vector<std::string> cut;          ///< solvers whose search --patience ended
-  std::vector<std::string> unrefined;    ///< and those of which it ended what follows the search
+  std::vector<Refused> unsupported;    ///< solvers that cannot run the scene
+  std::vector<std::string> cut;        ///< solvers whose search --patience ended
+  std::vector<std::string> unrefined;  ///< and those of which it ended what follows the search
   SceneBench bench;
   Recommendation recommendation;
   Interval cost;  ///< of the best, as it is expected in a second session
@@ -190,7 +194,7 @@ class Advisor {
         reasons = {failure.what()};
       }
       if (!reasons.empty()) {
-        result_.unsupported.push_back(solver + ": " + reasons.front());
+        result_.unsupported.push_back({solver, reasons.front()});
         continue;
       }
       all.push_back(solver);
@@ -451,9 +455,8 @@ Table tried_of(const Options& options, const Result& result) {
 /// What was refused, a line each.
 Table refused_of(const Result& result) {
   Table table{"refused", "refused", {{"setting"}, {"why"}}};
-  for (const std::string& reason : result.unsupported)
-    table.rows.push_back({reason.substr(0, reason.find(": ")),
-                          "unsupported: " + reason.substr(reason.find(": ") + 2)});
+  for (const auto& [solver, why] : result.unsupported)
+    table.rows.push_back({solver, "unsupported: " + why});
   for (const Candidate& c : result.tried)
     if (!c.failure.empty()) table.rows.push_back({parse_solver(c.setting).brief(), c.failure});
   table.most = kMostRefused;

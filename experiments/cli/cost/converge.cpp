@@ -28,99 +28,6 @@ struct Options {
   Format format;
 };
 
-constexpr double kGaps[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-constexpr Unit kForce{"N", "N"}, kStiffness{"N/m", "N/m"}, kMilliseconds{"s", "ms", 1e3};
-
-/// What the exact step is, and whether there is one.
-std::string exact_step(const Convergence& c) {
-  const std::string step =
-      std::ranges::any_of(c.stiffness, [](double k) { return std::isinf(k); })
-          ? "the nearest placement that keeps all lengths (augmented Lagrangian)"
-          : "implicit Euler's (Newton)";
-  return c.problem.empty() ? step : "none: " + c.problem;
-}
-
-/// A line for each solver that can be asked: what its links are, how its iterations end.
-Table summary(const std::vector<Convergence>& all) {
-  Table table{"solvers",
-              "",
-              {{"solver"},
-               {"structural", "structural", kStiffness},
-               {"shear", "shear", kStiffness},
-               {"bend", "bend", kStiffness},
-               {"contraction", "contraction per iteration", kNumber, 4},
-               {"floor", "floor", kLength},
-               {"moved", "last correction of the exact step", kLength},
-               {"exact_residual", "residual of the exact step", kForce},
-               {"exact", "exact step"}}};
-  table.caption =
-      "Stiffness of rigid links is empty. A floor is a distance from the exact step at which the "
-      "iterations end: their fixed point is another one.";
-  for (const Convergence& c : all)
-    if (c.refused.empty())
-      table.rows.push_back({c.solver, c.stiffness[0], c.stiffness[1], c.stiffness[2], c.contraction,
-                            c.floor > 0 ? Cell(c.floor) : Cell(), c.moved, c.exact_residual,
-                            exact_step(c)});
-  return table;
-}
-
-/// Iterations until the gap stays at or below each of kGaps, and the CPU time of a step of so many.
-Table iterations_to_gaps(const std::vector<Convergence>& all) {
-  Table table{"reached",
-              "iterations until the gap stays below a value",
-              {{"solver"}, {"below"}, {"iterations"}, {"cpu", "CPU time", kMilliseconds}}};
-  for (const Convergence& c : all)
-    for (const double gap : kGaps)
-      if (const int i = reached(c, gap); c.refused.empty() && c.problem.empty() && i >= 0) {
-        const ConvergencePoint& p = c.points[static_cast<std::size_t>(i)];
-        table.rows.push_back({c.solver, gap, p.iterations, p.milliseconds / 1e3});
-      }
-  return table;
-}
-
-Table points(const std::vector<Convergence>& all) {
-  Table table{"points",
-              "",
-              {{"solver"},
-               {"iterations"},
-               {"residual", "residual", kForce},
-               {"stretch", "RMS of C", kLength},
-               {"gap"},
-               {"distance", "distance from the exact step", kLength},
-               {"cpu", "CPU time", kMilliseconds}}};
-  table.caption =
-      "gap: (G - G*)/(G_0 - G*) of springs; of rigid links the square of the distance over that of "
-      "the prediction, weighted by mass. Sweeps that lower the energy lower the gap, not always "
-      "the distance: they take out stretch first, and may move the cloth away along its bends.";
-  for (const Convergence& c : all)
-    for (const ConvergencePoint& p : c.points)
-      table.rows.push_back(
-          {c.solver, p.iterations, p.residual, p.stretch, p.gap, p.distance, p.milliseconds / 1e3});
-  return table;
-}
-
-Answer answer_of(const Scene& scene, const Options& options, double at,
-                 const std::vector<Convergence>& all) {
-  const std::string set = join(options.settings, ", ");
-  Answer answer{"converge",
-                std::string(report::kOneStep) + scene.name + (set.empty() ? "" : ", " + set)};
-  answer.add({"scene"}, scene.name);
-  answer.add({"at", "from its state at", kTime}, at);
-  answer.add({"from", "of a run of"},
-             Cell(options.from)
-                 .with("multipliers and velocities of earlier steps are unknown to "
-                       "all"));
-  answer.add({"dt", "time step", kMilliseconds}, scene.dt);
-  answer.add(points(all));
-  answer.add(summary(all));
-  answer.add(iterations_to_gaps(all));
-  Table unsupported{"unsupported", "unsupported", {{"solver"}, {"why"}}};
-  for (const Convergence& c : all)
-    for (const std::string& reason : c.refused) unsupported.rows.push_back({c.solver, reason});
-  answer.add(std::move(unsupported));
-  return answer;
-}
-
 /// Bullet in float and in double are two programs, and all solvers start from one state in one.
 void continue_in_one_program(const std::vector<std::string>& solvers) {
   std::string_view program;
@@ -143,7 +50,9 @@ Answer ask(const Options& options) {
     throw InputError("converge: contact is no part of the exact step; take a scene without");
   const double at = std::round(options.at / scene.dt) * scene.dt;
   const State state = state_at(scene, parse_solver(options.from), at);
-  return answer_of(scene, options, at, converge(scene, state, at, options.solvers, options.most));
+  return report::one_step_answer(
+      {scene.name, join(options.settings, ", "), options.from, at, scene.dt},
+      converge(scene, state, at, options.solvers, options.most));
 }
 
 std::string draw(const Answer& answer, const Options& options) {

@@ -30,7 +30,7 @@ void tell(const BaselineStudy& study, const Comparison& comparison, const Format
   Answer answer{"baseline", study.name};
   answer.add({"cases", "cases compared"}, comparison.cases);
   Table& table = answer.add(findings_table());
-  add_findings(table, study, comparison);
+  add_findings(table, study.name, study.now, comparison);
   print(answer, format);
 }
 

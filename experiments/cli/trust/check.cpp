@@ -107,7 +107,7 @@ class Report {
                  " --why \"...\"";
     add_moved(study, comparison);
     add_mismatches(study, comparison);
-    add_findings(findings_, study, comparison);
+    add_findings(findings_, study.name, study.now, comparison);
     for (const std::string& id : study.not_run) not_run_.rows.push_back({study.name, id});
   }
   void add_nothing(const std::string& study, const std::string& why) {
@@ -117,8 +117,7 @@ class Report {
 
   Answer answer() {
     Answer all{"check"};
-    all.add(Column("cases").in_detail(), cases_);
-    all.add(Column("values").in_detail(), values_);
+    add_compared(all, cases_, values_);
     findings_.detail = true;
     for (Table* table : {&studies_, &findings_, &not_run_, &mismatches_, &moved_})
       all.add(std::move(*table));

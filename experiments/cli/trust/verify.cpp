@@ -7,7 +7,6 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
-#include "experiments/baseline/assertions_baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -17,6 +16,7 @@
 #include "experiments/system/process.hpp"
 #include "experiments/truths/assertions/assertions.hpp"
 #include "experiments/truths/truth.hpp"
+#include "experiments/truths/verification.hpp"
 
 namespace taut::verb::verify {
 
@@ -32,12 +32,6 @@ struct Options {
 
   /// Whether every truth that an assertion rests on is checked, for every solver.
   bool of_all_assertions() const { return names.empty() && solvers.empty() && section == 0; }
-};
-
-struct Outcome {
-  const TruthEntry* truth = nullptr;
-  std::vector<Finding> findings;
-  double seconds = 0;
 };
 
 std::vector<const TruthEntry*> choose(const Options& options) {
@@ -58,26 +52,6 @@ std::vector<const TruthEntry*> choose(const Options& options) {
 /// What one truth may use: it costs a second or two.
 constexpr ProcessLimits kLimits{.cpu_seconds = 600, .memory = std::size_t{4} << 30};
 
-std::vector<Finding> findings_in(const Answer& answer) {
-  std::vector<Finding> all;
-  const Table& table = answer.table("findings");
-  for (const auto& row : table.rows) {
-    const auto at = [&](std::string_view column) { return table.at(row, column); };
-    Finding f{at("subject").text(),
-              at("quantity").text(),
-              at("unit").text(),
-              at("measured").number(),
-              at("expected").number(),
-              at("tolerance").number(),
-              at("uncertainty").number(),
-              {},
-              at("why").text()};
-    f.verdict = verdict_of(at("verdict").text());
-    all.push_back(std::move(f));
-  }
-  return all;
-}
-
 /// A truth in a process of its own: whatever its solver does costs this truth alone. Throws
 /// InputError of a shipped scene that is missing.
 std::vector<Finding> findings_of(const TruthEntry& truth, const Options& options) {
@@ -92,8 +66,11 @@ std::vector<Finding> findings_of(const TruthEntry& truth, const Options& options
   const std::optional<ProcessEnd> end = process.wait(1);
   const std::string said = last_line(std::ifstream(scratch.path() / "errors"));
   if (end && end->exit_code == kUsage) throw InputError(said);
-  if (end && out.ends_with("}\n"))
-    return findings_in(answer_from_json(out, std::string(truth.name)));
+  if (end && out.ends_with("}\n")) {
+    const Answer answer = answer_from_json(out, std::string(truth.name));
+    const Verification found = verification_in(answer);
+    if (found.truths.size() == 1) return found.truths.front().findings;
+  }
   Finding f;
   f.subject = options.solvers.empty() ? "taut" : options.solvers.front();
   f.quantity = "the check ends", f.unit = "1", f.expected = 1, f.verdict = TruthVerdict::broken;
@@ -101,10 +78,10 @@ std::vector<Finding> findings_of(const TruthEntry& truth, const Options& options
   return {f};
 }
 
-/// Checks the truths, `jobs` at a time; outcomes stay in the order of the truths. Throws what a
-/// truth threw first.
-std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const Options& options) {
-  std::vector<Outcome> outcomes(chosen.size());
+/// Checks the truths, `jobs` at a time; they stay in their order. Throws what a truth threw first.
+std::vector<CheckedTruth> check(const std::vector<const TruthEntry*>& chosen,
+                                const Options& options) {
+  std::vector<CheckedTruth> checked(chosen.size());
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::size_t done = 0;
@@ -117,9 +94,9 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
         if (options.here) {
           Findings findings(options.solvers);
           chosen[i]->check(findings);
-          outcomes[i] = {chosen[i], findings.all(), seconds_since(start)};
+          checked[i] = {*chosen[i], findings.all(), seconds_since(start)};
         } else {
-          outcomes[i] = {chosen[i], findings_of(*chosen[i], options), seconds_since(start)};
+          checked[i] = {*chosen[i], findings_of(*chosen[i], options), seconds_since(start)};
         }
         const std::lock_guard lock(mutex);
         countdown(++done, chosen.size());
@@ -136,131 +113,31 @@ std::vector<Outcome> check(const std::vector<const TruthEntry*>& chosen, const O
     work();
   }
   if (failed) std::rethrow_exception(failed);
-  return outcomes;
+  return checked;
 }
 
-std::vector<JudgedAssertion> judged(const std::vector<Outcome>& outcomes) {
-  return judge_assertions([&](std::string_view truth) -> const std::vector<Finding>* {
-    for (const Outcome& outcome : outcomes)
-      if (outcome.truth->name == truth) return &outcome.findings;
-    return nullptr;
+Verification verify(const Options& options) {
+  Verification found{check(choose(options), options), {}};
+  found.assertions = judge_assertions([&](std::string_view truth) -> const std::vector<Finding>* {
+    const auto at = std::ranges::find(found.truths, truth, &CheckedTruth::name);
+    return at == found.truths.end() ? nullptr : &at->findings;
   });
+  return found;
 }
 
-std::string value(double v) {
-  return number_text(v, std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
-}
-
-/// A number beside what it is held to.
-std::string text_of(const Finding& f) {
-  if (f.verdict == TruthVerdict::not_applicable) return f.subject + ": " + f.why;
-  std::string text = f.subject + ": " + f.quantity + " " + value(f.measured);
-  if (f.uncertainty > 0) text += " +- " + value(f.uncertainty);
-  if (f.unit != "1") text += " " + f.unit;
-  if (f.expected == 0)
-    text += " (at most " + value(f.tolerance) + ")";
-  else
-    text += " (" + value(f.expected) + " +- " + value(f.tolerance) + ")";
-  return f.why.empty() ? text : text + ": " + f.why;
-}
-
-/// The worst comes last.
-std::pair<TruthVerdict, double> badness(const Finding& f) {
-  const double off = std::abs(f.measured - f.expected);
-  const double share = f.tolerance > 0 ? off / f.tolerance : off;
-  return {f.verdict, std::isnan(share) ? 1e300 : share};
-}
-
-std::string place(const TruthEntry& truth) {
-  return std::to_string(truth.section) + "." + std::to_string(truth.row);
-}
-
-/// A row a truth, with the number that is worst or comes nearest to its tolerance.
-Table table_of(const std::vector<Outcome>& outcomes) {
-  Table table{"truths",
-              "",
-              {{"verdict"},
-               {"place"},
-               {"name", "truth"},
-               {"numbers"},
-               {"nearest", "nearest to its tolerance"},
-               Column("section").in_detail(),
-               Column("section_title").in_detail(),
-               Column("statement").in_detail(),
-               Column("source").in_detail(),
-               Column("seconds", "time", kTime).in_detail()}};
-  for (const auto& [truth, findings, seconds] : outcomes) {
-    const auto worst = std::ranges::max_element(findings, {}, badness);
-    const bool any = worst != findings.end();
-    table.rows.push_back({any ? to_string(worst->verdict) : "not applicable", place(*truth),
-                          truth->name, findings.size(), any ? text_of(*worst) : "", truth->section,
-                          section_title(truth->section), truth->statement, truth->source, seconds});
-  }
-  return table;
-}
-
-Table findings_of(const std::vector<Outcome>& outcomes) {
-  Table table{"findings",
-              "every number",
-              {{"verdict"},
-               {"truth"},
-               {"subject"},
-               {"quantity"},
-               {"unit"},
-               {"measured", "", kNumber, 7},
-               {"expected", "", kNumber, 7},
-               {"tolerance"},
-               {"uncertainty"},
-               {"why"}}};
-  for (const Outcome& outcome : outcomes)
-    for (const Finding& f : outcome.findings)
-      table.rows.push_back({to_string(f.verdict), outcome.truth->name, f.subject, f.quantity,
-                            f.unit, f.measured, f.expected, f.tolerance, f.uncertainty, f.why});
-  table.detail = true;
-  return table;
-}
-
-Table table_of(const std::vector<JudgedAssertion>& assertions) {
-  Table table{"assertions",
-              "what publications assert",
-              {{"source"}, {"section"}, {"verdict"}, {"assertion"}, {"figure"}}};
-  for (const auto& [source, section, assertion, verdict, figure] : assertions)
-    table.rows.push_back({source, section, verdict, assertion, figure});
-  return table;
-}
-
-/// The numbers that are not as they must be, last, where they are read.
-Table broken(const std::vector<Outcome>& outcomes) {
-  Table table{"broken", "broken", {{"truth"}, {"number"}}};
-  for (const Outcome& outcome : outcomes)
-    for (const Finding& f : outcome.findings)
-      if (f.verdict == TruthVerdict::broken)
-        table.rows.push_back({outcome.truth->name, text_of(f)});
-  return table;
-}
-
-Answer answer_of(const std::vector<Outcome>& outcomes, const Options& options) {
-  Answer answer{"verify"};
-  answer.add(table_of(outcomes));
-  answer.add(findings_of(outcomes));
-  answer.add(table_of(judged(outcomes)));
-  answer.add(broken(outcomes));
-  answer.tables[options.assertions ? 0 : 2].detail = true;
-  return answer;
-}
-
-int summary(const std::vector<Outcome>& outcomes) {
+int summary(const std::vector<CheckedTruth>& truths) {
   std::size_t counts[4] = {}, broken_truths = 0, findings = 0;
-  for (const Outcome& outcome : outcomes) {
+  for (const CheckedTruth& truth : truths) {
     bool broken = false;
-    for (const Finding& f : outcome.findings) {
-      ++counts[static_cast<std::size_t>(f.verdict)], ++findings;
+    for (const Finding& f : truth.findings) {
+      ++counts[static_cast<std::size_t>(f.verdict)];
+      ++findings;
       broken = broken || f.verdict == TruthVerdict::broken;
     }
     broken_truths += broken;
   }
   std::ostream& news = progress();
-  news << outcomes.size() << " truths, " << findings << " numbers: " << counts[0] << " passed, "
+  news << truths.size() << " truths, " << findings << " numbers: " << counts[0] << " passed, "
        << counts[1] << " deviate as explained, " << counts[2] << " not applicable, " << counts[3]
        << " broken";
   if (broken_truths > 0) news << " in " << broken_truths << " truths";
@@ -303,22 +180,22 @@ int run(const Options& options) {
     Answer answer{"verify"};
     Table& table = answer.add(Table{"truths", "", {{"place"}, {"name", "truth"}, {"statement"}}});
     for (const TruthEntry* truth : choose(options))
-      table.rows.push_back({place(*truth), truth->name, truth->statement});
+      table.rows.push_back({place_of(*truth), truth->name, truth->statement});
     print(answer, options.format);
     return kPass;
   }
   if (options.update && !(options.assertions && options.of_all_assertions()))
     throw InputError(
         "--update keeps the verdicts of all assertions: taut verify --assertions --update");
-  const std::vector<Outcome> outcomes = check(choose(options), options);
-  const Answer answer = answer_of(outcomes, options);
+  const Verification found = verify(options);
+  const Answer answer = answer_of(found, options.assertions);
   if (options.record) {
     const Store store(options.out);
     store.prepare();
     store.keep(answer);
   }
   print(answer, options.format);
-  const int code = summary(outcomes);
+  const int code = summary(found.truths);
   if (!options.of_all_assertions()) return code;
   const int assertions = compare_with_baseline(answer, options);
   return code == kPass ? assertions : code;
@@ -354,7 +231,7 @@ void add_options(CLI::App& app, Options& options) {
 Answer verify_all(int jobs) {
   Options options;
   options.jobs = jobs;
-  return answer_of(check(choose(options), options), options);
+  return answer_of(verify(options));
 }
 
 }  // namespace taut::verb::verify

@@ -53,7 +53,7 @@ std::string link_order(const Record& r) {
 }
 
 bool is_compared(const Cell& cell) {
-  return !std::isnan(cell.number()) && !cell.note.starts_with(kHardlyMoves);
+  return !std::isnan(cell.number()) && cell.state == Cell::State::value;
 }
 
 void mark_best(std::vector<Cell>& row, Better better, double nothing) {
@@ -102,11 +102,18 @@ Cell Common::label(const Table& table, const std::string& what) const {
 }
 
 Cell why_empty(const Table& table, std::size_t column) {
-  std::set<std::string> all;
-  for (const auto& row : table.rows)
-    all.insert(std::isnan(row[column].number()) ? row[column].text() : "hardly moves");
-  return all.size() == 1 ? *all.begin() : Cell("no value");
+  std::set<std::string> words;
+  std::set<Cell::State> states;
+  for (const auto& row : table.rows) {
+    const Cell& cell = row[column];
+    states.insert(cell.state);
+    words.insert(std::isnan(cell.number()) ? cell.text() : "hardly moves");
+  }
+  if (words.size() != 1) return Cell::lacking(Cell::State::none, "no value");
+  return Cell::lacking(states.size() == 1 ? *states.begin() : Cell::State::none, *words.begin());
 }
+
+Cell no_common_scene() { return Cell::lacking(Cell::State::none, "no scene that all have"); }
 
 namespace {
 
@@ -122,11 +129,12 @@ bool is_failure(const Status& status) {
 }
 
 /// What stands in a cell instead of a value.
-std::string why_none(const Record* r) {
-  if (!r) return "not run";
-  if (completed(r->status)) return "no value";
-  if (r->status.kind == Status::Kind::unsupported) return "cannot: " + r->status.reason;
-  return std::string(to_string(r->status.kind));
+Cell why_none(const Record* r) {
+  if (!r) return Cell::lacking(Cell::State::not_run, "not run");
+  if (completed(r->status)) return Cell::lacking(Cell::State::none, "no value");
+  if (r->status.kind == Status::Kind::unsupported)
+    return Cell::lacking(Cell::State::refused, "cannot: " + r->status.reason);
+  return Cell::lacking(Cell::State::none, std::string(to_string(r->status.kind)));
 }
 
 bool is_depth(Role role) { return role == Role::vertex_depth || role == Role::face_depth; }
@@ -191,7 +199,7 @@ class Questions {
                 columns_of(solvers_, q.unit)};
     std::set<double> steps;
     for (const QuotedScene& quoted : compared_.scenes) {
-      std::vector<Cell> row{quoted.title};
+      std::vector<Cell> row{Cell(quoted.title).of_scene(quoted.question.scene)};
       for (std::size_t i = 0; i < solvers_.size(); ++i)
         row.push_back(value_cell(i < quoted.cases.size() ? quoted.cases[i] : nullptr, metric,
                                  spec.role == Role::error));
@@ -234,10 +242,11 @@ class Questions {
   /// Of an error of strain a note says whether the cloth moves at all.
   Cell value_cell(const Record* r, const std::string& metric, bool of_strain) {
     const double value = r && completed(r->status) ? value_of(*r, metric) : std::nan("");
-    Cell cell = std::isfinite(value) ? Cell(value) : Cell(why_none(r));
+    Cell cell = std::isfinite(value) ? Cell(value) : why_none(r);
     if (!r) return cell;
     cell.key = list_.key(*r);
     if (of_strain && std::isfinite(value)) cell.note = hardly_moves(*r);
+    if (!cell.note.empty()) cell.state = Cell::State::hardly_moves;
     if (compared_.common_work().empty())
       cell.note += (cell.note.empty() ? "" : "; ") + work_of(*r).text();
     return cell;
@@ -263,7 +272,7 @@ class Questions {
         continue;
       }
       if (common.rows.empty()) {
-        last.emplace_back("no scene that all have");
+        last.push_back(no_common_scene());
         continue;
       }
       double sum = 0;
@@ -313,7 +322,7 @@ class Questions {
       if (!has)
         last.push_back(why_empty(table, c));
       else if (steps.empty())
-        last.emplace_back("no scene that all have");
+        last.push_back(no_common_scene());
       else
         last.emplace_back(geometric_mean(steps).mid);
       if (has && steps.size() == 1) last.back() = table.rows[common.rows[0]][c];
@@ -341,11 +350,12 @@ class Questions {
     });
     const std::set<double> steps = steps_of(shared);
     if (steps.size() < kLeastSteps || *steps.rbegin() < kLeastRange * *steps.begin()) return;
-    std::vector<Cell> row{
-        Cell(compared_.title({scene.first, scene.second, 0})).with("at " + works_text(shared))};
+    std::vector<Cell> row{Cell(compared_.title({scene.first, scene.second, 0}))
+                              .with("at " + works_text(shared))
+                              .of_scene(scene.first)};
     for (std::size_t i = 0; i < solvers_.size(); ++i) {
       const bool ran = i < tried.size() && std::ranges::find(here, &tried[i]) != here.end();
-      row.push_back(ran ? largest_stable(tried[i], shared, steps) : Cell("not run"));
+      row.push_back(ran ? largest_stable(tried[i], shared, steps) : why_none(nullptr));
     }
     mark_best(row, Better::more, 0);
     table.rows.push_back(std::move(row));
@@ -365,7 +375,7 @@ class Questions {
 
   /// The largest step up to which (itself included) every case completed.
   Cell largest_stable(const Tried& own, const Tried& shared, const std::set<double>& steps) {
-    Cell cell(Cell("below " + quantity("dt").text(*steps.begin(), 3)));
+    Cell cell = Cell::lacking(Cell::State::none, "below " + quantity("dt").text(*steps.begin(), 3));
     for (const double dt : steps) {
       const Record* one = nullptr;
       for (const auto& [at, any] : shared) {
@@ -373,7 +383,7 @@ class Questions {
         one = own.at(at);
         if (completed(one->status)) continue;
         if (cell.key.empty()) cell.key = list_.key(*one);
-        return cell.with("then " + why_none(one));
+        return cell.with("then " + why_none(one).text());
       }
       cell = Cell(dt), cell.key = list_.key(*one);
     }
@@ -421,17 +431,19 @@ class Questions {
         scene->second[i].try_emplace({question_of(*r), work_of(*r)}, r);
       }
     std::vector<Count> all(solvers_.size());
+    int summed = 0;
     for (const std::string& scene : order) {
       const std::vector<Count> counts = shared_counts(scenes.at(scene));
       if (std::ranges::all_of(counts, [](const Count& one) { return one.cases == 0; })) continue;
-      table.rows.push_back(failure_row(scene, counts));
+      table.rows.push_back(failure_row(Cell(scene).of_scene(scene), counts));
       const bool whole = std::ranges::all_of(counts, [](const Count& c) { return c.cases > 0; });
       for (std::size_t i = 0; whole && i < all.size(); ++i) all[i].add(counts[i]);
-      if (!whole) table.rows.back()[0].note = "not in the sum: not all ran it";
+      if (whole)
+        ++summed;
+      else
+        table.rows.back()[0].note = "not in the sum: not all ran it";
     }
     if (table.rows.empty()) return;
-    const auto summed =
-        std::ranges::count_if(table.rows, [](const auto& row) { return row[0].note.empty(); });
     table.rows.push_back(failure_row(
         "sum of " + std::to_string(summed) + (summed == 1 ? " scene" : " scenes"), all));
     int cases = 0, failed = 0;
@@ -453,13 +465,13 @@ class Questions {
     return counts;
   }
 
-  std::vector<Cell> failure_row(const std::string& label, const std::vector<Count>& counts) {
-    std::vector<Cell> row{label};
+  std::vector<Cell> failure_row(Cell head, const std::vector<Count>& counts) {
+    std::vector<Cell> row{std::move(head)};
     for (const Count& count : counts) {
       const std::string kinds = join(count.kinds, ", ", [](const auto& kind) {
         return std::to_string(kind.second) + " " + kind.first;
       });
-      row.push_back(count.cases == 0 ? Cell("not run")
+      row.push_back(count.cases == 0 ? why_none(nullptr)
                                      : Cell(count.failed)
                                            .with("of " + std::to_string(count.cases) +
                                                  (kinds.empty() ? "" : ": " + kinds)));

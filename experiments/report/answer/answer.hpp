@@ -55,7 +55,7 @@ Interval geometric_mean(const std::vector<Interval>&);
 std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit&, int digits = 2);
 
 enum class Better { less, more, neither };
-/// A number that is compared with others of its row: none that hardly_moves() speaks of.
+/// A number that is compared with others of its row: none of cloth that hardly moves.
 bool is_compared(const Cell&);
 /// Marks the best number compared of the row if the second is worse by more than kTolerance;
 /// numbers below `nothing` count as that.
@@ -73,5 +73,7 @@ Common common_of(const Table&, double nothing);
 
 /// What a column without a number that is compared says: the same in all rows, else "no value".
 Cell why_empty(const Table&, std::size_t column);
+/// Of a column with values, but none on a scene that all others have.
+Cell no_common_scene();
 
 }  // namespace taut::report

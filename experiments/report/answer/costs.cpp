@@ -45,8 +45,7 @@ std::string link_orders(const std::vector<SceneBench>& scenes) {
 std::string only_still(const std::vector<Candidate>& candidates, const std::string& solver,
                        double error) {
   for (const Candidate& one : candidates)
-    if (one.solver == solver && one.error <= error && one.failure.starts_with(kHardlyMoves))
-      return one.failure;
+    if (one.solver == solver && one.error <= error && one.hardly_moves) return one.failure;
   return "";
 }
 
@@ -79,14 +78,22 @@ struct Timed {
     return std::ranges::find(candidates, solver, &Candidate::solver) != candidates.end();
   }
   bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
-  /// "at best 0.12 %": why no setting reaches an error.
-  std::string nearest(const std::string& solver) const {
+  /// These words of a solver no setting of which reaches the error, and why: "at best 0.12 %".
+  Cell not_reached(const std::string& words, const std::string& solver) const {
+    if (!has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
     if (const std::string still = only_still(candidates, solver, kPricedError); !still.empty())
-      return still;
+      return Cell::lacking(Cell::State::hardly_moves, words).with(still);
+    const Cell cell = Cell::lacking(Cell::State::none, words);
     const auto at = best({.budget = std::numeric_limits<double>::infinity()}, solver);
-    if (!at) return "no case completed";
-    return std::string("at best ") + quantity(kErrorMetric).text(candidates[*at].error) +
-           (bench.searched_to_the_end(solver) ? ", to the end of its accuracy parameters" : "");
+    if (!at) return cell.with("no case completed");
+    return cell.with(
+        "at best " + quantity(kErrorMetric).text(candidates[*at].error) +
+        (bench.searched_to_the_end(solver) ? ", to the end of its accuracy parameters" : ""));
+  }
+  /// The first cell of its row.
+  Cell head() const {
+    return Cell(bench.scene)
+        .of_scene(bench.cases.empty() ? bench.scene : bench.cases.front().record.scene);
   }
 };
 
@@ -153,11 +160,13 @@ class Costs {
                     quantity("cpu.per_second").text(budget / kFrame) + " per simulated second), " +
                     kWithoutExtras + orders()};
     for (const Timed& scene : shared_) {
-      std::vector<Cell> row{scene.bench.scene};
+      std::vector<Cell> row{scene.head()};
       for (const Column& solver : solvers_) {
         const auto at = scene.best({.budget = budget / kFrame}, solver.name);
         row.push_back(at ? cell_of(scene, *at, Cell(scene.candidates[*at].error))
-                         : Cell(scene.has(solver.name) ? "nothing that cheap" : "not timed"));
+                      : scene.has(solver.name)
+                          ? Cell::lacking(Cell::State::none, "nothing that cheap")
+                          : Cell::lacking(Cell::State::not_run, "not timed"));
       }
       mark_best(row, Better::less, nothing);
       table.rows.push_back(std::move(row));
@@ -170,7 +179,7 @@ class Costs {
         logs += std::log(std::max(table.rows[r][c].number(), nothing));
       const bool has = std::ranges::find(common.columns, c) != common.columns.end();
       last.push_back(!has                  ? why_empty(table, c)
-                     : common.rows.empty() ? Cell("no scene that all have")
+                     : common.rows.empty() ? no_common_scene()
                      : common.rows.size() == 1
                          ? table.rows[common.rows[0]][c]
                          : Cell(std::exp(logs / static_cast<double>(common.rows.size()))));
@@ -207,14 +216,13 @@ class Costs {
     std::vector<std::vector<std::vector<Interval>>> ratios;
     std::vector<std::vector<bool>> bounds;
     for (const Timed& scene : shared_) {
-      std::vector<Cell> row{scene.bench.scene};
+      std::vector<Cell> row{scene.head()};
       Chosen own;
       for (const Column& solver : solvers_) {
         own.push_back(scene.best({.error = kPricedError}, solver.name));
-        row.push_back(
-            own.back() ? cell_of(scene, *own.back(), Cell(scene.candidates[*own.back()].cost))
-            : scene.has(solver.name) ? Cell("not reached").with(scene.nearest(solver.name))
-                                     : Cell("not timed"));
+        row.push_back(own.back()
+                          ? cell_of(scene, *own.back(), Cell(scene.candidates[*own.back()].cost))
+                          : scene.not_reached("not reached", solver.name));
         if (own.back() && scene.bounds(*own.back())) row.back().note += kUpperBound;
       }
       mark_cheapest(row, ratios.emplace_back(ratios_of(scene, own)),
@@ -260,7 +268,7 @@ class Costs {
         costs.push_back(std::get<Interval>(table.rows[r][i + 1].value));
         bounded[i] = bounded[i] || bounds[r][i];
       }
-      last.push_back(costs.empty()       ? Cell("no scene that all have")
+      last.push_back(costs.empty()       ? no_common_scene()
                      : costs.size() == 1 ? table.rows[common.rows[0]][i + 1]
                                          : Cell(geometric_mean(costs)));
       last.back().best = false;
@@ -292,15 +300,14 @@ class Costs {
                     ", accelerators that only one solver has included, and its CPU time per "
                     "simulated second; of all scenes: on most of them, then least geometric mean"};
     for (const Timed& scene : all_) {
-      std::vector<Cell> row{scene.bench.scene};
+      std::vector<Cell> row{scene.head()};
       Chosen chosen;
       for (const Column& solver : solvers_) {
         chosen.push_back(scene.best({.error = kPricedError}, solver.name));
-        row.push_back(chosen.back()            ? setting_cell(scene, *chosen.back(),
-                                                              scene.candidates[*chosen.back()].cost.mid,
-                                                              scene.bounds(*chosen.back()), "")
-                      : scene.has(solver.name) ? Cell("none").with(scene.nearest(solver.name))
-                                               : Cell("not timed"));
+        row.push_back(chosen.back() ? setting_cell(scene, *chosen.back(),
+                                                   scene.candidates[*chosen.back()].cost.mid,
+                                                   scene.bounds(*chosen.back()), "")
+                                    : scene.not_reached("none", solver.name));
       }
       mark_cheapest(row, ratios_of(scene, chosen), bounds_of(scene, chosen), scene.bench.control);
       table.rows.push_back(std::move(row));

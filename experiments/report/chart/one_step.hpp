@@ -6,11 +6,21 @@
 
 #include "experiments/answer/answer.hpp"
 #include "experiments/report/chart/charts.hpp"
+#include "experiments/timing/convergence.hpp"
 
 namespace taut::report {
 
-/// What `taut converge` found, with a record for each of its points, so that they are drawn as
-/// cases are: kSweeps, and the values that step_kinds() names.
+/// From what the solvers were asked for a step.
+struct StepState {
+  std::string scene, settings;  ///< its name, and what is set of it: "cloth.span=0.7"
+  std::string from;             ///< solver whose run gave the state
+  double at = 0, dt = 0;        ///< s, time of the state and the step
+};
+/// What `taut converge` found of these.
+Answer one_step_answer(const StepState&, const std::vector<Convergence>&);
+
+/// What `taut converge` found, read back from its answer with a record for each of its points, so
+/// that they are drawn as cases are: kSweeps, and the values that step_kinds() names.
 struct OneStep {
   Answer found;
   std::vector<Record> records;
@@ -21,9 +31,6 @@ struct OneStep {
   /// Title of one of its solvers, with its parameters where several have that title.
   std::string label(const std::string& solver) const;
 };
-
-/// An answer's subject is this and its scene.
-inline constexpr std::string_view kOneStep = "one step of ";
 
 /// What can be drawn over the iterations of a step: "distance", "gap", "stretch", "residual".
 std::vector<std::string> step_kinds();

@@ -61,9 +61,11 @@ Table levels_table(const CostScene& scene) {
     for (const SolverRecommendation& r :
          recommend(scene.bench, {.error = level}, kErrorMetric).solvers) {
       if (!r.at) {
-        row.emplace_back(scene.bench.searched_to_the_end(r.solver) ? "never reached"
-                                                                   : "not reached");
-        row.back().note = only_still(scene.candidates, r.solver, level);
+        const std::string still = only_still(scene.candidates, r.solver, level);
+        const bool to_the_end = scene.bench.searched_to_the_end(r.solver);
+        row.push_back(Cell::lacking(still.empty() ? Cell::State::none : Cell::State::hardly_moves,
+                                    to_the_end ? "never reached" : "not reached")
+                          .with(still));
         continue;
       }
       if (r.times && r.times->mid > 1)

@@ -38,7 +38,7 @@ std::vector<Cell> row_of(const OneStep& step, const std::vector<Cell>& own) {
   const auto below = [&](double gap) {
     const auto* row = first_of(
         reached, solver, [&](const auto& one) { return reached.at(one, "below").number() == gap; });
-    return row ? reached.at(*row, "iterations") : Cell("not reached");
+    return row ? reached.at(*row, "iterations") : Cell::lacking(Cell::State::none, "not reached");
   };
   const double k = solvers.at(own, "structural").number();
   return {step.scene(),

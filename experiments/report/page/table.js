@@ -2,7 +2,7 @@
 // Tables, of whichever answer: a cell is a number with its unit, a text or an interval; it may be the best of its row, have
 // a bar, and lead to its case. The answer on the first screen is such tables, a row each, which unfold to their scenes.
 
-/** Tables by name; their cells are {value, note, key, best}. */
+/** Tables by name; their cells are {value, state, note, key, scene, best}. */
 function unpacked(tables) {
   for (const table of Object.values(tables ?? {})) {
     table.rows = table.rows.map((cells) => cells.map((value) => ({value})));
@@ -46,14 +46,18 @@ function spreadOf([low, mid, high], column) {
   return el('small', {title: interval(low, high, unitOf(column))}, ` ±${number(100 * Math.max(high - mid, mid - low) / mid, 1)}\u00A0%`);
 }
 
+/** Words in place of a value: "not run", "exploded"; a number of cloth that stands still is there, and is not compared. */
+const lacks = ({state, value}) => Boolean(state) && state !== 'value' && !Number.isFinite(middle(value));
+
 /** `most`: the number of a full bar; without it there is no bar. `brief`: of a note what stands before its colon. */
 function cellContent(cell, column, most, brief) {
   const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value), note = cell.note ?? '';
+  const noted = cell.state === 'hardly_moves' ? 'hardly moves' : brief ? note.split(':')[0] : note;
   const spread = Array.isArray(cell.value) && spreadOf(cell.value, column);
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
-  const failed = entry && entry.status !== 'ok' && !/^\d/.test(text) && glyphBox(entry.status);
+  const failed = entry && entry.status !== 'ok' && lacks(cell) && glyphBox(entry.status);
   return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
-    spread, note && el('small', {title: note}, ' ', short(brief || note.startsWith('hardly moves') ? note.split(':')[0] : note, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
+    spread, note && el('small', {title: note}, ' ', short(noted, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
     most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
       el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
 }
@@ -64,8 +68,7 @@ function tableRow(table, cells, props, head, bars, brief) {
   return el('tr', props, el('th', {scope: 'row'}, head ?? cellContent(cells[0], table.columns[0])),
     cells.slice(1).map((cell, i) => {
       const column = table.columns[i + 1], solver = solvers.get(column.name);
-      const text = typeof cell.value === 'string';
-      return el('td', {'data-s': solver?.order, className: solver && text ? 'none' : ''}, cellContent(cell, column, most, brief));
+      return el('td', {'data-s': solver?.order, className: solver && lacks(cell) ? 'none' : ''}, cellContent(cell, column, most, brief));
     }));
 }
 const tableHeads = (table, first) => el('tr', {}, table.columns.map((column, i) => el('th', {scope: 'col',
@@ -92,15 +95,15 @@ function unfolded() {
   return state.get('open') || innerWidth < 1000 ? chosen : [...questions.keys()].slice(0, 1);
 }
 
-/** A scene of the answer by the label of its row: "hang (cloth.grid=[24, 24])" is of hang. */
-const sceneOf = ([{value}]) => String(value).split(' (')[0];
+/** The scene that a row is of; "": of all together. */
+const sceneOf = ([{scene}]) => scene ?? '';
 const scenesOf = (table) => table.rows.length > 2 ? table.rows.slice(0, -1) : [];
 
 /** Rows of one question: what all scenes say together, or the scene that was chosen; then each of them, unfolded by a click. */
 function questionRows(table) {
   const last = table.rows[table.rows.length - 1], id = `answer-${table.name}`;
-  const sceneCell = ([{value, note: why}, ...rest]) => [scenes.has(sceneOf([{value}])) ?
-    choice({scene: sceneOf([{value}]), at: 'scenes'}, {}, value) : value, why && el('small', {}, ' ', why)];
+  const sceneCell = ([{value, scene, note: why}]) => [scenes.has(scene) ? choice({scene, at: 'scenes'}, {}, value) : value,
+    why && el('small', {}, ' ', why)];
   const folds = [
     el('tr', {className: 'fold'}, el('td', {colSpan: table.columns.length},
       el('small', {}, table.caption, ' '), copyButton(() => tableCsv(table)))),
@@ -113,13 +116,14 @@ function questionRows(table) {
   let head = null, shown = null;
   state.watch(() => {
     const open = unfolded().includes(table.name), scene = chosenScene();
-    const cells = !scene ? last : table.rows.find((row) => sceneOf(row) === scene) ?? [{value: `not on ${scene}`}, ...last.slice(1).map(() => ({value: null}))];
+    const cells = !scene ? last : table.rows.find((row) => sceneOf(row) === scene) ??
+      [{value: `not on ${scene}`}, ...last.slice(1).map(() => ({value: null}))];
     button.setAttribute('aria-expanded', open);
     for (const fold of folds) fold.classList.toggle('folded', !open);
     if (cells === shown) return;
     head?.remove();
     head = tableRow(table, shown = cells, {className: 'question'},
-                    [button, el('small', {title: cells[0].note ?? ''}, cells[0].value, cells[0].note?.startsWith('at ') && ` ${cells[0].note}`)], true, true);
+                    [button, el('small', {title: cells[0].note ?? ''}, cells[0].value, cells[0].scene && cells[0].note && ` ${cells[0].note}`)], true, true);
     body.prepend(head);
   });
   return body;

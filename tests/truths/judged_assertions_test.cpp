@@ -1,11 +1,11 @@
 // Verdicts of assertions from the findings of truths.
-#include "experiments/baseline/assertions_baseline.hpp"
-
 #include <gtest/gtest.h>
 
 #include <map>
 
-namespace taut::assertions_baseline_test {
+#include "experiments/truths/assertions/judged.hpp"
+
+namespace taut::judged_assertions_test {
 namespace {
 
 /// With one passed finding of what each assertion quotes, and one more of that truth.
@@ -42,4 +42,4 @@ TEST(AssertionsBaseline, ABrokenTruthOverturnsItsAssertionAlone) {
 }
 
 }  // namespace
-}  // namespace taut::assertions_baseline_test
+}  // namespace taut::judged_assertions_test

@@ -1,4 +1,4 @@
-#include "experiments/baseline/assertions_baseline.hpp"
+#include "experiments/truths/assertions/judged.hpp"
 
 #include "core/model/solver.hpp"
 #include "experiments/system/text.hpp"

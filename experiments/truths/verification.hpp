@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/answer/answer.hpp"
+#include "experiments/truths/assertions/judged.hpp"
+#include "experiments/truths/truth.hpp"
+
+namespace taut {
+
+/// A truth with what it found.
+struct CheckedTruth {
+  std::string name, place;  ///< "hanging-chain-sweeps", "4.2"
+  std::string section_title, statement, source;
+  int section = 0;
+  double seconds = 0;
+  std::vector<Finding> findings;
+
+  CheckedTruth() = default;
+  CheckedTruth(const TruthEntry&, std::vector<Finding>, double seconds);
+};
+
+/// What `taut verify` finds. It is written to an answer and read back from one, which may come from
+/// another process or from a results file.
+struct Verification {
+  std::vector<CheckedTruth> truths;
+  std::vector<JudgedAssertion> assertions;
+};
+/// `assertions_first`: people see these, not the truths.
+Answer answer_of(const Verification&, bool assertions_first = false);
+/// Throws InputError: it is no such answer.
+Verification verification_in(const Answer&);
+
+/// "4.2"
+std::string place_of(const TruthEntry&);
+/// How far a finding is on the way to its tolerance; 1: at it.
+double share_of_tolerance(const Finding&);
+
+}  // namespace taut
