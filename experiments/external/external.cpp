@@ -332,6 +332,11 @@ Registered read_registered(const fs::path& file) {
 
 fs::path file_of(const std::string& name) { return registered_folder() / (name + ".toml"); }
 
+bool is_registered(const std::string& name) {
+  std::error_code unreadable;  // the folder of another user: none
+  return fs::is_regular_file(file_of(name), unreadable);
+}
+
 std::vector<std::string> registered_names() {
   std::vector<std::string> names;
   std::error_code none;
@@ -377,7 +382,7 @@ const SolverEntry* program(const std::string& name, std::string_view params,
 /// nothing.
 std::set<std::string> named_by(const std::string& name, std::string_view params) {
   if (!is_solver_name(name)) return {};
-  if (fs::is_regular_file(file_of(name))) return {"solver " + name};
+  if (is_registered(name)) return {"solver " + name};
   std::set<std::string> files;
   for (const ParamItem& item : param_items(params)) {
     if (item.key == "cmd") return {"cmd " + item.value};
@@ -456,8 +461,7 @@ const SolverEntry* find(std::string_view name, std::string_view params) {
   if (!is_solver_name(name)) return nullptr;
   const std::set<std::string> named = named_by(called, params);
   if (!admitted().has(named)) return unstarted(called, params);
-  if (fs::is_regular_file(file_of(called)))
-    return program(called, params, read_registered(file_of(called)), {});
+  if (is_registered(called)) return program(called, params, read_registered(file_of(called)), {});
   const std::vector<ParamItem> items = param_items(params);
   const auto has = [&](std::string_view key) {
     return std::ranges::find(items, key, &ParamItem::key) != items.end();
@@ -490,8 +494,7 @@ fs::path registered_folder() {
 
 Command command_of(const std::string& text) {
   if (!text.starts_with("external:")) {
-    const bool name =
-        text.find_first_of(" /'\"") == text.npos && fs::is_regular_file(file_of(text));
+    const bool name = text.find_first_of(" /'\"") == text.npos && is_registered(text);
     return name ? read_registered(file_of(text)).command : split_command(text, "");
   }
   std::string ours;  // the parameters that are not the program's

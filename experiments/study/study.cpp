@@ -24,6 +24,12 @@ std::string in_quotes(const std::string& text) {
   return quoted + '"';
 }
 
+std::string key_text(const std::string& key) {
+  constexpr std::string_view kBare =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  return !key.empty() && key.find_first_not_of(kBare) == key.npos ? key : in_quotes(key);
+}
+
 /// Whether text_of() can say the value: no date, and a table as TOML only.
 bool has_text(const Value& value, bool toml) {
   if (value.kind == Value::Kind::date || (value.is_table() && !toml)) return false;
@@ -44,7 +50,7 @@ std::string text_of(const Value& value, bool toml) {
     case Value::Kind::table: {
       std::vector<std::string> items;
       for (std::size_t i = 0; i < value.items.size(); ++i)
-        items.push_back(in_quotes(value.keys[i].text) + " = " + text_of_item(value.items[i]));
+        items.push_back(key_text(value.keys[i].text) + " = " + text_of_item(value.items[i]));
       return "{ " + join(items, ", ") + " }";
     }
     case Value::Kind::integer:  // 100000 and not 1e+05

@@ -64,9 +64,9 @@ int run(const Options& options) try {
   if (!options.into.empty()) return run_into(one, options.into, options.frames);
 
   tell_remarks(one.remarks);
-  if (!options.trajectory.empty()) check_positions_name(options.trajectory);
   for (const std::string& file : {options.final_state, options.series, options.trajectory})
     if (!file.empty()) test_writable(file);
+  if (!options.trajectory.empty()) check_positions_name(options.trajectory);
   std::unique_ptr<PositionWriter> motion;  // from the first state on: there may be none
   SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(
