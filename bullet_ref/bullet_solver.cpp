@@ -123,6 +123,11 @@ BulletSolver::BulletSolver(const Scene& scene, const Params& params, btDiscreteD
 
 void BulletSolver::step(double t, double dt) {
   const double h = dt / substeps_;
+  if (!colliders_.empty()) {
+    btVector3 least, most;
+    body_->getAabb(least, most);
+    colliders_.follow(t, from_bullet((least + most) / 2));
+  }
   for (int s = 0; s < substeps_; ++s) {
     substep(t + s * h, t + (s + 1) * h);
     if (s + 1 < substeps_) substep_ended(t + (s + 1) * h);
@@ -209,6 +214,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
     reasons.emplace_back("stepSimulation ignores a substep this short");
   if (scene.bending)
     reasons.emplace_back("bending: Bullet's cloth has links alone, and no bending stiffness");
+  for (const std::string& reason : too_wide_for_planes(scene)) reasons.push_back(reason);
   return reasons;
 }
 

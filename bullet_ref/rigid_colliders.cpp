@@ -6,6 +6,7 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bullet_ref/bullet_solver.hpp"
@@ -27,9 +28,25 @@ btTransform transform_of(const Eigen::Quaterniond& rotation, const Vec3& origin)
   return btTransform(basis, to_bullet(origin));
 }
 
-/// Half extents of a plane's slab [m]: wide enough for every scene, and so thick that no cloth gets
-/// to its far side; its solid side is -y. Larger slabs gain nothing and cost GJK digits in float.
+/// Half extents of a plane's slab [m], whose solid side is -y. It follows a cloth that leaves its
+/// middle, and is so thick that no cloth gets to its far side within a time step: larger slabs gain
+/// nothing and cost GJK digits in float.
 constexpr double kSlabWidth = 50, kSlabDepth = 5;
+/// How far the cloth's middle may be from the slab's, along it [m].
+constexpr double kSlabFollows = 20;
+
+/// At least the way of a vertex against a plane in a time step [m]: after a free fall of the whole
+/// duration.
+double longest_way(const Scene& scene) {
+  double fastest = 0;
+  for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());
+  double plane = 0;
+  for (const Collider& c : scene.colliders)
+    if (std::holds_alternative<Plane>(c.shape)) plane = std::max(plane, c.motion.velocity.norm());
+  return (fastest + plane + scene.gravity.norm() * scene.dt * scene.steps) * scene.dt;
+}
+
+double slab_depth(const Scene& scene) { return std::max(kSlabDepth, 1.5 * longest_way(scene)); }
 
 /// The shortest rotation of y onto a unit vector; half a turn about x onto -y.
 Eigen::Quaterniond tilt(const Vec3& normal) {
@@ -38,13 +55,13 @@ Eigen::Quaterniond tilt(const Vec3& normal) {
   return {s / 2, normal.z() / s, 0, -normal.x() / s};
 }
 
-RigidPose slab_pose(const Plane& plane, const Vec3& above) {
+RigidPose slab_pose(const Plane& plane, const Vec3& above, double depth) {
   const Vec3 top = above - (plane.normal.dot(above) - plane.offset) * plane.normal;
-  return {tilt(plane.normal), top - kSlabDepth * plane.normal};
+  return {tilt(plane.normal), top - depth * plane.normal};
 }
 
-RigidPose pose_at_start(const Shape& shape, const Vec3& above) {
-  if (const auto* plane = std::get_if<Plane>(&shape)) return slab_pose(*plane, above);
+RigidPose pose_at_start(const Shape& shape, const Vec3& above, double depth) {
+  if (const auto* plane = std::get_if<Plane>(&shape)) return slab_pose(*plane, above, depth);
   if (const auto* ball = std::get_if<Ball>(&shape))
     return {Eigen::Quaterniond::Identity(), ball->center};
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
@@ -55,7 +72,7 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above) {
   return {box.rotation, box.center};
 }
 
-std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
+std::unique_ptr<btCollisionShape> make_shape(const Shape& shape, double slab) {
   if (const auto* ball = std::get_if<Ball>(&shape))
     return std::make_unique<btSphereShape>(static_cast<btScalar>(ball->radius));
   if (const auto* capsule = std::get_if<Capsule>(&shape))
@@ -63,7 +80,7 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
         static_cast<btScalar>(capsule->radius),
         static_cast<btScalar>((capsule->to - capsule->from).norm()));
   const auto* box = std::get_if<Box>(&shape);
-  const Vec3 half = box ? box->half_extents : Vec3(kSlabWidth, kSlabDepth, kSlabWidth);
+  const Vec3 half = box ? box->half_extents : Vec3(kSlabWidth, slab, kSlabWidth);
   auto made = std::make_unique<btBoxShape>(to_bullet(half));
   made->setMargin(0);  // the default rounds a box by 0.04 m
   return made;
@@ -77,12 +94,22 @@ Vec3 middle(const std::vector<Vec3>& points) {
 
 }  // namespace
 
+std::vector<std::string> too_wide_for_planes(const Scene& scene) {
+  const bool has_plane = std::ranges::any_of(
+      scene.colliders, [](const Collider& c) { return std::holds_alternative<Plane>(c.shape); });
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : scene.start.x) box.extend(p);
+  if (!has_plane || box.sizes().norm() / 2 <= kSlabWidth - kSlabFollows) return {};
+  return {"a slab of 100 m stands in for the plane, too small for a cloth of " +
+          std::to_string(std::lround(box.sizes().norm())) + " m"};
+}
+
 struct RigidColliders::Body {
-  Body(const Collider& collider, const Vec3& above)
-      : start(pose_at_start(collider.shape, above)),
+  Body(const Collider& collider, const Vec3& above, double slab)
+      : start(pose_at_start(collider.shape, above, slab)),
         motion(collider.motion),
         is_plane(std::holds_alternative<Plane>(collider.shape)),
-        shape(make_shape(collider.shape)),
+        shape(make_shape(collider.shape, slab)),
         rigid(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape.get())) {
     rigid.setFriction(static_cast<btScalar>(collider.friction));
     rigid.setRestitution(0);
@@ -98,6 +125,19 @@ struct RigidColliders::Body {
     return transform_of(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
   }
 
+  /// Shifts a slab along itself to below the cloth's middle at time t [s] if that has got far away.
+  void follow(double t, const Vec3& cloth) {
+    if (!is_plane) return;
+    const Eigen::Quaterniond turned = motion.rotation(t);
+    const Vec3 normal = turned * start.rotation * Vec3::UnitY();
+    Vec3 way = cloth - motion.moved(start.origin, t);
+    way -= normal.dot(way) * normal;
+    if (!(way.norm() > kSlabFollows)) return;  // or no number
+    start.origin += turned.conjugate() * way;
+    rigid.setWorldTransform(at(t));
+    rigid.setInterpolationWorldTransform(at(t));
+  }
+
   RigidPose start;
   Motion motion;
   bool is_plane;
@@ -107,13 +147,17 @@ struct RigidColliders::Body {
 
 RigidColliders::RigidColliders(const Scene& scene, btDiscreteDynamicsWorld& world) : world_(world) {
   for (const Collider& collider : scene.colliders) {
-    bodies_.push_back(std::make_unique<Body>(collider, middle(scene.start.x)));
+    bodies_.push_back(std::make_unique<Body>(collider, middle(scene.start.x), slab_depth(scene)));
     world_.addRigidBody(&bodies_.back()->rigid);
   }
 }
 
 RigidColliders::~RigidColliders() {
   for (const auto& body : bodies_) world_.removeRigidBody(&body->rigid);
+}
+
+void RigidColliders::follow(double t, const Vec3& cloth) {
+  for (const auto& body : bodies_) body->follow(t, cloth);
 }
 
 void RigidColliders::move(double from, double to) {

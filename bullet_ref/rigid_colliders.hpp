@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/model/scene.hpp"
@@ -11,6 +12,9 @@ class btRigidBody;
 
 namespace taut {
 
+/// Why the slabs cannot stand in for the scene's planes; empty: they can.
+std::vector<std::string> too_wide_for_planes(const Scene&);
+
 /// A scene's colliders as Bullet's rigid bodies, in the scene's order: a ball as btSphereShape, a
 /// capsule as btCapsuleShape (along its own y), a box as btBoxShape, a plane as the top of a
 /// btBoxShape slab (btStaticPlaneShape tunnels and lets the cloth rest 0.10 m too high). Boxes have
@@ -18,11 +22,14 @@ namespace taut {
 class RigidColliders {
  public:
   /// Adds the bodies to the world, which must outlive this object. Slabs are centred below the
-  /// middle of the scene's start.
+  /// middle of the scene's start, 100 m wide.
   RigidColliders(const Scene&, btDiscreteDynamicsWorld&);
   ~RigidColliders();
   RigidColliders(const RigidColliders&) = delete;
   RigidColliders& operator=(const RigidColliders&) = delete;
+
+  /// Keeps slabs below the middle of the cloth [m], which is there at time t [s].
+  void follow(double t, const Vec3& cloth);
 
   /// Places the moving bodies where they are at time to [s]; Bullet takes their velocity from where
   /// they were at time from.

@@ -276,16 +276,55 @@ bool pinned(const Scene& scene, std::size_t i) {
   return std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i));
 }
 
-/// Moves the free vertices out, collider after collider.
-void resolve(Scene& scene) {
-  for (const Collider& collider : scene.colliders) {
-    const Shape shape = shape_at(collider, 0);
-    for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
-      const Surface s = surface(shape, scene.start.x[i]);
-      if (s.distance < scene.thickness && !pinned(scene, i))
-        scene.start.x[i] += (scene.thickness - s.distance) * s.normal;
+/// Where a point leaves a shape, `thickness` [m] above its surface: the nearest place first and,
+/// of a box, the five other sides.
+std::vector<Vec3> ways_out(const Shape& shape, const Vec3& p, double thickness) {
+  const Surface s = surface(shape, p);
+  std::vector<Vec3> out{p + (thickness - s.distance) * s.normal};
+  const Box* box = std::get_if<Box>(&shape);
+  if (!box || s.distance > 0) return out;
+  const Vec3 local = box->rotation.conjugate() * (p - box->center);
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 at = local;
+      at[axis] = side * (box->half_extents[axis] + thickness);
+      out.push_back(box->center + box->rotation * at);
     }
+  std::ranges::stable_sort(out, {}, [&](const Vec3& q) { return (q - p).squaredNorm(); });
+  return out;
+}
+
+/// Where a vertex is out of all shapes: rounds until nothing moves it. Out of each by the nearest
+/// way that leads into no other one, if there is such a way.
+Vec3 resolved(const std::vector<Shape>& shapes, Vec3 x, double thickness) {
+  double rounding = 0;  // m
+  const auto inside = [&](const Shape& shape, const Vec3& p) {
+    return surface(shape, p).distance < thickness - rounding;
+  };
+  constexpr int kRounds = 1000;  // a wedge takes as many as it is narrow
+  for (int round = 0; round < kRounds; ++round) {
+    bool moved = false;
+    for (const Shape& shape : shapes) {
+      if (!inside(shape, x)) continue;
+      const std::vector<Vec3> ways = ways_out(shape, x, thickness);
+      const auto free = std::ranges::find_if(ways, [&](const Vec3& p) {
+        return std::ranges::none_of(shapes, [&](const Shape& s) { return inside(s, p); });
+      });
+      x = free != ways.end() ? *free : ways.front();
+      moved = true;
+    }
+    if (!moved) break;
+    rounding = 1e-12 * (1 + x.norm());
   }
+  return x;
+}
+
+/// Moves the free vertices out of all colliders.
+void resolve(Scene& scene) {
+  std::vector<Shape> shapes;
+  for (const Collider& collider : scene.colliders) shapes.push_back(shape_at(collider, 0));
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i)
+    if (!pinned(scene, i)) scene.start.x[i] = resolved(shapes, scene.start.x[i], scene.thickness);
 }
 
 /// A pinned vertex may be inside: that is how a cloth is fixed to an obstacle.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/model/collider.hpp"
 #include "core/model/index.hpp"
 #include "core/model/wind.hpp"
 
@@ -26,6 +27,7 @@ constexpr double kLocked = 1e-7;     ///< m, of a violation
 constexpr double kRounding = 1e-14;  ///< m, of all lengths together
 constexpr double kFlat = 1e-13;      ///< of lengths: what is in a plane, or on a line
 constexpr double kNothing = 1e-12;   ///< a weight beside those of order 1
+constexpr double kTouching = 1e-13;  ///< m, of gaps and slips that contact leaves
 
 using Weights = std::map<std::size_t, double>;
 
@@ -58,7 +60,7 @@ std::vector<double> in_a_plane(double ab, double ac, double ad, double bc, doubl
 }  // namespace
 
 ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, const Stiffness& k)
-    : inertia_(scene.mesh.mass), mass_(scene.mesh.mass), y_(from.x) {
+    : thickness_(scene.thickness), inertia_(scene.mesh.mass), mass_(scene.mesh.mass), y_(from.x) {
   const double h = scene.dt, keep = std::exp(-scene.damping * h);
   for (double& m : inertia_) m /= h * h;
   for (const int pin : scene.pins) inertia_[to_index(pin)] = 0;
@@ -82,6 +84,14 @@ ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, cons
       y_[i] += h * keep * from.v[i] + h * h * acceleration[i];
     else
       y_[i] = pin_position(scene, static_cast<int>(i), t + h);
+  for (const Collider& c : scene.colliders) {
+    const Motion& m = c.motion;
+    const Eigen::Quaterniond turn = m.rotation(t + h) * m.rotation(t).conjugate();
+    Obstacle& obstacle = colliders_.emplace_back(Obstacle{shape_at(c, t + h), c.friction, {}});
+    for (const Vec3& x : from.x)
+      obstacle.from.push_back(m.pivot + m.displacement(t + h) +
+                              turn * (x - m.pivot - m.displacement(t)));
+  }
   if (rigid_) find_implied(scene, k);
 }
 
@@ -142,9 +152,19 @@ struct ImplicitStep::Multiplied {
   Matrix basis = {};  ///< of the vertices in those that have no relation; empty: unity
   Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< its pattern is that of the links, x by x
   bool analysed = false;
+  /// Of vertex i at collider k, [i][k]: the forces that shift its part of the energy [N].
+  struct Touch {
+    double push = 0, bound = 0;
+    Vec3 rub = Vec3::Zero();
+  };
+  std::vector<Touch> touches = {};
+  double hardness = 0;  ///< N/m, of contact
 
   Multiplied(const ImplicitStep& s, double rigid) : step(s), multiplier(s.links_.size(), 0) {
     harden(rigid);
+    touches.resize(s.inertia_.size() * s.colliders_.size());
+    for (const double m : s.inertia_) hardness = std::max(hardness, kHardness * m);
+    for (const double k : stiffness) hardness = std::max(hardness, 10 * k);
     for (const double m : s.inertia_) column.push_back(m > 0 ? std::exchange(size, size + 3) : -1);
     if (step.of_others_.empty()) return;
     std::vector<Eigen::Index> own(column.size(), -1);
@@ -190,6 +210,72 @@ struct ImplicitStep::Multiplied {
       const double c = stretch(x, j);
       sum += (multiplier[j] + stiffness[j] / 2 * c) * c;
     }
+    each_held(x, [&](std::size_t, std::size_t, const Held& now) { sum += now.energy; });
+    return sum;
+  }
+  /// What a collider does to a vertex: the energy of (push - k gap)+ and of rub - k slip, which is
+  /// no longer than the bound, its force and its Hessian.
+  struct Held {
+    double energy = 0;
+    Vec3 force = Vec3::Zero();
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+    double push = 0;
+    Vec3 rub = Vec3::Zero();
+    double gap = 0, slip = 0;  ///< m; the slip that friction has to take back
+  };
+  Held held(std::size_t i, std::size_t k, const Vec3& x) const {
+    const Obstacle& obstacle = step.colliders_[k];
+    const Touch& touch = touches[i * step.colliders_.size() + k];
+    const Surface at = surface(obstacle.shape, x);
+    Held out;
+    out.gap = at.distance - step.thickness_;
+    out.push = touch.push - hardness * out.gap;
+    if (out.push <= 0) return {.gap = out.gap};
+    const Eigen::Matrix3d along = at.normal * at.normal.transpose(),
+                          across = Eigen::Matrix3d::Identity() - along;
+    out.energy = out.push * out.push / (2 * hardness);
+    out.force = out.push * at.normal;
+    out.hessian = hardness * along;
+    const Vec3 slip = across * (x - obstacle.from[i]);
+    out.rub = across * touch.rub - hardness * slip;
+    const double length = out.rub.norm();
+    if (touch.bound == 0) {
+      out.rub.setZero();
+    } else if (length <= touch.bound) {
+      out.slip = slip.norm();
+      out.energy += length * length / (2 * hardness);
+      out.hessian += hardness * across;
+    } else {
+      const Vec3 u = out.rub / length;
+      out.energy += touch.bound / hardness * (length - touch.bound / 2);
+      out.hessian += hardness * touch.bound / length * (across - u * u.transpose());
+      out.rub = touch.bound * u;
+    }
+    out.force += out.rub;
+    return out;
+  }
+  /// visit(i, k, what collider k does to vertex i).
+  template <class Visit>
+  void each_held(const Points& x, const Visit& visit) const {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (std::size_t k = 0; column[i] >= 0 && k < step.colliders_.size(); ++k)
+        visit(i, k, held(i, k, x[i]));
+  }
+  /// The forces become what acts at x; how far that is from contact's conditions [m].
+  double update_contact(const Points& x) {
+    double left = 0;
+    each_held(x, [&](std::size_t i, std::size_t k, const Held& now) {
+      Touch& touch = touches[i * step.colliders_.size() + k];
+      const double bound = step.colliders_[k].friction * now.push;
+      if (now.push > 0) left = std::max({left, std::abs(now.gap), now.slip});
+      left = std::max(left, std::abs(bound - touch.bound) / hardness);
+      touch = {now.push, bound, now.rub};
+    });
+    return left;
+  }
+  Vec3 contact_force(const Points& x) const {
+    Vec3 sum = Vec3::Zero();
+    each_held(x, [&](std::size_t, std::size_t, const Held& now) { sum += now.force; });
     return sum;
   }
   Vector gradient(const Points& x) const {
@@ -202,6 +288,9 @@ struct ImplicitStep::Multiplied {
       if (column[a] >= 0) g.segment<3>(column[a]) -= pull;
       if (column[b] >= 0) g.segment<3>(column[b]) += pull;
     }
+    each_held(x, [&](std::size_t i, std::size_t, const Held& now) {
+      g.segment<3>(column[i]) -= now.force;
+    });
     return reduced() ? Vector(basis.transpose() * g) : g;
   }
   Matrix hessian(const Points& x, bool clamped) const {
@@ -228,6 +317,9 @@ struct ImplicitStep::Multiplied {
       if (column[a] >= 0 && column[b] >= 0)
         add(std::max(column[a], column[b]), std::min(column[a], column[b]), -part);
     }
+    each_held(x, [&](std::size_t i, std::size_t, const Held& now) {
+      if (now.push > 0) add(column[i], column[i], now.hessian);
+    });
     Matrix h(size, size);
     h.setFromTriplets(entries.begin(), entries.end());
     return h;
@@ -306,11 +398,14 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   x = problem.related(std::move(x));
   Minimum found;
   double before = 1e300;
-  const int rounds = rigid_ ? 60 : 1;
+  const int rounds = in_contact() ? 400 : rigid_ ? 60 : 1;
+  double contact = 0;  // m, by which it is not yet settled
   for (int round = 0; round < rounds; ++round) {
     const Points last = x;
     x = problem.minimise(std::move(x), 1e-10 + kRounding * hardness);
     if (round > 0) found.moved = distance(x, last);
+    contact = problem.update_contact(x);
+    if (!rigid_ && contact < kTouching) break;
     found.stretch = 0;
     for (std::size_t j = 0; j < links_.size(); ++j)
       if (std::isinf(links_[j].stiffness)) {
@@ -318,7 +413,10 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
         found.stretch = std::max(found.stretch, std::abs(c));
         problem.multiplier[j] += problem.stiffness[j] * c;
       }
-    if (found.stretch < 1e-14 || (found.stretch < 1e-12 && found.stretch >= before)) break;
+    if (!rigid_) continue;
+    if (contact < kTouching &&
+        (found.stretch < 1e-14 || (found.stretch < 1e-12 && found.stretch >= before)))
+      break;
     if (found.stretch > kStalls * before && round + 1 < rounds) {
       if (hardness >= kHardest * heaviest) break;
       problem.harden(hardness *= 8);
@@ -330,8 +428,11 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
     if (std::isinf(links_[j].stiffness))
       problem.multiplier[j] -= problem.stiffness[j] * problem.stretch(x, j);
   found.residual = problem.gradient(x).norm();
+  found.contact = problem.contact_force(x);
   found.x = std::move(x);
-  if (found.stretch > kLocked)
+  if (contact > kLocked)
+    found.problem = "contact did not come to rest";
+  else if (found.stretch > kLocked)
     found.problem = "the links cannot all have their length near this state";
   else if (!(found.residual < 1e-6 + kRounding * hardness))
     found.problem = "Newton's method did not converge";

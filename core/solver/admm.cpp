@@ -43,16 +43,18 @@ class AdmmPass final : public Pass<double> {
  public:
   explicit AdmmPass(const loop::Setup& s)
       : keep_(s.params.is("multipliers", "keep")),
-        system_(weights(s, ratios_), make_bending(s.scene), s.w,
-                s.scene.dt / s.params.integer("substeps")),
+        system_(s, weights(s, ratios_)),
         u_(system_.springs().size(), Vec3::Zero()),
         wanted_(u_.size()) {}
 
-  void restart() override { u_.assign(u_.size(), Vec3::Zero()); }
+  void restart() override {
+    system_.restart();
+    u_.assign(u_.size(), Vec3::Zero());
+  }
 
-  void begin(Particles<double>& p, double, double h) override {
-    system_.begin(p, h);
-    if (!keep_) restart();
+  void begin(Particles<double>& p, double t, double h) override {
+    system_.begin(p, t, h);
+    if (!keep_) u_.assign(u_.size(), Vec3::Zero());
   }
 
   void apply(Particles<double>& p, double, double) override {

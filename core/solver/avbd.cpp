@@ -6,7 +6,6 @@
 //     sweep:    F = k (C - alpha C_0) + l,    f = -m/h^2 (x - y) + sum F u
 //               H = m/h^2 I + sum k u u^T + diag |columns of F (I - u u^T)/n|,    x += H^-1 f
 //     then:     l = k (C - alpha C_0) + l;    k = min(k + beta |C - alpha C_0|, k_max)
-#include "core/solver/contact_impulses.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 #include "core/solver/vertex_blocks.hpp"
@@ -33,7 +32,7 @@ class AugmentedPass final : public Pass<double> {
  public:
   explicit AugmentedPass(const loop::Setup& s)
       : springs_(make_springs(s.scene, s.w, {1, 1, 1})),
-        blocks_(springs_, make_bending(s.scene), s.w, s.params.is("order", "coloured"), s.pool),
+        blocks_(s, springs_),
         start_(s.scene, s.params.is("start", "adaptive")),
         alpha_(s.params.real("alpha")),
         beta_(s.params.real("beta")),
@@ -44,14 +43,13 @@ class AugmentedPass final : public Pass<double> {
     restart();
   }
 
-  std::vector<Vec3>& targets() { return y_; }
-
   void restart() override {
     start_.restart();
+    blocks_.restart();
     links_.assign(links_.size(), {.k = k_min_});
   }
 
-  void begin(Particles<double>& p, double, double h) override {
+  void begin(Particles<double>& p, double t, double h) override {
     for (std::size_t j = 0; j < links_.size(); ++j) {
       LinkState& link = links_[j];
       const auto& [a, b, rest, unused] = springs_[j];
@@ -61,6 +59,7 @@ class AugmentedPass final : public Pass<double> {
     }
     y_ = positions(p);
     start_.begin(p, h);
+    blocks_.begin(p, y_, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {
@@ -78,7 +77,7 @@ class AugmentedPass final : public Pass<double> {
             std::abs(pull) / length * (1 - u.array().square()).max(0.0).sqrt();
       });
       blocks_.add_bending(p, i, force, hessian);
-      return Vec3(x + solve_symmetric(hessian, force));
+      return blocks_.minimum(p, i, x, force, hessian);
     });
     for (std::size_t j = 0; j < links_.size(); ++j) {
       LinkState& link = links_[j];
@@ -113,10 +112,8 @@ class AugmentedPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  auto augmented = std::make_unique<AugmentedPass>(s);
-  std::vector<Vec3>& y = augmented->targets();
   return {.layout = Layout::packed(s.w.size()),
-          .pass = with_contact_impulses(std::move(augmented), y, s),
+          .pass = std::make_unique<AugmentedPass>(s),
           .bends = true};
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/bending.hpp"
+#include "core/solver/contact/contacts.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/springs.hpp"
 
@@ -22,17 +23,21 @@ namespace taut {
 /// (core/model/bending.hpp) over the vertices that move, is the same for
 /// the three coordinates and from step to step: a sparse LLT, factored when made and again only if
 /// h changes. Other pins, masses, links or weights are another system.
+///
+/// In contact x is the minimum outside of the colliders, with friction: what a force at a vertex
+/// moves others by is a column of the inverse, solved for when the vertex first touches anything,
+/// and the forces are those of CoupledContacts, from those of the last iteration on.
 class GlobalSystem {
  public:
-  /// w: inverse masses [1/kg]; the springs' stiffness is the weight; h [s].
-  GlobalSystem(std::vector<Spring>, std::vector<BendingElement>, std::span<const double> w,
-               double h);
+  /// Of what a solver is made; the springs' stiffness is the weight.
+  GlobalSystem(const loop::Setup&, std::vector<Spring>);
   ~GlobalSystem();
 
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<BendingElement>& bending() const { return bending_; }
-  /// A substep of h [s] begins: p.x is y, pins are where they have to be.
-  void begin(const Particles<double>& p, double h);
+  void restart();  ///< no force of contact
+  /// The substep [t, t + h] begins: p.x is y, pins are where they have to be.
+  void begin(const Particles<double>& p, double t, double h);
   /// Moves the vertices that are no pins. q: [springs] m. Places are NaN, which ends a case as
   /// exploded, if in double precision the matrix is not positive definite.
   void solve(std::span<const Vec3> q, Particles<double>& p);
@@ -43,13 +48,16 @@ class GlobalSystem {
 
  private:
   void factor(double h);
+  void resolve_contacts(Particles<double>& p);
   struct Factor;
   std::vector<Spring> springs_;
   std::vector<BendingElement> bending_;
-  std::vector<int> row_;      ///< of each vertex; -1: a pin
-  std::vector<double> mass_;  ///< [rows] kg
-  std::vector<Vec3> y_;       ///< m, of this substep
-  double factored_for_ = 0;   ///< s
+  std::vector<int> row_;                  ///< of each vertex; -1: a pin
+  std::vector<double> mass_;              ///< [rows] kg
+  std::vector<Vec3> y_;                   ///< m, of this substep
+  double factored_for_ = 0;               ///< s
+  std::unique_ptr<Contacts> contacts_;    ///< null: none
+  std::vector<TouchingVertex> touching_;  ///< of this iteration
   std::unique_ptr<Factor> factor_;
 };
 

@@ -11,7 +11,15 @@
 // Cloth, SIGGRAPH 2002). Where full steps no longer bring the gradient down fast, the Hessian is
 // taken as it is, if it is positive definite. The step is halved until G falls (Armijo). From x_t,
 // one iteration without line search is the linearised step of Baraff, Witkin: Large Steps in Cloth
-// Simulation (SIGGRAPH 1998), with pins already at their new places.
+// Simulation (SIGGRAPH 1998).
+//
+// Contact is an augmented Lagrangian at each vertex that touches (Alart, Curnier, Computer Methods
+// in Applied Mechanics and Engineering 92, 1991): with the force of the last iteration, push along
+// the normal n and rub across it, and a stiffness k,
+//
+//     push' = max(0, push - k gap),   rub' = rub - k slip, no longer than mu push
+//
+// act, k n n^T + k (I - n n^T) join the Hessian where they hold and stick, and become the forces.
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -21,6 +29,7 @@
 #include <vector>
 
 #include "core/model/bending.hpp"
+#include "core/solver/contact/contacts.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 
@@ -38,6 +47,9 @@ using Eigen::Matrix3d;
 constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
 /// Beyond so many vertices that move, conjugate gradients take less time than a factor.
 constexpr std::size_t kFactorPays = 20000;
+/// Contact is stiffer than all else at its vertex by this factor: an iteration leaves less than its
+/// inverse of the error of a force; much stiffer, and sticking and slipping take turns.
+constexpr double kContactStiffer = 10;
 
 constexpr ParamSpec kOwn[] = {
     loop::iterations("50", "Newton iterations, at most; they end at 1e-9 of the forces of inertia"),
@@ -83,6 +95,11 @@ class Hessian {
   int column(std::size_t vertex) const { return column_[vertex]; }
   double mass(std::size_t vertex) const { return mass_[to_index(column_[vertex]) / 3]; }
   SpringHessian& block(std::size_t spring) { return blocks_[spring]; }
+  /// What contact adds at a vertex that moves [N/m].
+  void clear_contacts() { contacts_.clear(); }
+  void add_contact(std::size_t vertex, const Matrix3d& block) {
+    contacts_.emplace_back(column_[vertex], block);
+  }
   bool factored() const { return !diagonal_.empty(); }
   static constexpr int kPinned = -1;
 
@@ -96,11 +113,16 @@ class Hessian {
     return true;
   }
 
-  /// H v without the masses' part.
+  /// H v without the masses' part; pins do not move.
   Vector elastic_times(const Vector& v) const {
+    return elastic_times(v, [](std::size_t) { return Vec3(Vec3::Zero()); });
+  }
+  /// pin(vertex): its way [m].
+  template <class Pin>
+  Vector elastic_times(const Vector& v, const Pin& pin) const {
     Vector out = Vector::Zero(v.size());
     const auto at = [&](std::size_t vertex) -> Vec3 {
-      return column_[vertex] < 0 ? Vec3(Vec3::Zero()) : Vec3(v.segment<3>(column_[vertex]));
+      return column_[vertex] < 0 ? pin(vertex) : Vec3(v.segment<3>(column_[vertex]));
     };
     for (std::size_t j = 0; j < springs_.size(); ++j) {
       const auto& [a, b, rest, stiffness] = springs_[j];
@@ -114,6 +136,8 @@ class Hessian {
         if (const int c = column_[to_index(e.vertex[i])]; c >= 0)
           out.segment<3>(c) += e.weight[i] * pull;
     }
+    for (const auto& [column, block] : contacts_)
+      out.segment<3>(column) += block * v.segment<3>(column);
     return out;
   }
 
@@ -191,6 +215,7 @@ class Hessian {
         for (int c = 0; c < 3; ++c)
           for (int r = 0; r < 3; ++r) beside_[3 * j + to_index(c)][r] -= block(r, c);
     }
+    for (const auto& [column, block] : contacts_) add_diagonal(column, block);
   }
 
   Vector times(double h, const Vector& v) const {
@@ -213,6 +238,7 @@ class Hessian {
     each_bending([&](int row, int column, double k) {
       if (row == column) inverse[to_index(row) / 3](row % 3, row % 3) += k;
     });
+    for (const auto& [column, block] : contacts_) inverse[to_index(column) / 3] += block;
     for (Matrix3d& m : inverse) m = Matrix3d(m.inverse());
     const auto preconditioned = [&](const Vector& r) {
       Vector z(r.size());
@@ -244,6 +270,7 @@ class Hessian {
   std::vector<int> column_;
   std::vector<double> mass_;  ///< kg, of those that move
   std::vector<SpringHessian> blocks_;
+  std::vector<std::pair<int, Matrix3d>> contacts_;
   Matrix matrix_;                  ///< lower triangle; empty: conjugate gradients
   std::vector<double*> diagonal_;  ///< [columns] into the matrix
   std::vector<double*> beside_;    ///< [springs * 3] columns of blocks; null: an end is pinned
@@ -259,7 +286,9 @@ class NewtonPass final : public Pass<double> {
         hessian_(springs_, bending_, s.w,
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
                                        s.w, [](double w) { return w > 0; }))))),
-        stiffness_(s.w.size()) {
+        stiffness_(s.w.size()),
+        contacts_(make_contacts(s)),
+        contact_stiffness_(contacts_ ? s.w.size() : 0) {
     for (const Spring& spring : springs_)
       stiffness_[spring.a] += spring.stiffness, stiffness_[spring.b] += spring.stiffness;
     for (const BendingElement& e : bending_)
@@ -268,28 +297,36 @@ class NewtonPass final : public Pass<double> {
           stiffness_[to_index(e.vertex[i])] += e.stiffness * std::abs(e.weight[i] * e.weight[j]);
   }
 
-  void begin(Particles<double>& p, double, double h) override {
+  void restart() override {
+    if (contacts_) contacts_->restart();
+  }
+
+  void begin(Particles<double>& p, double t, double h) override {
     y_.resize(p.size());
     for (std::size_t i = 0; i < p.size(); ++i) {
       y_[i] = p.x[i];
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
     }
-    clamped_ = first_ = true, ended_at_.clear();
+    if (contacts_) contacts_->begin(t, h);
+    clamped_ = first_ = true;
+    ended_at_.clear();
     set_tolerances(p, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {
-    std::vector<Vec3> x(p.size());
-    for (std::size_t i = 0; i < p.size(); ++i) x[i] = p.x[i];
+    std::vector<Vec3> x = positions(p);
     if (x == ended_at_) return;
+    if (contacts_) contacts_->find(p, touching_);
     const Vector g = gradient(x, h);
     const bool first = std::exchange(first_, false);
-    if (g.norm() <= (first ? enough_at_first_ : enough_) || !iterate(x, g, h, first)) {
+    if (g.norm() <= (first ? enough_at_first_ : enough_) ||
+        !(first ? first_iteration(x, p, g, h) : iterate(x, g, h))) {
       ended_at_ = std::move(x);
       return;
     }
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, x[i]);
+    if (contacts_) update_contacts(p, h);
   }
 
   std::vector<PassCost> cost() const override {
@@ -302,24 +339,52 @@ class NewtonPass final : public Pass<double> {
   }
 
  private:
-  /// One Newton step; false: rounding does not let the energy fall any further. The first one, from
-  /// x_t, is solved for x - y, so that rounding in stiff links moves no centre of mass; where a
-  /// factor breaks down in double precision its places are NaN, which ends a case as exploded.
-  bool iterate(std::vector<Vec3>& x, const Vector& g, double h, bool first) {
-    linearise(x, clamped_);
+  /// The step from x_t, linearised with the pins still there: their way to t + h is on the
+  /// right-hand side, so that a frame that moves steadily is as one at rest. It is solved for x -
+  /// y, so that rounding in stiff links moves no centre of mass; where a factor breaks down in
+  /// double precision its places are NaN, which ends a case as exploded.
+  bool first_iteration(std::vector<Vec3>& x, const Particles<double>& p, const Vector& g,
+                       double h) {
+    std::vector<Vec3> start(p.size());
+    for (std::size_t i = 0; i < p.size(); ++i) start[i] = p.previous[i];
+    linearise(start, clamped_);
+    const auto way_of_pin = [&](std::size_t v) { return Vec3(x[v] - start[v]); };
     Vector direction;
-    if (first && hessian_.factored()) {
+    if (hessian_.factored()) {
       const Vector to_y = way_to_y(x);
-      if (!hessian_.solve(h, -elastic(x) - hessian_.elastic_times(to_y), direction)) {
+      if (!hessian_.solve(h, -elastic(start) - hessian_.elastic_times(to_y, way_of_pin),
+                          direction)) {
         x.assign(x.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         return true;
       }
       direction += to_y;
-    } else if (!hessian_.solve(h, -g, direction)) {
+    } else {
+      const Vector still = Vector::Zero(hessian_.size());
+      if (!hessian_.solve(h, -gradient(start, h) - hessian_.elastic_times(still, way_of_pin),
+                          direction))
+        return false;
+    }
+    return take(x, direction, g, h);
+  }
+
+  /// One Newton step; false: rounding does not let the energy fall any further.
+  bool iterate(std::vector<Vec3>& x, const Vector& g, double h) {
+    linearise(x, clamped_);
+    Vector direction;
+    if (!hessian_.solve(h, -g, direction)) {
       linearise(x, clamped_ = true);
       if (!hessian_.solve(h, -g, direction)) return false;
     }
-    if (!line_search_) return x = moved(x, direction, 1), true;
+    return take(x, direction, g, h);
+  }
+
+  /// Moves x along the direction, by halves of it until the energy falls; false: it does not.
+  bool take(std::vector<Vec3>& x, const Vector& direction, const Vector& g, double h) {
+    whole_step_ = true;
+    if (!line_search_) {
+      x = moved(x, direction, 1);
+      return true;
+    }
     const double energy_before = energy(x, h), slope = g.dot(direction);
     double step = 1;
     const int most_halvings = g.norm() <= enough_ ? 1 : 50;
@@ -332,10 +397,59 @@ class NewtonPass final : public Pass<double> {
       const bool rounds = now <= energy_before * (1 + 1e-12) && g_now.norm() < g.norm();
       if (!falls && !rounds) continue;
       clamped_ = clamped_ && (step < 1 || g_now.norm() < 0.25 * g.norm());
+      whole_step_ = step == 1;
       x = std::move(trial);
       return true;
     }
     return false;
+  }
+
+  /// A contact's part of the augmented Lagrangian at x: energy [J], force [N], Hessian [N/m].
+  struct AugmentedContact {
+    double energy = 0;
+    Vec3 force = Vec3::Zero();
+    Matrix3d hessian = Matrix3d::Zero();
+  };
+  AugmentedContact augmented(const TouchingVertex& at, const Vec3& x) const {
+    const ContactForce& held = contacts_->force(at.vertex, at.collider);
+    const double k = contact_stiffness_[at.vertex], push = held.push - k * at.gap(x);
+    const Matrix3d along = at.normal * at.normal.transpose();
+    AugmentedContact out;
+    if (push > 0) out = {push * push / (2 * k), push * at.normal, k * along};
+    const Vec3 rub = held.rub - k * at.slip(x);
+    const double length = rub.norm(), most = at.friction * held.push;
+    if (most == 0) return out;
+    const Matrix3d across = Matrix3d::Identity() - along;
+    if (length <= most) {
+      out.energy += length * length / (2 * k);
+      out.force += rub;
+      out.hessian += k * across;
+    } else {
+      const Vec3 u = rub / length;
+      out.energy += most / k * (length - most / 2);
+      out.force += most * u;
+      out.hessian += k * most / length * (across - u * u.transpose());
+    }
+    return out;
+  }
+
+  /// The forces become what acted, where the step was a whole one; what has newly come inside is
+  /// held from now on, at first by what its own inertia asks for.
+  void update_contacts(const Particles<double>& p, double h) {
+    contacts_->find(p, touching_);
+    for (const TouchingVertex& at : touching_) {
+      ContactForce& held = contacts_->force(at.vertex, at.collider);
+      const double gap = at.gap(p.x[at.vertex]);
+      if (!held.holds()) {
+        held = {std::max(0.0, -gap) / (p.w[at.vertex] * h * h), Vec3::Zero()};
+      } else if (whole_step_) {
+        const double k = contact_stiffness_[at.vertex];
+        held.push = std::max(0.0, held.push - k * gap);
+        held.rub -= k * at.slip(p.x[at.vertex]);
+        const double length = held.rub.norm(), most = at.friction * held.push;
+        if (length > most) held.rub *= most / length;
+      }
+    }
   }
 
   /// p.x is x_t.
@@ -350,6 +464,9 @@ class NewtonPass final : public Pass<double> {
     enough_ = std::max(kTolerance * std::sqrt(inertia2),
                        std::numeric_limits<double>::epsilon() * std::sqrt(rounding2));
     enough_at_first_ = std::min(enough_, kFirstTolerance * std::sqrt(inertia2));
+    for (std::size_t i = 0; i < contact_stiffness_.size(); ++i)
+      if (p.w[i] > 0)
+        contact_stiffness_[i] = kContactStiffer * (stiffness_[i] + 1 / (p.w[i] * h * h));
   }
 
   void linearise(const std::vector<Vec3>& x, bool clamped) {
@@ -365,6 +482,9 @@ class NewtonPass final : public Pass<double> {
       const double c = clamped ? std::max(0.0, across) : across;
       hessian_.block(j) = {stiffness * c, stiffness * (1 - c), d / length};
     }
+    hessian_.clear_contacts();
+    for (const TouchingVertex& at : touching_)
+      hessian_.add_contact(at.vertex, augmented(at, x[at.vertex]).hessian);
   }
 
   double energy(const std::vector<Vec3>& x, double h) const {
@@ -376,6 +496,7 @@ class NewtonPass final : public Pass<double> {
       const double c = (x[b] - x[a]).norm() - rest;
       sum += stiffness / 2 * c * c;
     }
+    for (const TouchingVertex& at : touching_) sum += augmented(at, x[at.vertex]).energy;
     return sum;
   }
 
@@ -395,7 +516,7 @@ class NewtonPass final : public Pass<double> {
     return g;
   }
 
-  /// The part of links and bending.
+  /// The part of links, bending and contact.
   Vector elastic(const std::vector<Vec3>& x) const {
     Vector g = Vector::Zero(hessian_.size());
     for (const auto& [a, b, rest, stiffness] : springs_) {
@@ -412,6 +533,8 @@ class NewtonPass final : public Pass<double> {
         if (const int c = hessian_.column(to_index(e.vertex[i])); c >= 0)
           g.segment<3>(c) += e.weight[i] * pull;
     }
+    for (const TouchingVertex& at : touching_)
+      g.segment<3>(hessian_.column(at.vertex)) -= augmented(at, x[at.vertex]).force;
     return g;
   }
 
@@ -425,8 +548,11 @@ class NewtonPass final : public Pass<double> {
   std::vector<BendingElement> bending_;
   bool line_search_;
   Hessian hessian_;
-  std::vector<double> stiffness_;  ///< N/m, of all links and bending at each vertex
-  bool clamped_ = true, first_ = true;
+  std::vector<double> stiffness_;          ///< N/m, of all links and bending at each vertex
+  std::unique_ptr<Contacts> contacts_;     ///< null: none
+  std::vector<TouchingVertex> touching_;   ///< of this iteration
+  std::vector<double> contact_stiffness_;  ///< [n] N/m, k; empty: no contact
+  bool clamped_ = true, first_ = true, whole_step_ = true;
   double enough_ = 0, enough_at_first_ = 0;  ///< N, of |g| in this substep
   std::vector<Vec3> y_;                      ///< m, where they would go without links
   std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere

@@ -78,15 +78,19 @@ class Anderson {
 class ProjectivePass final : public Pass<double> {
  public:
   explicit ProjectivePass(const loop::Setup& s)
-      : system_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), make_bending(s.scene),
-                s.w, s.scene.dt / s.params.integer("substeps")),
+      : system_(s, make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
         wanted_(system_.springs().size()),
         anderson_(to_index(s.params.integer("anderson")), s.w.size()) {}
 
-  void begin(Particles<double>& p, double, double h) override {
-    system_.begin(p, h);
+  void restart() override { system_.restart(); }
+
+  void begin(Particles<double>& p, double t, double h) override {
     anderson_.begin();
-    if (anderson_.on()) y_ = positions(p), energy_ = std::numeric_limits<double>::infinity();
+    if (anderson_.on()) {
+      y_ = positions(p);
+      energy_ = std::numeric_limits<double>::infinity();
+    }
+    system_.begin(p, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {

@@ -7,7 +7,6 @@
 //
 // with damping k_d: H gains k_d/h times the springs' part, f loses that times x - x_t.
 #include "core/solver/chebyshev.hpp"
-#include "core/solver/contact_impulses.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 #include "core/solver/vertex_blocks.hpp"
@@ -36,17 +35,19 @@ class DescentPass final : public Pass<double> {
  public:
   explicit DescentPass(const loop::Setup& s)
       : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
-        blocks_(springs_, make_bending(s.scene), s.w, s.params.is("order", "coloured"), s.pool),
+        blocks_(s, springs_),
         start_(s.scene, s.params.is("start", "adaptive")),
         damping_(s.params.real("damping")) {}
 
-  std::vector<Vec3>& targets() { return y_; }
+  void restart() override {
+    start_.restart();
+    blocks_.restart();
+  }
 
-  void restart() override { start_.restart(); }
-
-  void begin(Particles<double>& p, double, double h) override {
+  void begin(Particles<double>& p, double t, double h) override {
     y_ = positions(p);
     start_.begin(p, h);
+    blocks_.begin(p, y_, t, h);
   }
 
   void apply(Particles<double>& p, double, double h) override {
@@ -66,7 +67,7 @@ class DescentPass final : public Pass<double> {
       }
       blocks_.add_bending(p, i, force, hessian);
       hessian.diagonal().array() += inertia;
-      return Vec3(x + solve_symmetric(hessian, force));
+      return blocks_.minimum(p, i, x, force, hessian);
     });
   }
 
@@ -88,12 +89,9 @@ class DescentPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  auto descent = std::make_unique<DescentPass>(s);
-  std::vector<Vec3>& y = descent->targets();
-  auto pass =
-      with_chebyshev<double>(std::move(descent), s.params.real("chebyshev"), s.w.size(), s.pool);
   return {.layout = Layout::packed(s.w.size()),
-          .pass = with_contact_impulses(std::move(pass), y, s),
+          .pass = with_chebyshev<double>(std::make_unique<DescentPass>(s),
+                                         s.params.real("chebyshev"), s.w.size(), s.pool),
           .bends = true};
 }
 

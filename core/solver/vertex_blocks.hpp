@@ -9,11 +9,24 @@
 
 #include "core/model/adjacency.hpp"
 #include "core/model/bending.hpp"
+#include "core/solver/contact/contacts.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 
 namespace taut {
+
+/// x of a x = b for a symmetric positive definite matrix, by Cramer's rule.
+inline Vec3 solve_symmetric(const Eigen::Matrix3d& a, const Vec3& b) {
+  const Vec3 r0 = a.col(0), r1 = a.col(1), r2 = a.col(2);
+  const auto cross = [](const Vec3& p, const Vec3& q) {
+    return Vec3(p.y() * q.z() - p.z() * q.y(), p.z() * q.x() - p.x() * q.z(),
+                p.x() * q.y() - p.y() * q.x());
+  };
+  const Vec3 c = cross(r1, r2);
+  const double determinant = r0.dot(c);
+  return Vec3(b.dot(c), r0.dot(cross(b, r2)), r0.dot(cross(r1, b))) / determinant;
+}
 
 /// Sweeps of solvers that move one vertex at a time to the minimum of a quadratic model in its own
 /// three coordinates, all others held: colour after colour, no two vertices of a colour linked or
@@ -21,14 +34,16 @@ namespace taut {
 /// bits.
 class VertexBlocks {
  public:
-  /// coloured: else the scene's order, one vertex after the other.
-  VertexBlocks(const std::vector<Spring>& springs, std::vector<BendingElement> bending,
-               std::span<const double> w, bool coloured, ThreadPool& pool)
+  /// By the parameter `order`: colours, or the scene's order, one vertex after the other.
+  VertexBlocks(const loop::Setup& s, const std::vector<Spring>& springs)
       : springs_(springs),
-        bending_(std::move(bending)),
-        bent_(bending_.empty() ? 0 : w.size()),
-        ends_(links_of(springs), static_cast<int>(w.size())),
-        pool_(pool) {
+        bending_(make_bending(s.scene)),
+        contacts_(make_contacts(s)),
+        bent_(bending_.empty() ? 0 : s.w.size()),
+        ends_(links_of(springs), static_cast<int>(s.w.size())),
+        pool_(s.pool) {
+    const std::span<const double> w = s.w;
+    const bool coloured = s.params.is("order", "coloured");
     for (std::size_t k = 0; k < bending_.size(); ++k)
       for (std::size_t i = 0; i < bending_[k].size; ++i)
         bent_[to_index(bending_[k].vertex[i])].push_back({k, i});
@@ -57,6 +72,17 @@ class VertexBlocks {
   }
 
   std::size_t colours() const { return colours_.size(); }
+
+  void restart() {
+    if (contacts_) contacts_->restart();
+  }
+  /// p.x is where the sweeps start; what touches a collider starts where contact alone would leave
+  /// it (Contacts::predict). Sweeps would bring that about slowly, against stiff links.
+  void begin(Particles<double>& p, const std::vector<Vec3>& y, double t, double h) {
+    if (!contacts_) return;
+    contacts_->begin(t, h);
+    contacts_->predict(p, y, h);
+  }
 
   /// One sweep: solve(i, x_i, links) returns where vertex i goes, links(visit) calls visit(j, u, C)
   /// for each of its links j, u the unit vector from i towards the other end, C [m] its stretch.
@@ -96,8 +122,19 @@ class VertexBlocks {
     }
   }
 
+  /// Where vertex i at x goes by `force` [N] and its `hessian` [N/m], kept out of the colliders:
+  /// the minimum of the quadratic model on their outer side, with friction.
+  Vec3 minimum(const Particles<double>& p, std::size_t i, const Vec3& x, const Vec3& force,
+               const Eigen::Matrix3d& hessian) {
+    if (!contacts_) return x + solve_symmetric(hessian, force);
+    const Vec3 previous = p.previous[i];
+    Vec3 to = x + solve_symmetric(hessian, force + contacts_->force_at(i, x, previous));
+    contacts_->settle_vertex(i, hessian, previous, to);
+    return to;
+  }
+
   std::size_t bytes() const {
-    return bending_.size() * sizeof(BendingElement) +
+    return bending_.size() * sizeof(BendingElement) + (contacts_ ? contacts_->bytes() : 0) +
            springs_.size() * (sizeof(Spring) + 2 * sizeof(Adjacency::End)) +
            ends_.size() * (sizeof(int) + sizeof(std::size_t));
   }
@@ -114,23 +151,12 @@ class VertexBlocks {
   };
   const std::vector<Spring>& springs_;
   std::vector<BendingElement> bending_;
+  std::unique_ptr<Contacts> contacts_;   ///< null: none
   std::vector<std::vector<Bent>> bent_;  ///< [n] elements of each vertex; empty: no bending
   Adjacency ends_;
   std::vector<std::vector<std::size_t>> colours_;
   ThreadPool& pool_;
 };
-
-/// x of a x = b for a symmetric positive definite matrix, by Cramer's rule.
-inline Vec3 solve_symmetric(const Eigen::Matrix3d& a, const Vec3& b) {
-  const Vec3 r0 = a.col(0), r1 = a.col(1), r2 = a.col(2);
-  const auto cross = [](const Vec3& p, const Vec3& q) {
-    return Vec3(p.y() * q.z() - p.z() * q.y(), p.z() * q.x() - p.x() * q.z(),
-                p.x() * q.y() - p.y() * q.x());
-  };
-  const Vec3 c = cross(r1, r2);
-  const double determinant = r0.dot(c);
-  return Vec3(b.dot(c), r0.dot(cross(b, r2)), r0.dot(cross(r1, b))) / determinant;
-}
 
 /// Where a substep's iterations start (VBD, section 3.7): y without that part of gravity that did
 /// not act in the last substep because something held the vertex, which then fell short of its y.

@@ -11,13 +11,13 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 
 namespace taut {
 
 namespace {
 
-void run_all(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
+void run_all(const std::vector<Case>& cases, Store& store, const BaselineOptions& options,
              BaselineStudy& result) {
   store.prepare();
   const CampaignProgress campaign = run_missing(
@@ -27,11 +27,11 @@ void run_all(const std::vector<Case>& cases, const Store& store, const BaselineO
 }
 
 /// Runs all cases again, beside the store, and marks those whose result is not the same to the bit.
-void mark_flaky(const std::vector<Case>& cases, const Store& store, const BaselineOptions& options,
+void mark_flaky(const std::vector<Case>& cases, Store& store, const BaselineOptions& options,
                 BaselineStudy& result) {
   const std::filesystem::path folder = std::filesystem::path(options.out) / "again";
   std::filesystem::remove_all(folder);
-  const Store second(folder.string());
+  Store second(folder.string());
   run_all(cases, second, options, result);
   for (const Case& one : cases) {
     const auto a = store.find(one), b = second.find(one);
@@ -42,7 +42,7 @@ void mark_flaky(const std::vector<Case>& cases, const Store& store, const Baseli
   std::filesystem::remove_all(folder);
 }
 
-void add_frontiers(const Store& store, const BaselineOptions& options, BaselineStudy& result) {
+void add_frontiers(Store& store, const BaselineOptions& options, BaselineStudy& result) {
   const std::vector<FrontierQuestion> questions = read_frontiers(result.folder);
   if (questions.empty()) return;
   store.begin_session("taut check " + result.name);
@@ -86,7 +86,7 @@ BaselineStudy baseline_study(const std::string& name, const BaselineOptions& opt
   result.toolchain = printable(result.toolchain);
   if (result.before.empty() && needs_baseline) return result;
 
-  const Store store(options.out);
+  Store store(options.out);
   const std::vector<Case> cases = cases_of(study);
   run_all(cases, store, options, result);
   std::map<const Scene*, std::string> digests;

@@ -13,7 +13,7 @@
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/plot/plot.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/process.hpp"

@@ -154,7 +154,7 @@ void Progress::finish(const CampaignProgress& campaign) {
             << campaign.reused << " were stored already)\n";
 }
 
-CampaignProgress run_missing(const std::vector<StudyCases>& studies, const Store& store,
+CampaignProgress run_missing(const std::vector<StudyCases>& studies, Store& store,
                              const std::string& command, CampaignOptions options) {
   store.begin_session(command, studies, options.shard);
   std::vector<Case> cases;

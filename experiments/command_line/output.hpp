@@ -52,8 +52,8 @@ class Progress {
 
 /// Runs what the store lacks, each case once, in a session that `command` names, with progress on
 /// stderr.
-CampaignProgress run_missing(const std::vector<StudyCases>&, const Store&,
-                             const std::string& command, CampaignOptions);
+CampaignProgress run_missing(const std::vector<StudyCases>&, Store&, const std::string& command,
+                             CampaignOptions);
 
 /// The exit code of a campaign; says where the results are that differ from those stored.
 int exit_code(const CampaignProgress&, const Store&);

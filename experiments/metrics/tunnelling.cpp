@@ -87,8 +87,10 @@ class SideTracker {
       solid_.half_extents = box->half_extents;
     if (const Capsule* capsule = std::get_if<Capsule>(&collider_.shape)) {
       const Vec3 along = capsule->to - capsule->from;
-      solid_.radius = capsule->radius, solid_.half_length = along.norm() / 2;
-      along_y_ = Eigen::Quaterniond::FromTwoVectors(along, Vec3::UnitY());
+      solid_.radius = capsule->radius;
+      solid_.half_length = along.norm() / 2;
+      if (solid_.half_length > 0)
+        along_y_ = Eigen::Quaterniond::FromTwoVectors(along, Vec3::UnitY());
     }
   }
 

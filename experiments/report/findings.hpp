@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "experiments/report/input.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 
 namespace taut::report {
 

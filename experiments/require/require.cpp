@@ -24,7 +24,7 @@ constexpr int kTimingRounds = 4;
 
 class Search {
  public:
-  Search(const RequireOptions& options, const Store& store, std::filesystem::path folder)
+  Search(const RequireOptions& options, Store& store, std::filesystem::path folder)
       : options_(options), store_(store), folder_(std::move(folder)) {}
 
   Requirement run() {
@@ -292,7 +292,7 @@ class Search {
   void verify() {
     if (!found_.smallest || found_.interrupted) return;
     const Scratch scratch;
-    const Store apart(scratch.path());
+    Store apart(scratch.path());
     apart.prepare();
     const Case again = make_case(found_.smallest->spec);
     const std::optional<Record> first = store_.find(again),
@@ -330,7 +330,7 @@ class Search {
   }
 
   const RequireOptions& options_;
-  const Store& store_;
+  Store& store_;
   std::filesystem::path folder_;
   SteadyClock::time_point start_ = SteadyClock::now();
   CaseMaker maker_;
@@ -354,7 +354,7 @@ std::size_t work_of(const std::vector<PassCost>& passes) {
       [](std::size_t sum, const PassCost& p) { return sum + p.items * p.repeats; });
 }
 
-Requirement find_requirement(const RequireOptions& options, const Store& store,
+Requirement find_requirement(const RequireOptions& options, Store& store,
                              const std::filesystem::path& folder) {
   for (const std::string& asked : options.keep) name_of_answer(asked);  // before anything runs
   return Search(options, store, folder).run();

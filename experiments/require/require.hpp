@@ -12,8 +12,8 @@
 #include "experiments/case/case.hpp"
 #include "experiments/case/trajectory.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/store.hpp"
 #include "experiments/timing/statistics.hpp"
 
 namespace taut {
@@ -215,8 +215,7 @@ struct RequireOptions {
 /// verifies and times the result. Every run is a case of the store, so that an interrupted search
 /// goes on where it was. Scenes that it makes lie in `folder`. Throws InputError if the full model
 /// cannot be run.
-Requirement find_requirement(const RequireOptions&, const Store&,
-                             const std::filesystem::path& folder);
+Requirement find_requirement(const RequireOptions&, Store&, const std::filesystem::path& folder);
 
 /// Bytes that a step holds, and items that it visits.
 std::size_t bytes_of(const std::vector<PassCost>&);

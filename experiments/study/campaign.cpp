@@ -24,7 +24,7 @@ namespace {
 
 class Campaign {
  public:
-  Campaign(const Store& store, const CampaignOptions& options) : store_(store), options_(options) {}
+  Campaign(Store& store, const CampaignOptions& options) : store_(store), options_(options) {}
 
   CampaignProgress run(const std::vector<Case>& cases) {
     sort_out(cases);
@@ -111,7 +111,7 @@ class Campaign {
     if (options_.progress) options_.progress(progress_, record);
   }
 
-  const Store& store_;
+  Store& store_;
   const CampaignOptions& options_;
   std::deque<const Case*> waiting_;
   std::list<IsolatedCase> running_;
@@ -120,7 +120,7 @@ class Campaign {
 
 }  // namespace
 
-Record run_again(const Case& one, const Store& store, const Limits& limits) {
+Record run_again(const Case& one, Store& store, const Limits& limits) {
   const std::filesystem::path folder = store.stage(one.key);
   IsolatedCase running(one, folder, limits);
   const Record record = running.wait();
@@ -128,12 +128,12 @@ Record run_again(const Case& one, const Store& store, const Limits& limits) {
   return record;
 }
 
-CampaignProgress run_cases(const std::vector<Case>& cases, const Store& store,
+CampaignProgress run_cases(const std::vector<Case>& cases, Store& store,
                            const CampaignOptions& options) {
   return Campaign(store, options).run(cases);
 }
 
-CasesRun run_and_read(std::vector<Case> cases, const Store& store, const CampaignOptions& options) {
+CasesRun run_and_read(std::vector<Case> cases, Store& store, const CampaignOptions& options) {
   CasesRun run{std::move(cases), {}, {}};
   run.campaign = run_cases(run.cases, store, options);
   if (run.campaign.conflicts > 0)
@@ -148,7 +148,7 @@ CasesRun run_and_read(std::vector<Case> cases, const Store& store, const Campaig
   return run;
 }
 
-std::optional<Record> run_stored(const Case& one, const Store& store, const Limits& limits,
+std::optional<Record> run_stored(const Case& one, Store& store, const Limits& limits,
                                  SteadyClock::time_point deadline) {
   CasesRun run = run_and_read({one}, store, {.limits = limits, .deadline = deadline});
   if (run.campaign.interrupted) throw Interrupted();

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "experiments/case/case.hpp"
+#include "experiments/results/session.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/study/isolate.hpp"
-#include "experiments/study/session.hpp"
-#include "experiments/study/store.hpp"
 #include "experiments/study/study.hpp"
 
 namespace taut {
@@ -49,7 +49,7 @@ struct CampaignOptions {
 /// and commits each as it ends. SIGINT and SIGTERM end it after the running cases are killed; what
 /// was finished is stored. Throws InputError if results cannot be written: nothing finished is
 /// lost. Unfinished at the deadline: done() < cases.
-CampaignProgress run_cases(const std::vector<Case>&, const Store&, const CampaignOptions&);
+CampaignProgress run_cases(const std::vector<Case>&, Store&, const CampaignOptions&);
 
 /// Cases, and what is stored of each once they have run.
 struct CasesRun {
@@ -61,15 +61,15 @@ struct CasesRun {
 
 /// run_cases(), and reads the records. Throws InputError if a result differs from one that is
 /// stored.
-CasesRun run_and_read(std::vector<Case>, const Store&, const CampaignOptions&);
+CasesRun run_and_read(std::vector<Case>, Store&, const CampaignOptions&);
 
 /// The same of one case. Throws Interrupted too.
 std::optional<Record> run_stored(
-    const Case&, const Store&, const Limits& = {},
+    const Case&, Store&, const Limits& = {},
     std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max());
 
 /// Runs a case in a process of its own, whatever is stored of it, and leaves nothing in the store.
-Record run_again(const Case&, const Store&, const Limits& = {});
+Record run_again(const Case&, Store&, const Limits& = {});
 
 /// What the store knows of a study.
 struct StudyRecords {

@@ -16,7 +16,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"

@@ -98,9 +98,10 @@ ConvergencePoint point_of(const ExactStep& exact, int iterations, const Stepped&
   const auto& [step, minimum] = exact;
   const std::vector<Vec3>& x = got.state.x;
   ConvergencePoint p{iterations, kUnknown, step.stretch(x), kUnknown, kUnknown, got.milliseconds};
-  if (!step.rigid()) p.residual = step.residual(x);
+  if (!step.rigid() && !step.in_contact()) p.residual = step.residual(x);
   if (!minimum.problem.empty()) return p;
   p.distance = step.distance(x, minimum.x);
+  if (step.in_contact()) return p;  // y is inside of colliders: its energy is no measure
   p.gap = step.rigid() ? step.square_distance(x, minimum.x) /
                              step.square_distance(step.prediction(), minimum.x)
                        : (step.energy(x) - step.energy(minimum.x)) /

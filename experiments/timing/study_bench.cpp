@@ -11,7 +11,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/study/database.hpp"
+#include "experiments/results/database.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/hardly_moves.hpp"
@@ -180,7 +180,7 @@ StudyBench StudyBench::here(const std::string& study) {
   return {study, machine_name(), {}, host_name(), program_digest()};
 }
 
-void keep(const Store& store, const StudyBench& study) {
+void keep(Store& store, const StudyBench& study) {
   Database& database = store.writing();
   database.transaction([&] {
     database.run("DELETE FROM benches WHERE study = ? AND host = ? AND build = ?", study.study,

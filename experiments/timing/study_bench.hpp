@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -106,7 +106,7 @@ std::vector<std::string> solvers_of(const SceneBench&);
 
 /// Keeps every sample in place of what this host and build measured of the study before. Throws
 /// InputError; then the former stay.
-void keep(const Store&, const StudyBench&);
+void keep(Store&, const StudyBench&);
 
 /// What is stored of a study ("": of all): of this host and build, of this host, of others by name;
 /// of cases that are stored, in scenes that have any. Throws InputError: damaged.

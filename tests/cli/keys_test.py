@@ -12,7 +12,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENES, STUDIES = ROOT / "experiments/scenes/README.md", ROOT / "experiments/studies/README.md"
-VERBS, RESULTS = ROOT / "experiments/cli/README.md", ROOT / "experiments/study/RESULTS.md"
+VERBS, RESULTS = ROOT / "experiments/cli/README.md", ROOT / "experiments/results/README.md"
 
 
 def rows_of(answer, name):

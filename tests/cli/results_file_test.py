@@ -13,7 +13,7 @@ import stored
 from command_line import CommandLine, main
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DOCUMENT = (ROOT / "experiments/study/RESULTS.md").read_text()
+DOCUMENT = (ROOT / "experiments/results/README.md").read_text()
 HOW_FAR, = re.findall("How far the studies are: `(.*)`", DOCUMENT)
 
 

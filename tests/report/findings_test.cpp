@@ -38,7 +38,7 @@ Truths truths_of(const std::vector<std::vector<Finding>>& findings) {
     truth.section_title = "S", truth.statement = "T^2", truth.source = "Q x 2";
     truth.findings = own;
   }
-  const Store store(scratch.path());
+  Store store(scratch.path());
   store.keep(answer_of(all));
   EXPECT_FALSE(stored_truths(store, "another"));
   return *stored_truths(store, program_digest());
@@ -95,7 +95,7 @@ TEST(StoredTruths, WriteAsManyDigitsAsTheToleranceLetsMatter) {
 
 TEST(StoredFindings, AreThoseOfThisProgramAndNoneWithoutAny) {
   const Scratch scratch;
-  const Store store(scratch.path());
+  Store store(scratch.path());
   const std::string p = program_digest();
   EXPECT_FALSE(stored_truths(store, p));
   EXPECT_FALSE(stored_regressions(store, p));
@@ -191,7 +191,7 @@ class StoredStudy : public testing::Test {
     run_cases(cases_, store_, {.jobs = 2});
   }
   const Scratch scratch_;
-  const Store store_{scratch_.path() / "results"};
+  Store store_{scratch_.path() / "results"};
   Study study_;
   std::vector<Case> cases_;
 };
@@ -282,7 +282,7 @@ TEST_F(StoredStudy, ItsMapsAndSeriesAreThoseOfItsPlotAndItsRecords) {
 }
 
 TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
-  const Store other(scratch_.path() / "other");
+  Store other(scratch_.path() / "other");
   other.prepare();
   const auto put = [&](Record r, const std::string& key) {
     r.key = std::string(62, 'b') + key;

@@ -68,14 +68,16 @@ void write_bench(Maker& make, const std::vector<Case>& cases,
     csv << '\n';
     scene->cases.push_back(std::move(c));
   }
-  if (!bench.scenes.empty()) keep(Store(folder / "results"), bench);
+  if (bench.scenes.empty()) return;
+  Store store(folder / "results");
+  keep(store, bench);
 }
 
 void write(const std::filesystem::path& folder, unsigned seed) {
   Maker make(seed);
   make_folder(folder);
   write_file((folder / "made-up.toml").string(), study_text(make));
-  const Store store(folder / "results");
+  Store store(folder / "results");
   store.prepare();
   const std::vector<Case> cases = cases_of(load_study((folder / "made-up.toml").string(), ""));
   std::map<std::string, Record> stored;

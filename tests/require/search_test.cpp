@@ -29,7 +29,7 @@ class Requirements : public testing::Test {
     const Case one = make_case(spec);
     return {one, *store_.find(one), store_.motion(one.key).frames};
   }
-  void forget(const CaseSpec& spec) const { taut::forget(store_, make_case(spec).key); }
+  void forget(const CaseSpec& spec) { taut::forget(store_, make_case(spec).key); }
   /// What a scene file's comment says goes, in its order: "wind: gone".
   static std::vector<std::string> said_to_go(const Requirement& found) {
     std::vector<std::string> all;
@@ -39,7 +39,7 @@ class Requirements : public testing::Test {
     return all;
   }
   const Scratch scratch_;
-  const Store store_{scratch_.path() / "results"};
+  Store store_{scratch_.path() / "results"};
 };
 
 // A strip on one pin in a wind that does nothing. Its last vertex is pinned by number: there is no

@@ -21,19 +21,20 @@ experiments/metrics      | core/model/(bending|crossings|index|scene|triangle)\.
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
-experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|study))/
-experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/study/[a-z_]+.hpp
-experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/study/[a-z_]+.hpp
-experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|study|timing))/
+experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|case|results))/
+experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
+experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
+experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/(study|results)/[a-z_]+.hpp
+experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|results|study|timing))/
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
-experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|study|truths|baseline))/
-experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|study|timing|require))/
+experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
+experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
-experiments/render/film  | (core/(model|io)|experiments/(system|case|study|render/(picture|film)|report))/
-experiments/report       | (core/model|experiments/(answer|system|metrics|case|study|timing|require|baseline|truths|report))/
+experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(picture|film)|report))/
+experiments/report       | (core/model|experiments/(answer|system|metrics|case|results|study|timing|require|baseline|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|report/chart))/|experiments/report/input
 experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/
@@ -45,7 +46,7 @@ BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
-SQLiteCpp/|sqlite3      | ^experiments/study/database\.[ch]pp
+SQLiteCpp/|sqlite3      | ^experiments/results/database\.[ch]pp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp
 core/model/(solver|params)\.hpp | ^(core|bullet_ref|tests|experiments/[^m])
 '
@@ -123,11 +124,12 @@ core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
 core/solver/contact/planted.cpp|"core/solver/constraints/relaxation.hpp"
 experiments/metrics/planted.cpp|"core/model/solver.hpp"
+experiments/results/planted.cpp|"experiments/study/study.hpp"
 experiments/study/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/study/cluster/planted.cpp|"experiments/study/frontier/parameter_frontier.hpp"
 experiments/study/frontier/planted.cpp|"experiments/study/cluster/cluster.hpp"
 experiments/timing/planted.cpp|"core/solver/simd/kernels.hpp"
-experiments/timing/bench/planted.cpp|"experiments/study/store.hpp"
+experiments/timing/bench/planted.cpp|"experiments/results/store.hpp"
 experiments/render/picture/planted.cpp|"experiments/render/film/film.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"

@@ -10,7 +10,7 @@
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "tests/support/scripted.hpp"
 

@@ -55,7 +55,7 @@ class Runs : public testing::Test {
     return all;
   }
   /// No case has left anything in the store's folder for them, which holds this one alone.
-  bool nothing_staged() const {
+  bool nothing_staged() {
     const fs::path mine = store_.stage("mine");
     const auto entries = std::distance(fs::directory_iterator(mine.parent_path()), {});
     fs::remove(mine);
@@ -64,7 +64,7 @@ class Runs : public testing::Test {
 
   Scripted scripted_{kCopy};
   const Scratch scratch_;
-  const Store store_{scratch_.path() / "results"};
+  Store store_{scratch_.path() / "results"};
   std::vector<CampaignProgress> told_;
   std::vector<std::string> ended_;
 };
@@ -246,7 +246,7 @@ TEST(FrontierOfCases, LooksAtFourPlacesAboveEvenlySpread) {
 // Cases of the test program itself: a mass on a spring, whose longest stable step is known.
 TEST(FrontierOfCases, BracketsWhatTheoryPredictsAndRunsNothingTwice) {
   const Scratch scratch;
-  const Store store(scratch.path());
+  Store store(scratch.path());
   store.prepare();
   const FrontierQuestion question{
       {"chain",

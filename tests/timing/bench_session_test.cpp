@@ -123,7 +123,7 @@ class Kept {
     return "";
   }
   const Scratch scratch;
-  const Store store{scratch.path() / "results"};
+  Store store{scratch.path() / "results"};
 };
 
 BenchedCase stored_case(const std::string& solver, std::vector<double> samples, char key) {
@@ -142,7 +142,7 @@ TEST(StoredBenches, AreWhatWasKept) {
   session.scenes[0].cases[0].timing.remark = "it says otherwise";
   session.scenes[1].cases.push_back(stored_case("c", {}, 'c'));
   session.scenes[1].cases[1].timing.failure = "no clock";
-  const Kept kept(session);
+  Kept kept(session);
   const auto all = stored_benches(kept.store, "trade");
   ASSERT_EQ(all.size(), 1u);
   const StudyBench& back = all[0];
@@ -171,7 +171,7 @@ TEST(StoredBenches, AreWhatWasKept) {
 TEST(StoredBenches, TakeThePlaceOfThoseOfTheirHostAndBuildAlone) {
   StudyBench session{
       "trade", "m", {{"sheet", {1, 1, 1}, {stored_case("a", {1, 2}, 'a')}}}, "zeus", "b"};
-  const Kept kept(session);
+  Kept kept(session);
   session.scenes[0].cases[0].timing.samples = {5, 5};
   keep(kept.store, session);
   session.host = "ares", keep(kept.store, session);
@@ -190,8 +190,7 @@ TEST(StoredBenches, TakeThePlaceOfThoseOfTheirHostAndBuildAlone) {
 }
 
 TEST(StoredBenches, WhatCannotBeATimeIsRefusedWithItsCase) {
-  const Kept kept(
-      {"trade", "m", {{"sheet", {1, 1, 1}, {stored_case("a", {1, 2}, 'a')}}}, "zeus", "b"});
+  Kept kept({"trade", "m", {{"sheet", {1, 1, 1}, {stored_case("a", {1, 2}, 'a')}}}, "zeus", "b"});
   for (const char* damage : {"cpu = 0", "wall = -1", "cpu = 'x'"}) {
     change(kept.store, "UPDATE samples SET cpu = 1, wall = 1");
     EXPECT_EQ(kept.said(), "");
@@ -202,14 +201,14 @@ TEST(StoredBenches, WhatCannotBeATimeIsRefusedWithItsCase) {
 }
 
 TEST(Costs, AreMediansForWhoeverAsks) {
-  const Kept kept({"trade",
-                   "m",
-                   {{"sheet",
-                     {1, 1, 1},
-                     {stored_case("a", {4, 1, 2, 8}, 'a'), stored_case("b", {5, 1, 2}, 'b'),
-                      stored_case("c", {}, 'c')}}},
-                   "zeus",
-                   "b"});
+  Kept kept({"trade",
+             "m",
+             {{"sheet",
+               {1, 1, 1},
+               {stored_case("a", {4, 1, 2, 8}, 'a'), stored_case("b", {5, 1, 2}, 'b'),
+                stored_case("c", {}, 'c')}}},
+             "zeus",
+             "b"});
   Database file(kept.store.file(), Database::Access::read);
   file.script("PRAGMA trusted_schema = ON");  // as for whoever opens it
   Database::Rows row = file.rows(

@@ -61,6 +61,34 @@ struct Contact {
     if (any(passing)) passing = near && !surface.misses(from, x);
     near = near && !clear(x);
     if (!any(near || passing)) return near;
+    const Tangent<T> tangent = side_of_entry(x, from, passing, near);
+    return push(x, from, tangent, near);
+  }
+
+  /// Whether one vertex is inside, has passed through since `previous` (continuous), or is `held`:
+  /// then by which half-space.
+  bool touched(const Vec3T<Real>& x, const Vec3T<Real>& previous, bool continuous, bool held,
+               Tangent<Real>& tangent) const {
+    bool inside = held || !clear(x);
+    if constexpr (requires { surface.entry(x, x); }) {
+      if (continuous) {
+        const Vec3T<Real> from = motion(previous);
+        const bool passing = !surface.beyond(x, squared_norm(x - from), Real(thickness / 2)) &&
+                             !surface.misses(from, x);
+        if (!inside && !passing) return false;
+        tangent = side_of_entry(x, from, passing, inside);
+        return inside;
+      }
+    }
+    if (inside) tangent = surface.nearest(x);
+    return inside;
+  }
+
+ private:
+  /// The surface nearest to x, or where it came in if it is `passing`, which then counts as near.
+  template <class T, class Mask>
+  [[gnu::always_inline]] Tangent<T> side_of_entry(const Vec3T<T>& x, const Vec3T<T>& from,
+                                                  const Mask& passing, Mask& near) const {
     Tangent<T> tangent = surface.nearest(x);
     if (any(passing)) {
       const Entry<T> entry = surface.entry(from, x);
@@ -71,10 +99,9 @@ struct Contact {
       tangent = select(back && !same_side, entry.tangent, tangent);
       near = near || back;
     }
-    return push(x, from, tangent, near);
+    return tangent;
   }
 
- private:
   /// Coulomb: the tangential correction is at most mu times the normal one, and no more than the
   /// slip itself.
   template <class T, class Normal, class Mask>

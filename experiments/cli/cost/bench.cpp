@@ -27,7 +27,7 @@ struct Options {
 
 /// The physics of every case, from the store or run now.
 std::vector<Record> physics(const StudyCases& study, const Options& options) {
-  const Store store(options.out);
+  Store store(options.out);
   store.prepare();
   const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   if (run_missing({study}, store, "taut bench", {.jobs = jobs}).interrupted) throw Interrupted();
@@ -169,7 +169,8 @@ StudyBench timed(const std::string& name, const Options& options) {
     throw InputError("'" + name + "' is a scene; --solver says what to time on it");
   const Study study = load_study(name, options.preset);
   StudyBench result = bench(study.name, taut::cases_of(study), options);
-  keep(Store(options.out), result);
+  Store store(options.out);
+  keep(store, result);
   return result;
 }
 

@@ -23,7 +23,7 @@ struct Options {
   Format format;
 };
 
-Measured measure(const Case& one, double expected, const Store& store, const Options& options) {
+Measured measure(const Case& one, double expected, Store& store, const Options& options) {
   const auto start = SteadyClock::now();
   progress() << one.id << (expected < 1 ? "" : ", about " + number_text(expected, 2) + " s")
              << '\n';
@@ -58,7 +58,7 @@ std::string searched(const SolverChoice& choice) {
 
 /// The least value of that number, to 5 %, with which the case's error is at most `error`: doubled,
 /// then bisected. A search that has not ended after --limit has failed.
-Measured least(const Case& base, double error, const Store& store, const Options& options) {
+Measured least(const Case& base, double error, Store& store, const Options& options) {
   const auto start = SteadyClock::now(), end = in_seconds(options.limit);
   const std::string name = searched(base.choice);
   std::optional<Record> last;
@@ -144,7 +144,7 @@ void add_tables(Answer& answer, const std::vector<ScalingLine>& lines) {
 }
 
 /// Where `taut plot` and the report find it: a bench, but of cases that were not timed in turns.
-void keep(const Study& study, const std::vector<ScalingLine>& lines, const Store& store) {
+void keep(const Study& study, const std::vector<ScalingLine>& lines, Store& store) {
   SceneBench scene{study.scenes.front(), {}, {}, false};
   for (const ScalingLine& line : lines)
     for (const BenchedCase& c : line.cases) scene.cases.push_back(c);
@@ -160,7 +160,7 @@ int run(const Options& options) {
                                                    : "scaling-error";
   const Study study = load_study(name, options.preset);
   const std::vector<Case> cases = cases_of(study);
-  const Store store(options.out);
+  Store store(options.out);
   store.prepare();
   const std::vector<ScalingLine> lines =
       measure_scaling(cases, options.limit, [&](const Case& one, double expected) {

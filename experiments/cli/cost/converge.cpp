@@ -8,7 +8,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/one_step.hpp"
 #include "experiments/report/plot/plot.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/convergence.hpp"
@@ -46,8 +46,8 @@ void continue_in_one_program(const std::vector<std::string>& solvers) {
 Answer ask(const Options& options) {
   check_solvers(options.solvers);
   const Scene scene = load_scene(find_scene(options.scene), options.settings);
-  if (!scene.colliders.empty() || scene.self_collision)
-    throw InputError("converge: contact is no part of the exact step; take a scene without");
+  if (scene.self_collision)
+    throw InputError("converge: self-collision is no part of the exact step; take a scene without");
   const double at = std::round(options.at / scene.dt) * scene.dt;
   const State state = state_at(scene, parse_solver(options.from), at);
   return report::one_step_answer(
@@ -71,7 +71,7 @@ int run(const Options& options) {
   Answer answer = ask(options);
   const bool any = !answer.table("solvers").rows.empty();
   if (options.record) {
-    const Store store(options.out);
+    Store store(options.out);
     store.prepare();
     store.keep(answer);
   }

@@ -153,7 +153,7 @@ int check_or_update(const Options& options, const std::string& solver, const Ans
 
 /// Every parameter of one or two solvers.
 int run_all(const Options& options) {
-  const Store store(options.out);
+  Store store(options.out);
   std::vector<std::string> solvers;
   for (const std::string& text : options.all) solvers.push_back(parse_solver(text).brief());
   if (solvers.size() == 2 && solvers[0] == solvers[1])
@@ -199,7 +199,7 @@ int run(const Options& options) {
   question.range = range_of(question.base, options.of, options.from, options.to);
   question.range.tolerance = options.tolerance;
   const Case first = make_case(question.at(question.range.from));
-  const Store store(options.out);
+  Store store(options.out);
   store.prepare();
   store.begin_session("taut frontier " + first.id);
   Progress progress;

@@ -83,7 +83,7 @@ int run_one(const Options& options, const std::string& scene, Table& scenes, boo
     scenes.rows.push_back({full.scene->name, {}, {}, {}, reason, {}});
     return kPass;
   }
-  const Store store(options.out);
+  Store store(options.out);
   store.prepare();
   store.begin_session("taut require " + full.id);
   const fs::path folder =

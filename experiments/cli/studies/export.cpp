@@ -1,8 +1,8 @@
 #include "core/model/text.hpp"
 #include "experiments/answer/answer.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/results/database.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/database.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/study_bench.hpp"
 

@@ -57,7 +57,7 @@ void say_part(int part, const std::string& what) {
 int finish_main_job(const MainJob& job, const Options& options) {
   say_part(2, "what accuracy costs, one case at a time");
   bench::time_study(job.bench, job.preset, 0.015, options.out);
-  const Store store(options.out);
+  Store store(options.out);
   for (const std::string& scene : job.steps) {
     say_part(3, "inside one step of " + scene);
     store.keep(
@@ -187,7 +187,7 @@ int run(Options options) {
     return kNothing;
   }
   tell_remarks(remarks_of(cases));
-  const Store store(options.out);
+  Store store(options.out);
   store.prepare();
   if (bare && !options.no_report) say_part(1, "cases of the studies");
   const CampaignProgress campaign = run_missing(cases, store, command_line(options),

@@ -9,7 +9,7 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/process.hpp"

@@ -190,7 +190,7 @@ int run(const Options& options) {
   const Verification found = verify(options);
   const Answer answer = answer_of(found, options.assertions);
   if (options.record) {
-    const Store store(options.out);
+    Store store(options.out);
     store.prepare();
     store.keep(answer);
   }

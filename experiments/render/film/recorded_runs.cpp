@@ -8,8 +8,8 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/study/isolate.hpp"
-#include "experiments/study/store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

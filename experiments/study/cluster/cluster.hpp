@@ -7,9 +7,9 @@
 
 #include "experiments/answer/answer.hpp"
 #include "experiments/case/case.hpp"
+#include "experiments/results/session.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/study/isolate.hpp"
-#include "experiments/study/session.hpp"
-#include "experiments/study/store.hpp"
 #include "experiments/study/study.hpp"
 
 // A cluster folder holds a study with its scene files, a job script that runs one shard of it, and
@@ -84,7 +84,7 @@ class Merge {
   MergePlan look(const Store& into) const;
   /// Copies the planned records, and who computed them, one store after the other; `progress`
   /// counts cases. Throws InputError if the disk refuses: the same merge again goes on.
-  void copy(const MergePlan&, const Store& into,
+  void copy(const MergePlan&, Store& into,
             const std::function<void(std::size_t done, std::size_t all)>& progress) const;
 
  private:

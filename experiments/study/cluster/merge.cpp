@@ -88,7 +88,7 @@ MergePlan Merge::look(const Store& into) const {
   return plan;
 }
 
-void Merge::copy(const MergePlan& plan, const Store& into,
+void Merge::copy(const MergePlan& plan, Store& into,
                  const std::function<void(std::size_t, std::size_t)>& progress) const {
   const std::size_t all = plan.cases.size() - plan.missing.size();
   for (const Source& source : sources_)

@@ -106,7 +106,7 @@ struct CaseFrontier {
 using Judge = std::function<std::string(const Case&, const Record&)>;
 
 /// Every probe is a case of its own process, through the store.
-CaseFrontier find_frontier(const FrontierQuestion&, const Store&, const CampaignOptions&,
+CaseFrontier find_frontier(const FrontierQuestion&, Store&, const CampaignOptions&,
                            const Judge& = {});
 
 /// Where linear theory has the frontier (linear_stability.hpp).

@@ -50,7 +50,7 @@ void tell(const Frontier& frontier, const FrontierQuestion& question, ParameterF
 
 /// The search along one parameter; nothing: interrupted.
 std::optional<ParameterFrontier> search(const FrontierSetting& setting, const std::string& solver,
-                                        const Store& store, const CampaignOptions& options) {
+                                        Store& store, const CampaignOptions& options) {
   ParameterFrontier found;
   found.solver = solver, found.parameter = setting.name, found.unit = setting.unit;
   found.lacks = setting.lacks;
@@ -86,7 +86,7 @@ std::optional<ParameterFrontier> search(const FrontierSetting& setting, const st
 }  // namespace
 
 std::optional<std::vector<ParameterFrontier>> find_frontiers(
-    const std::string& solver, const Store& store, const CampaignOptions& options,
+    const std::string& solver, Store& store, const CampaignOptions& options,
     const std::function<void(std::size_t done, std::size_t all)>& progress) {
   std::vector<ParameterFrontier> frontiers;
   const std::vector<FrontierSetting> settings = frontier_settings(solver);

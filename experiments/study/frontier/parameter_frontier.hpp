@@ -94,7 +94,7 @@ struct ParameterFrontier {
 /// All frontiers of a solver on the standard scene; nothing: interrupted. Every probe is a case of
 /// the store, judged by symptoms(). `progress` is told after each of them.
 std::optional<std::vector<ParameterFrontier>> find_frontiers(
-    const std::string& solver, const Store&, const CampaignOptions&,
+    const std::string& solver, Store&, const CampaignOptions&,
     const std::function<void(std::size_t done, std::size_t all)>& progress);
 
 /// What `taut frontier --all` answers.

@@ -215,7 +215,7 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
   return range;
 }
 
-CaseFrontier find_frontier(const FrontierQuestion& question, const Store& store,
+CaseFrontier find_frontier(const FrontierQuestion& question, Store& store,
                            const CampaignOptions& options, const Judge& judge) {
   CaseFrontier result;
   CaseMaker maker;

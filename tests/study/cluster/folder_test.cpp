@@ -27,7 +27,7 @@ class Folder : public testing::Test {
     const fs::path folder = root_.path() / name;
     make_folder(folder / "shards");
     write_file(folder / "job.sh", "#!/bin/bash\n");
-    const Store store(folder);
+    Store store(folder);
     store.begin_session("taut cluster submit");
     for (std::size_t n = 0; n < shards.size(); ++n)
       change(store, "INSERT INTO planned VALUES ('study', ?, ?, ?, 6, 0)", key(static_cast<int>(n)),
@@ -156,7 +156,7 @@ TEST_F(Folder, AMergeTakesResultsBeforeFailuresAndSaysWhatIsMissing) {
     EXPECT_EQ(all, 3u);
   });
   EXPECT_EQ(told, 3u);
-  const Store merged(root_.path() / "m");
+  Store merged(root_.path() / "m");
   EXPECT_EQ(merged.keys(), (Strings{key(1), key(0), key(2)})) << "as they were merged";
   EXPECT_EQ(merged.find(key(0))->values.at("a"), 5);
   EXPECT_EQ(merged.find(key(1))->status.kind, Kind::oom) << "a failure is better than nothing";

@@ -54,7 +54,7 @@ class Timed {
 
   const Scratch scratch;
   const Study study = two_cases();
-  const Store store;
+  Store store;
 };
 
 TEST(Hosts, TheModelHasTheCostOfOneHostAndNamesTheOthers) {

@@ -3,8 +3,8 @@
 
 #include <csignal>
 
+#include "experiments/results/session.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
-#include "experiments/study/session.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/signals.hpp"
@@ -15,7 +15,7 @@ namespace {
 /// 0: nothing was found and it says that it was interrupted; else what is wrong.
 int search(CampaignOptions options, bool signal) {
   const Scratch scratch;
-  const Store store(scratch.path() / "results");
+  Store store(scratch.path() / "results");
   store.prepare();
   static const GracefulStop stop;  // the signal may be served later than the search takes
   if (signal) raise(SIGTERM);

@@ -1,4 +1,4 @@
-#include "experiments/study/schema.hpp"
+#include "experiments/results/schema.hpp"
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_columns.hpp"

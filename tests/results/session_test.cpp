@@ -1,5 +1,5 @@
 // Shards, and what a session leaves: who ran what, how far it came, what is still missing.
-#include "experiments/study/session.hpp"
+#include "experiments/results/session.hpp"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ StudyCases planned(const std::string& study, std::initializer_list<const char*> 
 
 TEST(Sessions, LeaveWhoRanWhat) {
   const Scratch scratch;
-  const Store store(scratch.path() / "results");
+  Store store(scratch.path() / "results");
   store.begin_session("taut run x", {planned("x", {"00000003", "00000004"})}, {2, 3});
   Database file(store.file(), Database::Access::read);
   Database::Rows row = file.rows(
@@ -78,7 +78,7 @@ TEST(Sessions, LeaveWhoRanWhat) {
 
 TEST(Sessions, WhatTheyPlanIsThereOnceWithItsShard) {
   const Scratch scratch;
-  const Store store(scratch.path());
+  Store store(scratch.path());
   EXPECT_TRUE(store.planned().empty());
   store.begin_session("", {planned("a", {"3", "1"}), planned("b", {"1"})}, {1, 4});
   store.begin_session("", {planned("a", {"2", "1"})}, {2, 4});
@@ -108,7 +108,7 @@ TEST(MissingCases, AreNamedAsFarAsThereIsRoom) {
 
 TEST(MissingCases, AreCountedStudyByStudyUntilTheyCome) {
   const Scratch scratch;
-  const Store store(scratch.path());
+  Store store(scratch.path());
   EXPECT_TRUE(store.still_missing().empty());
   store.begin_session("", {planned("b", {"1", "2", "3", "5"})});
   store.mark_missing({{"b", key("1"), "one"}, {"b", key("2"), "two"}, {"b", key("3"), "three"}});

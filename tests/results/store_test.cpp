@@ -1,6 +1,6 @@
 // The results file: whole cases or none, results that nothing replaces, numbers that keep every
 // bit.
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -176,7 +176,7 @@ TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
   write_file(staged / kFramesFile, frames);
   EXPECT_EQ(store_.commit(staged, r), Store::Commit::stored);
   EXPECT_FALSE(fs::exists(staged));
-  const Store other(root_);
+  Store other(root_);
   EXPECT_EQ(other.series(r.key).columns, series.columns);
   EXPECT_EQ(other.series(r.key).rows, series.rows);
   ASSERT_TRUE(other.has_frames(r.key));
@@ -278,7 +278,7 @@ TEST_F(StoreTest, ADamagedFileIsRefusedToReadersAndSetAsideByWriters) {
           << error.what();
     }
     EXPECT_EQ(read_text(root_ / "results.db"), bytes) << "reading changes nothing";
-    const Store again(root_, note);
+    Store again(root_, note);
     again.prepare();
     ASSERT_EQ(said_.size(), 1u);
     EXPECT_NE(said_[0].find("begun anew"), std::string::npos);
@@ -320,7 +320,7 @@ TEST_F(StoreTest, OfAProcessThatIsKilledWhileWritingNothingStays) {
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFSIGNALED(status));
-    const Store next(root_);
+    Store next(root_);
     next.prepare();
     EXPECT_EQ(next.keys(), std::vector{other.key}) << most;
     EXPECT_EQ(next.find(other.key)->status.kind, Status::Kind::timeout);
@@ -336,7 +336,7 @@ TEST_F(StoreTest, OfResultsThatComeAtOnceOneStaysAndTheOthersAreConflicts) {
   for (int i = 0; i < kWriters; ++i) {
     writers.push_back(fork());
     if (writers.back() != 0) continue;
-    const Store own(root_);
+    Store own(root_);
     for (int n = 0; n < kCases; ++n) {
       Record record = some_record();
       record.key = std::string(60, 'a') + std::to_string(1000 + n);
@@ -373,7 +373,7 @@ TEST_F(StoreTest, ManyCommitsTogetherAreAllOrNone) {
 
 TEST_F(StoreTest, TakesOverWhatAnotherHas) {
   const fs::path place = root_ / "other";
-  const Store other(place);
+  Store other(place);
   Record failed = some_record(), better = some_record(), fresh = some_record();
   failed.key[0] = better.key[0] = 'b', fresh.key[0] = 'c', fresh.values["new"] = -0.0;
   failed.status = {Status::Kind::timeout, "wall time", 5, -1};
@@ -417,7 +417,7 @@ TEST_F(StoreTest, ResultsOfAnEarlierTautAreSaidAndLeftAlone) {
 TEST_F(StoreTest, AFileOfAnotherVersionIsNeitherReadNorWritten) {
   put(some_record());
   change(store_, "PRAGMA user_version = 99");
-  const Store other(root_);
+  Store other(root_);
   for (const auto& use :
        {std::function([&] { other.keys(); }), std::function([&] { other.prepare(); })})
     try {

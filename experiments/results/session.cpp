@@ -1,4 +1,4 @@
-#include "experiments/study/session.hpp"
+#include "experiments/results/session.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,8 +7,8 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/study/database.hpp"
-#include "experiments/study/store.hpp"
+#include "experiments/results/database.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut {
@@ -55,7 +55,7 @@ std::string Missing::sentence() const {
 }
 
 void Store::begin_session(const std::string& command, const std::vector<StudyCases>& studies,
-                          const Shard& shard) const {
+                          const Shard& shard) {
   Database& database = writing();
   database.transaction([&] {
     std::size_t cases = 0;
@@ -86,7 +86,7 @@ std::vector<PlannedKey> Store::planned() const {
   return all;
 }
 
-void Store::mark_missing(const std::vector<PlannedKey>& planned) const {
+void Store::mark_missing(const std::vector<PlannedKey>& planned) {
   Database& database = writing();
   database.transaction([&] {
     for (const PlannedKey& one : planned)

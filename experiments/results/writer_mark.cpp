@@ -1,4 +1,4 @@
-#include "experiments/study/writer_mark.hpp"
+#include "experiments/results/writer_mark.hpp"
 
 #include <signal.h>
 #include <sys/vfs.h>

@@ -1,4 +1,4 @@
-#include "experiments/study/database.hpp"
+#include "experiments/results/database.hpp"
 
 #include <sqlite3.h>
 #include <unistd.h>

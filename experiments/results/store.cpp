@@ -1,4 +1,4 @@
-#include "experiments/study/store.hpp"
+#include "experiments/results/store.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -11,9 +11,9 @@
 #include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/study/database.hpp"
-#include "experiments/study/schema.hpp"
-#include "experiments/study/writer_mark.hpp"
+#include "experiments/results/database.hpp"
+#include "experiments/results/schema.hpp"
+#include "experiments/results/writer_mark.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
@@ -177,7 +177,7 @@ Database* Store::reading() const {
   return state_->database.get();
 }
 
-Database& Store::writing() const {
+Database& Store::writing() {
   if (state_->writable) return *state_->database;
   state_->database.reset();
   std::error_code none;
@@ -197,7 +197,7 @@ Database& Store::writing() const {
   return *state_->database;
 }
 
-void Store::prepare() const {
+void Store::prepare() {
   std::error_code none;
   if (!state_->database && fs::is_regular_file(file(), none) && unusable(file())) {
     const fs::path aside = file().string() + ".damaged-" + unique_suffix();
@@ -293,7 +293,7 @@ Trajectory Store::motion(const std::string& key) const {
   return {};
 }
 
-fs::path Store::stage(const std::string& key) const {
+fs::path Store::stage(const std::string& key) {
   if (!state_->scratch) state_->scratch.emplace();
   const fs::path staged = state_->scratch->path() / (key + "." + unique_suffix());
   std::error_code error;
@@ -302,7 +302,7 @@ fs::path Store::stage(const std::string& key) const {
   return staged;
 }
 
-void Store::insert(Database& database, const Record& r, const CaseFiles& files) const {
+void Store::insert(Database& database, const Record& r, const CaseFiles& files) {
   database.run("DELETE FROM cases WHERE key = ?", r.key);
   std::vector<Database::Value> values;
   std::string marks;
@@ -335,7 +335,7 @@ void Store::insert(Database& database, const Record& r, const CaseFiles& files) 
                  sha256(files.motion));
 }
 
-Store::Commit Store::commit(const Record& record, const CaseFiles& files) const {
+Store::Commit Store::commit(const Record& record, const CaseFiles& files) {
   Database& database = writing();
   Commit done = Commit::same;
   try {
@@ -355,7 +355,7 @@ Store::Commit Store::commit(const Record& record, const CaseFiles& files) const 
   return done;
 }
 
-Store::Commit Store::commit(const fs::path& staged, const Record& record) const {
+Store::Commit Store::commit(const fs::path& staged, const Record& record) {
   const Commit done =
       commit(record, {text_if_there(staged / kSeriesFile), text_if_there(staged / kFramesFile),
                       end_of(staged / "stderr.txt", kMostErrors)});
@@ -364,7 +364,7 @@ Store::Commit Store::commit(const fs::path& staged, const Record& record) const 
   return done;
 }
 
-void Store::together(const std::function<void()>& work) const {
+void Store::together(const std::function<void()>& work) {
   try {
     writing().transaction(work);
   } catch (...) {
@@ -428,7 +428,7 @@ std::vector<std::string> Store::conflicts() const {
   return keys;
 }
 
-void Store::keep(const Answer& answer) const {
+void Store::keep(const Answer& answer) {
   const std::string text = to_json(answer);
   writing().run("INSERT OR REPLACE INTO answers VALUES (?, ?, ?, ?, ?, ?)", answer.kind,
                 answer.subject, program_digest(), utc_stamp(), text, sha256(text));
@@ -483,7 +483,7 @@ class SoundKeys {
 
 }  // namespace
 
-void Store::take(const Store& other) const {
+void Store::take(const Store& other) {
   if (!other.reading()) return;
   Database& database = writing();
   const std::string columns = join(case_columns(), ", ") + ", is_result, result_digest, errors";

@@ -11,7 +11,7 @@
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/case/trajectory.hpp"
-#include "experiments/study/session.hpp"
+#include "experiments/results/session.hpp"
 
 namespace taut {
 
@@ -29,7 +29,7 @@ inline constexpr const char* kFramesFile = "frames";
 inline constexpr int kFrames = 32;
 
 /// All that a results folder holds, in one SQLite file, <root>/results.db: its tables and views are
-/// in experiments/study/schema.cpp. Several processes may write, one at a time, and wait for each
+/// in experiments/results/schema.cpp. Several processes may write, one at a time, and wait for each
 /// other; what was committed survives the loss of power. Of a process that is killed nothing half
 /// done stays.
 class Store {
@@ -59,9 +59,9 @@ class Store {
   /// Makes sure that results can be written. A damaged file is set aside, which is said, and a new
   /// one begun. Results of an earlier taut are left alone, which is said. Throws InputError with
   /// the reason, also if another host writes here through a network file system.
-  void prepare() const;
+  void prepare();
   /// An empty folder below $TMPDIR for a case to write into. Throws InputError.
-  std::filesystem::path stage(const std::string& key) const;
+  std::filesystem::path stage(const std::string& key);
 
   enum class Commit {
     stored,    ///< new, or in place of a failure or of the same result without frames
@@ -70,11 +70,11 @@ class Store {
   };
   /// Keeps a record, with all that it left or not at all. A result is never replaced; a failure is.
   /// Throws InputError if the disk refuses.
-  Commit commit(const Record&, const CaseFiles& = {}) const;
+  Commit commit(const Record&, const CaseFiles& = {});
   /// The same of a staged folder, which goes.
-  Commit commit(const std::filesystem::path& staged, const Record&) const;
+  Commit commit(const std::filesystem::path& staged, const Record&);
   /// Many commits as one: all of them or, if `work` throws, none.
-  void together(const std::function<void()>& work) const;
+  void together(const std::function<void()>& work);
 
   /// What is known of a stored case without reading it all.
   struct Entry {
@@ -95,26 +95,26 @@ class Store {
   /// place of what was planned of the study before.
   /// Throws InputError; then nothing is noted.
   void begin_session(const std::string& command, const std::vector<StudyCases>& = {},
-                     const Shard& = {}) const;
+                     const Shard& = {});
   /// What the sessions were to run, each key once, sorted by key.
   std::vector<PlannedKey> planned() const;
   /// Marks cases that a merge went without: reports say so until they come. Throws InputError.
-  void mark_missing(const std::vector<PlannedKey>&) const;
+  void mark_missing(const std::vector<PlannedKey>&);
   std::vector<Missing> still_missing() const;  ///< by study
 
   /// Keeps what a verb found in place of what was found of this kind and subject before. Throws
   /// InputError.
-  void keep(const Answer&) const;
+  void keep(const Answer&);
   /// What `program` (program_digest) found of this kind, by subject. Throws InputError: damaged.
   std::vector<Answer> answers(const std::string& kind, std::string_view program) const;
 
   /// Takes over the cases and sessions of another store: results before failures, nothing twice,
   /// and what matches its digest alone, in place of what does not. Throws InputError; then nothing
   /// of it was taken.
-  void take(const Store& other) const;
+  void take(const Store& other);
 
   Database* reading() const;  ///< nullptr: there is no file yet
-  Database& writing() const;
+  Database& writing();
 
  private:
   struct State;
@@ -122,7 +122,7 @@ class Store {
   void say_damaged(const std::string& key, const std::string& why) const;
   std::vector<std::string> unsound_keys() const;  ///< of cases that count as none
   std::optional<Record> sound_record(Database&, const std::string& key, std::string& why) const;
-  void insert(Database&, const Record&, const CaseFiles&) const;
+  void insert(Database&, const Record&, const CaseFiles&);
   std::filesystem::path root_;
   Notice notice_;
   std::shared_ptr<State> state_;

@@ -1,0 +1,190 @@
+#include "core/solver/contact/contacts.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <optional>
+
+#include "core/model/index.hpp"
+#include "core/solver/contact/projector.hpp"
+#include "core/solver/loop.hpp"
+#include "core/solver/simd/contact.hpp"
+
+namespace taut {
+
+class Contacts::Surface {
+ public:
+  virtual ~Surface() = default;
+  virtual void begin(double t, double h) = 0;
+  /// Whether x is inside, or `held`; then `at` is filled in.
+  virtual bool touches(const Vec3& x, const Vec3& previous, bool held,
+                       TouchingVertex& at) const = 0;
+  virtual bool turns() const = 0;
+  virtual Vec3 turned(const Vec3& force) const = 0;
+};
+
+namespace {
+
+template <template <class> class SurfaceOf>
+class SurfaceIn final : public Contacts::Surface {
+ public:
+  SurfaceIn(const Collider& collider, double thickness, bool continuous)
+      : collider_(collider), continuous_(continuous) {
+    contact_.thickness = thickness;
+    contact_.friction = collider.friction;
+  }
+
+  void begin(double t, double h) override {
+    using Shape = typename SurfaceOf<double>::Shape;
+    contact_.surface = surface_of(std::get<Shape>(shape_at(collider_, t + h)));
+    contact_.motion = rigid_motion(collider_.motion, t, h);
+  }
+
+  bool touches(const Vec3& x, const Vec3& previous, bool held, TouchingVertex& at) const override {
+    const Vec3T<double> to = vec3t<double>(x), before = vec3t<double>(previous);
+    Tangent<double> tangent;
+    if (!contact_.touched(to, before, continuous_, held, tangent)) return false;
+    at.normal = point(tangent.normal);
+    at.offset = tangent.offset + contact_.thickness;
+    at.from = point(contact_.motion(before));
+    at.friction = contact_.friction;
+    return true;
+  }
+
+  bool turns() const override { return contact_.motion.moves; }
+  Vec3 turned(const Vec3& v) const override {
+    const auto& turn = contact_.motion.turn;
+    const Vec3T<double> f = vec3t<double>(v);
+    return {dot(turn[0], f), dot(turn[1], f), dot(turn[2], f)};
+  }
+
+ private:
+  Collider collider_;
+  bool continuous_;
+  Contact<double, SurfaceOf> contact_{};
+};
+
+std::unique_ptr<Contacts::Surface> make_surface(const Collider& c, double thickness,
+                                                bool continuous) {
+  if (std::holds_alternative<Plane>(c.shape))
+    return std::make_unique<SurfaceIn<PlaneSurface>>(c, thickness, continuous);
+  if (std::holds_alternative<Ball>(c.shape))
+    return std::make_unique<SurfaceIn<BallSurface>>(c, thickness, continuous);
+  if (std::holds_alternative<Capsule>(c.shape))
+    return std::make_unique<SurfaceIn<CapsuleSurface>>(c, thickness, continuous);
+  return std::make_unique<SurfaceIn<BoxSurface>>(c, thickness, continuous);
+}
+
+}  // namespace
+
+Contacts::Contacts(const Scene& scene, bool continuous)
+    : forces_(scene.start.x.size() * scene.colliders.size()) {
+  for (const Collider& collider : scene.colliders)
+    surfaces_.push_back(make_surface(collider, scene.thickness, continuous));
+}
+Contacts::~Contacts() = default;
+
+void Contacts::restart() {
+  forces_.assign(forces_.size(), {});
+  y_.clear();
+}
+
+void Contacts::begin(double t, double h) {
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const Surface& surface = *surfaces_[k];
+    surfaces_[k]->begin(t, h);
+    if (!surface.turns()) continue;
+    for (std::size_t f = k; f < forces_.size(); f += surfaces_.size())
+      if (forces_[f].holds()) forces_[f].rub = surface.turned(forces_[f].rub);
+  }
+}
+
+bool Contacts::touches(std::size_t vertex, std::size_t collider, const Vec3& x,
+                       const Vec3& previous, TouchingVertex& at) {
+  ContactForce& held = force(vertex, collider);
+  if (!surfaces_[collider]->touches(x, previous, held.holds(), at)) return false;
+  at.vertex = vertex;
+  at.collider = collider;
+  held.rub = at.across(held.rub);
+  return true;
+}
+
+void Contacts::find(const Particles<double>& p, std::vector<TouchingVertex>& all) {
+  all.clear();
+  TouchingVertex at;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.w[i] == 0) continue;
+    const Vec3 x = p.x[i], previous = p.previous[i];
+    for (std::size_t k = 0; k < surfaces_.size(); ++k)
+      if (touches(i, k, x, previous, at)) all.push_back(at);
+  }
+}
+
+bool Contacts::holds(std::size_t vertex) const {
+  const auto first = forces_.begin() + static_cast<std::ptrdiff_t>(vertex * surfaces_.size());
+  return std::any_of(first, first + static_cast<std::ptrdiff_t>(surfaces_.size()),
+                     [](const ContactForce& f) { return f.holds(); });
+}
+
+void Contacts::predict(Particles<double>& p, const std::vector<Vec3>& y, double h) {
+  TouchingVertex at;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.w[i] == 0) continue;
+    const Vec3 previous = p.previous[i];
+    const IsotropicCompliance free{p.w[i] * h * h};
+    bool touching = false;
+    Vec3 x = y[i];
+    if (!y_.empty() && holds(i)) x += previous - y_[i];
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      if (!touches(i, k, x, previous, at)) continue;
+      touching = true;
+      settle(at, free, force(i, k), x);
+    }
+    if (touching) p.x.set(i, x);
+  }
+  y_ = y;
+}
+
+void Contacts::predict_new(const Particles<double>& p, double h) {
+  TouchingVertex at;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    Vec3 x = p.x[i];
+    for (std::size_t k = 0; p.w[i] > 0 && k < surfaces_.size(); ++k)
+      if (!force(i, k).holds() && touches(i, k, x, p.previous[i], at))
+        settle(at, IsotropicCompliance{p.w[i] * h * h}, force(i, k), x);
+  }
+}
+
+Vec3 Contacts::force_at(std::size_t vertex, const Vec3& x, const Vec3& previous) {
+  Vec3 sum = Vec3::Zero();
+  TouchingVertex at;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k)
+    if (force(vertex, k).holds() && touches(vertex, k, x, previous, at))
+      sum += at.total(force(vertex, k));
+  return sum;
+}
+
+void Contacts::settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian,
+                             const Vec3& previous, Vec3& x) {
+  std::optional<MatrixCompliance> moves;  // hardly any vertex touches anything
+  constexpr int kRounds = 8;  // of a vertex at several colliders, whose forces change each other
+  for (int round = 0; round < kRounds; ++round) {
+    int touching = 0;
+    TouchingVertex at;
+    for (std::size_t k = 0; k < surfaces_.size(); ++k)
+      if (touches(vertex, k, x, previous, at)) {
+        ++touching;
+        if (!moves) moves = {hessian.inverse(), hessian};
+        settle(at, *moves, force(vertex, k), x);
+      }
+    if (touching < 2) return;
+  }
+}
+
+std::unique_ptr<Contacts> make_contacts(const loop::Setup& s) {
+  const bool continuous = s.params.is("contact", "continuous");
+  if (s.scene.colliders.empty() || !(continuous || s.params.is("contact", "discrete")))
+    return nullptr;
+  return std::make_unique<Contacts>(s.scene, continuous);
+}
+
+}  // namespace taut

@@ -1,0 +1,149 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/model/scene.hpp"
+#include "core/model/vec3.hpp"
+#include "core/solver/contact/responses.hpp"
+#include "core/solver/layout/particles.hpp"
+
+namespace taut {
+
+/// The force by which a collider holds a vertex.
+struct ContactForce {
+  double push = 0;          ///< N, along the normal, >= 0
+  Vec3 rub = Vec3::Zero();  ///< N, friction, across the normal
+  bool holds() const { return push > 0; }
+};
+
+/// A vertex at a collider, linearised where the vertex is: the half-space normal . x >= offset.
+struct TouchingVertex {
+  std::size_t vertex = 0, collider = 0;
+  Vec3 normal = Vec3::UnitY();
+  double offset = 0;         ///< m, of the collider and the scene's thickness
+  Vec3 from = Vec3::Zero();  ///< m, where it would be if it had not slipped in this substep
+  double friction = 0;
+
+  double gap(const Vec3& x) const { return normal.dot(x) - offset; }
+  Vec3 across(const Vec3& v) const { return v - normal.dot(v) * normal; }
+  Vec3 slip(const Vec3& x) const { return across(x - from); }
+  Vec3 total(const ContactForce& f) const { return f.push * normal + f.rub; }
+};
+
+/// What a force moves a vertex by [m/N]: the same in all directions, or a matrix.
+struct IsotropicCompliance {
+  double value;
+  Vec3 operator*(const Vec3& force) const { return value * force; }
+  Vec3 force_for(const Vec3& way) const { return way / value; }
+  double across(const Vec3&) const { return value; }
+};
+struct MatrixCompliance {
+  Eigen::Matrix3d value, inverse;
+  Vec3 operator*(const Vec3& force) const { return value * force; }
+  Vec3 force_for(const Vec3& way) const { return inverse * way; }
+  /// At least the largest eigenvalue across the normal.
+  double across(const Vec3& normal) const { return value.trace() - normal.dot(value * normal); }
+};
+
+/// Changes the force so that x, which it moves by `compliance`, keeps out of the half-space and
+/// obeys Coulomb: sticks while friction is at most mu times the push, else slips against it. Moves
+/// x and returns the change [N]. Exact where there is no friction or the vertex sticks, and where
+/// the compliance has no direction; else a projection whose fixed point is exact.
+template <class Compliance>
+Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce& force, Vec3& x) {
+  const Vec3 before = at.total(force);
+  const auto push = [&] {
+    const double change = -at.gap(x) / at.normal.dot(compliance * at.normal);
+    const double to = std::max(0.0, force.push + change);
+    x += compliance * Vec3((to - force.push) * at.normal);
+    force.push = to;
+  };
+  if (at.friction == 0) {
+    push();
+    return at.total(force) - before;
+  }
+  const Vec3 sticking = before + compliance.force_for(-at.slip(x) - at.gap(x) * at.normal);
+  const double normal = at.normal.dot(sticking);
+  if (const Vec3 rub = at.across(sticking); normal > 0 && rub.norm() <= at.friction * normal) {
+    force = {normal, rub};
+    x += compliance * Vec3(sticking - before);
+    return sticking - before;
+  }
+  const double across = compliance.across(at.normal);
+  constexpr int kRounds = 4;  // of a push that rubbing changes
+  for (int round = 0; round < kRounds; ++round) {
+    push();
+    Vec3 to = force.rub - at.slip(x) / across;
+    const double length = to.norm(), most = at.friction * force.push;
+    if (length > most) to *= most / length;
+    x += compliance * Vec3(to - force.rub);
+    force.rub = to;
+    if constexpr (std::is_same_v<Compliance, IsotropicCompliance>) break;
+  }
+  return at.total(force) - before;
+}
+
+/// Contact as a constraint of solvers that solve towards y: every vertex' forces, by collider, kept
+/// from iteration to iteration and from substep to substep while they hold, so that links feel what
+/// the collider pushes with. Projection after a solve that knows nothing of the collider would rest
+/// where links carry too little: at an edge by more than g h^2 however often it is repeated.
+///
+/// The conditions are those of one step of implicit Euler with Signorini and Coulomb contact,
+///
+///     0 <= push, 0 <= gap, push gap = 0;   |rub| <= mu push, against the slip where it is equal.
+class Contacts {
+ public:
+  class Surface;  ///< a collider in a substep
+  Contacts(const Scene&, bool continuous);
+  ~Contacts();
+
+  void restart();  ///< no force
+  void begin(double t,
+             double h);  ///< the substep [t, t + h]: colliders move, forces turn with them
+
+  /// Whether the vertex at x, which began the substep at `previous`, is held by the collider or
+  /// inside it; if so, where.
+  bool touches(std::size_t vertex, std::size_t collider, const Vec3& x, const Vec3& previous,
+               TouchingVertex&);
+  std::size_t colliders() const { return surfaces_.size(); }
+  ContactForce& force(std::size_t vertex, std::size_t collider) {
+    return forces_[vertex * surfaces_.size() + collider];
+  }
+  /// All that touch, of vertices that move.
+  void find(const Particles<double>& p, std::vector<TouchingVertex>&);
+
+  /// Where sweeps start. What begins to touch moves from y [m] out of the collider and against its
+  /// slip as if it had no link, which is all there is to a sheet that lands flat; what was held
+  /// ends as far from y as in the last substep, which is all there is to one that rests or slides.
+  void predict(Particles<double>& p, const std::vector<Vec3>& y, double h);
+  /// The forces of what newly touches as if it had no link; p.x is y, and stays.
+  void predict_new(const Particles<double>& p, double h);
+
+  /// Of a vertex at x [N], linearised there.
+  Vec3 force_at(std::size_t vertex, const Vec3& x, const Vec3& previous);
+  /// Settles the contacts of a vertex that has been moved to x, with this Hessian [N/m].
+  void settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian, const Vec3& previous,
+                     Vec3& x);
+
+  std::size_t bytes() const {
+    return forces_.size() * sizeof(ContactForce) + y_.size() * sizeof(Vec3);
+  }
+
+ private:
+  std::vector<std::unique_ptr<Surface>> surfaces_;
+  bool holds(std::size_t vertex) const;  ///< any collider does
+  std::vector<ContactForce> forces_;     ///< [vertex][collider]
+  std::vector<Vec3> y_;                  ///< m, of the last predict(); empty: there was none
+};
+
+namespace loop {
+struct Setup;
+}
+/// Null where there is no collider or the response is another one than to put out in every sweep.
+std::unique_ptr<Contacts> make_contacts(const loop::Setup&);
+
+}  // namespace taut

@@ -1,0 +1,116 @@
+// One step in contact against the conditions of Signorini and Coulomb, taken from the positions
+// alone: what the links and inertia leave over at a vertex is what the collider has to push with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/model/angle.hpp"
+#include "core/reference/implicit_step.hpp"
+#include "tests/solver/elastic_step.hpp"
+#include "tests/support/cloths.hpp"
+
+namespace taut::contact_conditions_test {
+namespace {
+
+constexpr double kStiffness = 2000;  // N/m
+const std::string kSprings = "structural=2000,shear=2000,bend=0";
+
+/// A sheet of 9 x 9, half a metre wide, that falls on to the collider until it lies on it.
+Scene lying_on(const Shape& shape, double height, double friction, double thickness = 0.005) {
+  Scene scene;
+  scene.name = "lying";
+  scene.mesh = make_sheet({.nu = 9,
+                           .nv = 9,
+                           .width = 0.5,
+                           .height = 0.5,
+                           .origin = {-0.26, height, -0.23},
+                           .v = Vec3::UnitZ(),
+                           .mass = 0.1});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(81, Vec3::Zero())};
+  scene.links = grid_links(scene.mesh, {true, true, false});
+  scene.dt = 1.0 / 64;
+  scene.thickness = thickness;
+  scene.colliders = {{.shape = shape, .motion = {}, .friction = friction}};
+  scene.start = simulate(scene, "implicit:" + kSprings, 40);
+  return scene;
+}
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> all;
+  for (const double friction : {0.0, 0.3}) {
+    all.push_back(lying_on(Ball{{0, 0, 0}, 0.2}, 0.21, friction));
+    all.push_back(lying_on(Box{{0, 0, 0}, {0.15, 0.1, 0.12}}, 0.11, friction));
+    all.push_back(lying_on(Capsule{{-0.3, 0, 0}, {0.3, 0.1, 0}, 0.1}, 0.2, friction));
+    const double slope = 20 * kDegree;  // slides with .3
+    all.push_back(lying_on(Plane{{std::sin(slope), std::cos(slope), 0}, 0}, 0.12, friction));
+  }
+  return all;
+}
+
+/// How far, in the motion of a vertex by its own inertia [m], x is from the conditions of contact.
+double violation(const Scene& scene, const std::vector<Vec3>& x) {
+  const ElasticStep step(scene, {kStiffness, kStiffness, 0});
+  const Eigen::VectorXd left = step.gradient(x);
+  const std::vector<double> w = inverse_masses(scene);
+  const Collider& collider = scene.colliders[0];
+  double worst = 0;
+  int touching = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 force = left.segment<3>(3 * static_cast<Eigen::Index>(i));
+    const double per_force = w[i] * scene.dt * scene.dt;
+    const Surface at = surface(collider.shape, x[i]);
+    const double gap = at.distance - scene.thickness;
+    worst = std::max(worst, -gap);
+    if (gap > 1e-7) {
+      worst = std::max(worst, per_force * force.norm());
+      continue;
+    }
+    ++touching;
+    const double push = at.normal.dot(force);
+    const Vec3 rub = force - push * at.normal;
+    Vec3 slip = x[i] - scene.start.x[i];
+    slip -= at.normal.dot(slip) * at.normal;
+    worst = std::max(worst, -per_force * push);
+    const double most = collider.friction * std::max(0.0, push);
+    if (slip.norm() > 1e-7)
+      worst = std::max(worst, per_force * (rub + most * slip.normalized()).norm());
+    else
+      worst = std::max(worst, per_force * (rub.norm() - most));
+  }
+  EXPECT_GT(touching, 8) << "or nothing was asked";
+  return worst;
+}
+
+const char* name_of(const Scene& scene) { return type_name(scene.colliders[0].shape).data(); }
+
+TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
+  for (const Scene& scene : scenes())
+    for (const auto& [solver, few, many] :
+         {std::tuple("implicit", 2, 60), std::tuple("pd", 10, 20000), std::tuple("vbd", 10, 20000),
+          std::tuple("admm:links=elastic", 10, 20000)}) {
+      const auto after = [&](int iterations) {
+        return violation(
+            scene, after_one_step(
+                       scene, with(solver, kSprings + ",iterations=" + std::to_string(iterations)))
+                       .x);
+      };
+      const double end = after(many);
+      EXPECT_LT(end, 1e-8) << solver << " on a " << name_of(scene) << ", friction "
+                           << scene.colliders[0].friction;
+      EXPECT_GT(after(few), 2 * end) << solver;
+    }
+}
+
+TEST(ContactConditions, HoldForTheReference) {
+  for (const Scene& scene : scenes()) {
+    const reference::ImplicitStep step(scene, scene.start, 0, {kStiffness, kStiffness, 0});
+    const auto minimum = step.minimum(scene.start.x);
+    EXPECT_EQ(minimum.problem, "");
+    EXPECT_LT(violation(scene, minimum.x), 1e-9)
+        << name_of(scene) << ", friction " << scene.colliders[0].friction;
+  }
+}
+
+}  // namespace
+}  // namespace taut::contact_conditions_test
