@@ -138,6 +138,16 @@ bool read_sheet(Section& cloth, const Fabric* fabric, const FileKeys& said, Scen
   return true;
 }
 
+/// "sheet.obj: 14 lines skipped, for no cloth has what they say: adje 1, vv 4".
+std::string remark_on(const Polygons& surface) {
+  int lines = 0;
+  for (const auto& [word, count] : surface.skipped) lines += count;
+  return surface.file + ": " + std::to_string(lines) + (lines == 1 ? " line" : " lines") +
+         " skipped, for no cloth here has what they say: " +
+         join(surface.skipped, ", ",
+              [](const auto& one) { return one.first + " " + std::to_string(one.second); });
+}
+
 /// The surface in an OBJ file, scaled, turned and moved. False and the file's own errors if it is
 /// none.
 bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fabric* fabric,
@@ -162,6 +172,7 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fab
   }
   const auto mass = read_mass(cloth, fabric, said, surface.faces.empty() ? 1 : area(surface));
   if (!mass || surface.faces.empty()) return false;
+  if (!surface.skipped.empty()) cloth.diagnostics().remark(remark_on(surface));
   scene.mesh = make_mesh(surface, *mass, said.lumping);
   scene.links = mesh_links(surface, links_of(said));
   scene.start.x = scene.mesh.rest;

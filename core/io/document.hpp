@@ -83,12 +83,16 @@ class Diagnostics {
     for (Diagnostic& d : more) found_.push_back(std::move(d));
   }
   bool clean() const { return found_.empty(); }
+  /// What is not wrong, but not used either: a sentence for the user.
+  void remark(const std::string& sentence) { remarks_.push_back(sentence); }
+  const std::vector<std::string>& remarks() const { return remarks_; }
   /// Throws InputError with all that was reported, in the order of the file; returns if none was.
   void throw_if_any();
 
  private:
   const Document& document_;
   std::vector<Diagnostic> found_;
+  std::vector<std::string> remarks_;
 };
 
 /// Reads the keys of one table. Every key that is asked for is known; finish() reports the others.

@@ -8,9 +8,12 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
+#include "core/io/face.hpp"
+#include "core/io/obj_lines.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
@@ -51,25 +54,37 @@ struct Edge {
   std::vector<int> faces;
 };
 
+Face face_of(const Polygons& p, const std::vector<int>& face) {
+  std::vector<Vec3> corners;
+  corners.reserve(face.size());
+  for (const int v : face) corners.push_back(p.vertices[to_index(v)]);
+  return Face(std::move(corners));
+}
+
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() / 2;
 }
 
-/// Mean over the fans from each vertex of a face: what each vertex owns of the face's area (a third
-/// of every triangle that it is a corner of).
+/// What each vertex of a face owns of its area: a third of every triangle that it is a corner of,
+/// in the mean over the fans from each vertex; in its ears if it is not convex.
 std::vector<double> shares(const Polygons& p, const std::vector<int>& face) {
   const std::size_t n = face.size();
   std::vector<double> share(n, 0.0);
+  const auto add = [&](const std::array<std::size_t, 3>& corners, double fans) {
+    const double third = triangle_area(p.vertices[to_index(face[corners[0]])],
+                                       p.vertices[to_index(face[corners[1]])],
+                                       p.vertices[to_index(face[corners[2]])]) /
+                         3;
+    for (const std::size_t corner : corners) share[corner] += third / fans;
+  };
+  if (n > 3)
+    if (const Face shape = face_of(p, face); !shape.convex()) {
+      for (const auto& triangle : shape.triangles()) add(triangle, 1);
+      return share;
+    }
   const double fans = n == 3 ? 1 : static_cast<double>(n);
   for (std::size_t apex = 0; apex < (n == 3 ? 1 : n); ++apex)
-    for (std::size_t k = 1; k + 1 < n; ++k) {
-      const std::size_t corners[] = {apex, (apex + k) % n, (apex + k + 1) % n};
-      const double third = triangle_area(p.vertices[to_index(face[corners[0]])],
-                                         p.vertices[to_index(face[corners[1]])],
-                                         p.vertices[to_index(face[corners[2]])]) /
-                           3;
-      for (const std::size_t corner : corners) share[corner] += third / fans;
-    }
+    for (std::size_t k = 1; k + 1 < n; ++k) add({apex, (apex + k) % n, (apex + k + 1) % n}, fans);
   return share;
 }
 
@@ -80,6 +95,19 @@ double face_area(const Polygons& p, const std::vector<int>& face) {
 
 std::string number(int vertex) { return std::to_string(vertex + 1); }  // as OBJ counts
 
+/// Whether its corners are not all on one line.
+bool is_spread(const Polygons& p, const std::vector<int>& face) {
+  double largest = 0, longest2 = 0;
+  const Vec3& first = p.vertices[to_index(face[0])];
+  for (std::size_t k = 1; k < face.size(); ++k) {
+    const Vec3 &a = p.vertices[to_index(face[k])],
+               &b = p.vertices[to_index(face[(k + 1) % face.size()])];
+    largest = std::max(largest, triangle_area(first, a, b));
+    longest2 = std::max({longest2, (a - first).squaredNorm(), (b - a).squaredNorm()});
+  }
+  return largest > 1e-9 * longest2;
+}
+
 void judge_faces(const Polygons& p, SurfaceErrors& errors) {
   for (std::size_t f = 0; f < p.faces.size(); ++f) {
     double longest2 = 0;
@@ -88,7 +116,12 @@ void judge_faces(const Polygons& p, SurfaceErrors& errors) {
       const Vec3& b = p.vertices[to_index(p.faces[f][(k + 1) % p.faces[f].size()])];
       longest2 = std::max(longest2, (b - a).squaredNorm());
     }
-    if (!(face_area(p, p.faces[f]) > 1e-9 * longest2))
+    if (p.faces[f].size() > 3 && is_spread(p, p.faces[f]) &&
+        face_of(p, p.faces[f]).crosses_itself())
+      errors.report(
+          p.face_lines[f],
+          "the outline of the face crosses or touches itself: it has to go once round an area");
+    else if (!(face_area(p, p.faces[f]) > 1e-9 * longest2))
       errors.report(p.face_lines[f], "the face has no area");
   }
 }
@@ -152,7 +185,16 @@ int beside(const std::vector<int>& face, int of, int other) {
 }
 
 /// Keywords that say nothing about the shape.
-constexpr std::string_view kSkipped[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
+constexpr std::string_view kOfOthers[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
+/// What other programs add to it and no cloth of ours has: plastic and moving cloth, its edges and
+/// neighbours (ArcSim), seams, lines and points, detail levels. They are skipped, and counted.
+constexpr std::string_view kCounted[] = {"vv", "ny", "nv",   "vl",    "e",      "ea",
+                                         "ed", "tl", "adje", "adjf",  "stitch", "l",
+                                         "p",  "mg", "lod",  "usemap"};
+
+bool is_among(std::span<const std::string_view> all, std::string_view word) {
+  return std::ranges::find(all, word) != all.end();
+}
 
 class ObjReader {
  public:
@@ -160,17 +202,19 @@ class ObjReader {
     polygons_.file = file;
   }
 
-  void line(std::string_view text) {
-    ++line_;
-    words_ = words_of(text);
-    if (words_.empty()) return;
-    if (words_[0] == "v")
-      vertex();
-    else if (words_[0] == "f")
-      face();
-    else if (std::find(std::begin(kSkipped), std::end(kSkipped), words_[0]) == std::end(kSkipped))
-      report(0, "'" + std::string(words_[0].substr(0, 40)) +
-                    "' is not read: a cloth is made of 'v' and 'f' lines");
+  void read(std::string_view text) {
+    for (ObjLines lines(text); lines.next(words_);) {
+      if (words_.empty()) continue;
+      const std::string_view what = words_[0].text;
+      if (what == "v")
+        vertex();
+      else if (what == "f")
+        face();
+      else if (is_among(kCounted, what))
+        ++polygons_.skipped[std::string(what)];
+      else if (!is_among(kOfOthers, what))
+        report(0, shown(0) + " is not read: a cloth is made of 'v' and 'f' lines");
+    }
   }
 
   /// Faces may name vertices that come later in the file, so the count is known only now.
@@ -189,34 +233,35 @@ class ObjReader {
 
  private:
   void report(std::size_t word, const std::string& message) {
-    const auto column = words_[word].data() - words_[0].data() + 1;
-    errors_.report(line_, message, static_cast<int>(column));
+    errors_.report(words_[word].line, message, words_[word].column);
+  }
+  std::string shown(std::size_t word) const {
+    return "'" + std::string(words_[word].text.substr(0, 40)) + "'";
   }
 
   void vertex() {
     Vec3 x = Vec3::Zero();
     if (words_.size() < 4) return report(0, "a vertex needs three coordinates");
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto value = whole<double>(words_[axis + 1]);
+      const auto value = whole<double>(words_[axis + 1].text);
       if (!value || !std::isfinite(*value) || std::abs(*value) > 1e9) {
-        report(axis + 1, "'" + std::string(words_[axis + 1].substr(0, 40)) +
-                             "' is not a coordinate: a finite number within 1e9");
+        report(axis + 1, shown(axis + 1) + " is not a coordinate: a finite number within 1e9");
         break;  // the vertex stays, so that faces keep their numbers
       }
       x[static_cast<Eigen::Index>(axis)] = *value;
     }
     polygons_.vertices.push_back(x);
-    polygons_.vertex_lines.push_back(line_);
+    polygons_.vertex_lines.push_back(words_[0].line);
   }
 
   /// "7", "7/1", "7//3" or "7/1/3"; -1 is the latest vertex. Only the first number matters.
   void face() {
     std::vector<int> corners;
     for (std::size_t w = 1; w < words_.size(); ++w) {
-      const auto index = whole<long>(words_[w].substr(0, words_[w].find('/')));
+      const std::string_view word = words_[w].text;
+      const auto index = whole<long>(word.substr(0, word.find('/')));
       const auto so_far = static_cast<long>(polygons_.vertices.size());
-      if (!index || *index > (1L << 30))
-        return report(w, "'" + std::string(words_[w].substr(0, 40)) + "' is not a vertex number");
+      if (!index || *index > (1L << 30)) return report(w, shown(w) + " is not a vertex number");
       if (*index == 0) return report(w, "vertices are numbered from 1; 0 names none");
       if (*index < -so_far)
         return report(w, "the face names vertex " + std::to_string(*index) + ", but there are " +
@@ -230,13 +275,12 @@ class ObjReader {
     if (twice != sorted.end())
       return report(0, "the face names vertex " + std::to_string(*twice + 1) + " twice");
     polygons_.faces.push_back(std::move(corners));
-    polygons_.face_lines.push_back(line_);
+    polygons_.face_lines.push_back(words_[0].line);
   }
 
   SurfaceErrors& errors_;
   Polygons polygons_;
-  int line_ = 0;
-  std::vector<std::string_view> words_;
+  std::vector<ObjWord> words_;
 };
 
 }  // namespace
@@ -252,6 +296,12 @@ Mesh make_mesh(const Polygons& p, double mass, Lumping lumping) {
   Mesh mesh;
   mesh.rest = p.vertices;
   for (std::vector<int> face : p.faces) {
+    if (face.size() > 3)
+      if (const Face shape = face_of(p, face); !shape.convex()) {
+        for (const auto& [a, b, c] : shape.triangles())
+          mesh.triangles.push_back({face[a], face[b], face[c]});
+        continue;
+      }
     const auto x = [&](std::size_t k) { return p.vertices[to_index(face[k])]; };
     if (face.size() == 4 && (x(1) - x(3)).squaredNorm() < (x(0) - x(2)).squaredNorm())
       std::rotate(face.begin(), face.begin() + 1, face.end());
@@ -308,8 +358,7 @@ std::vector<Link> mesh_links(const Polygons& p, const LinkChoice& choice) {
 Polygons parse_obj(const std::string& file, const std::string& text) {
   SurfaceErrors errors(file);
   ObjReader reader(file, errors);
-  std::string_view rest = text;
-  while (!rest.empty()) reader.line(take_line(rest));
+  reader.read(text);
   Polygons polygons = reader.take();
   errors.throw_if_any();  // what follows presumes that every face names vertices that exist
   judge_surface(polygons, errors);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,16 @@ struct Polygons {
   std::vector<std::vector<int>> faces;  ///< vertices of each face in order round it, three or more
   std::vector<int> vertex_lines;        ///< [n] where each vertex stands in the file
   std::vector<int> face_lines;          ///< the same of each face
+  /// How many lines of each keyword were skipped that say something, but nothing that a cloth has.
+  std::map<std::string, int> skipped;
 };
 
 /// Reads the `v` and `f` lines of a Wavefront OBJ file; comments, normals, texture coordinates,
-/// groups and materials are skipped. Throws InputError with file and line of everything that is
-/// malformed, and of everything that no cloth can be made of: faces that name a vertex which is not
-/// there, name one twice or have no area; edges of more than two faces; vertices without a face;
-/// vertices that coincide.
+/// groups and materials are skipped, and so is what other programs add. Throws InputError with file
+/// and line of everything that is malformed, of words that nobody knows, and of everything that no
+/// cloth can be made of: faces that name a vertex which is not there, name one twice, cross
+/// themselves or have no area; edges of more than two faces; vertices without a face; vertices that
+/// coincide.
 Polygons read_obj(const std::filesystem::path&);
 
 /// The same for text that is already in memory; `file` is for the messages.
@@ -31,9 +35,10 @@ Polygons parse_obj(const std::string& file, const std::string& text);
 double area(const Polygons&);
 
 /// The cloth of `mass` kg. Faces are cut into triangles: quads along their shorter diagonal, larger
-/// ones as a fan. Lumping::area gives each face's mass to its vertices by the thirds of its
-/// triangles, averaged over the fans from each of its vertices, so that no diagonal is preferred (a
-/// parallelogram gives a quarter to each corner, as in make_sheet).
+/// ones as a fan, those that are not convex by ears. Lumping::area gives each face's mass to its
+/// vertices by the thirds of its triangles, averaged over the fans from each of its vertices, so
+/// that no diagonal is preferred (a parallelogram gives a quarter to each corner, as in
+/// make_sheet).
 Mesh make_mesh(const Polygons&, double mass, Lumping);
 
 /// Links of any surface, families one after the other, sorted by their vertices within each:

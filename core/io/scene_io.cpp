@@ -347,17 +347,16 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
                       " m deep; move one of them, or set start_inside = \"resolve\" in [cloth]");
 }
 
+/// What moves for a time step or longer moves as `velocity` would have it, however fast: no jump.
 void judge_path(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const auto& path = collider.motion.path;
-  const double farthest = extent(scene);  // m, in one time step
   for (std::size_t k = 1; k < path.size(); ++k) {
-    const double speed =
-        (path[k].displacement - path[k - 1].displacement).norm() / (path[k].t - path[k - 1].t);
-    if (speed * scene.dt <= farthest) continue;
-    root.diagnostics().report(
-        item.place, "the path jumps: from key " + std::to_string(k) + " to key " +
-                        std::to_string(k + 1) + " it makes " + as_typed(speed * scene.dt) +
-                        " m in one time step, more than the size of the cloth");
+    const double way = (path[k].displacement - path[k - 1].displacement).norm();
+    if (path[k].t - path[k - 1].t >= scene.dt || way <= extent(scene)) continue;
+    root.diagnostics().report(item.place,
+                              "the path jumps: from key " + std::to_string(k) + " to key " +
+                                  std::to_string(k + 1) + " it makes " + as_typed(way) +
+                                  " m within one time step, more than the size of the cloth");
     return;
   }
 }
@@ -404,7 +403,8 @@ void check_contact(Section& root, const FileKeys& said, Scene& scene) {
                     " and " + std::to_string(pairs[0][1]));
 }
 
-Scene scene_of(const Document& document, const std::filesystem::path& path) {
+Scene scene_of(const Document& document, const std::filesystem::path& path,
+               std::vector<std::string>* remarks = nullptr) {
   Diagnostics diagnostics(document);
   Section root(diagnostics, document.root, "the scene");
   Scene scene;
@@ -447,13 +447,15 @@ Scene scene_of(const Document& document, const std::filesystem::path& path) {
   if (built) check_whole(root, diagnostics, scene);
   if (built && diagnostics.clean()) check_contact(root, said, scene);
   diagnostics.throw_if_any();
+  if (remarks) *remarks = diagnostics.remarks();
   return scene;
 }
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
-  return scene_of(read_document(path, overrides), path);
+Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                 std::vector<std::string>* remarks) {
+  return scene_of(read_document(path, overrides), path, remarks);
 }
 
 Scene parse_scene(const std::filesystem::path& file, const std::string& text,

@@ -12,8 +12,10 @@ namespace taut {
 /// `overrides` are TOML assignments with dotted keys that replace values of the file before it is
 /// judged, such as "cloth.grid=[16, 16]" or "time.dt=\"1/120\"". Throws InputError with every
 /// diagnostic at once: unreadable or malformed file, unknown, duplicate or missing keys, wrong
-/// types, non-finite or out-of-range numbers, pins outside the cloth.
-Scene load_scene(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
+/// types, non-finite or out-of-range numbers, pins outside the cloth. `remarks`, if given, gets
+/// what was skipped of its mesh, a sentence.
+Scene load_scene(const std::filesystem::path&, const std::vector<std::string>& overrides = {},
+                 std::vector<std::string>* remarks = nullptr);
 
 /// The same for text that is already in memory; `file` names it in messages, and a mesh is looked
 /// for beside it.

@@ -36,8 +36,10 @@ struct BendingElement {
 ///
 /// p along the warp, t across it. Where no length changes it is the bending energy of the sheet,
 /// for second derivatives are then normal to it (Bergou et al., A Quadratic Bending Model for
-/// Inextensible Surfaces, SGP 2006); a strip cut at an angle a to the warp bends with
-/// (sqrt(B_warp) cos^2 a + sqrt(B_weft) sin^2 a)^2. The second derivatives at a triangle are those
+/// Inextensible Surfaces, SGP 2006). A strip cut at an angle a to the warp bends with
+/// 1/(cos^2 a/sqrt(B_warp) + sin^2 a/sqrt(B_weft))^2, for its other two curvatures are free; one
+/// that is forced into a cylinder across its length, with (sqrt(B_warp) cos^2 a + sqrt(B_weft)
+/// sin^2 a)^2. The second derivatives at a triangle are those
 /// of the quadratic through its vertices and the ones beyond its edges, unfolded into its plane:
 /// exact for quadratic shapes on any mesh. Beyond the cloth's own edges there is none, and the
 /// quadratic is the least bent one: no moment there. (The paper's sum over hinges, 3/(A_1 + A_2) of

@@ -108,7 +108,8 @@ const SceneKey kKeys[] = {
     other("bending.stiffness", "number or table", "N m", "1e-12 to 1e6", "needed",
           "{ warp = 1.2e-5, weft = 8e-6 }",
           "moment per width and curvature; one number, or of a strip along the warp and one across "
-          "it; at an angle a, (sqrt(warp) cos^2 a + sqrt(weft) sin^2 a)^2"),
+          "it; one at an angle a to the warp, free to twist, 1/(cos^2 a/sqrt(warp) + sin^2 "
+          "a/sqrt(weft))^2"),
     direction("bending.warp", &Bending::direction, "[1, 0, 0]",
               "of the warp over the rest shape, projected on each face; needed for a mesh whose "
               "stiffnesses differ")

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <ctime>
+#include <iterator>
 
 #include "core/model/input_error.hpp"
 
@@ -29,6 +30,11 @@ std::string Solver::log() const { return {}; }
 
 void set_solver_source(SolverSource source) { g_source = source; }
 
+void admit_solver(std::string_view text) {
+  const std::string name = solver_name(text);
+  if (g_source.admit) g_source.admit(name, text.substr(std::min(text.size(), name.size() + 1)));
+}
+
 const ResolvedSetting* find_setting(const ResolvedSettings& all, std::string_view name) {
   const auto at = std::ranges::find(all, name, &ResolvedSetting::name);
   return at == all.end() ? nullptr : &*at;
@@ -36,8 +42,11 @@ const ResolvedSetting* find_setting(const ResolvedSettings& all, std::string_vie
 
 std::vector<const SolverEntry*> all_solvers() {
   std::vector<const SolverEntry*> all(solvers().begin(), solvers().end());
-  if (!g_source.all) return all;
-  for (const SolverEntry* entry : g_source.all()) all.push_back(entry);
+  if (!g_source.names) return all;
+  for (const std::string& name : g_source.names()) {
+    admit_solver(name);
+    all.push_back(&find_solver(name));
+  }
   return all;
 }
 
@@ -54,7 +63,8 @@ const SolverEntry& find_solver(std::string_view name, std::string_view params) {
   if (const SolverEntry* entry = g_source.find ? g_source.find(name, params) : nullptr)
     return *entry;
   std::vector<std::string> names;
-  for (const SolverEntry* entry : all_solvers()) names.emplace_back(entry->name);
+  for (const SolverEntry* entry : solvers()) names.emplace_back(entry->name);
+  if (g_source.names) std::ranges::move(g_source.names(), std::back_inserter(names));
   throw InputError("unknown solver '" + std::string(name) + "'" +
                    suggestion(std::string(name), names) + " (`taut list solvers` names all)");
 }

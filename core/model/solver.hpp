@@ -142,6 +142,7 @@ struct SolverEntry {
   std::string_view summary;           ///< one sentence
   std::string_view source;            ///< paper or library, with version
   std::span<const ParamSpec> params;  ///< drives the command line, the documentation and the errors
+  /// Null: it cannot run, for a stored text alone names it (admit_solver).
   std::function<std::unique_ptr<Solver>(const Scene&, const Params&)> make;
   /// Why it would misread this scene, a sentence each; empty: it can.
   std::function<std::vector<std::string>(const Scene&, const Params&)> unsupported;
@@ -176,13 +177,20 @@ std::span<const SolverEntry* const> solvers();
 /// Where solvers come from that are no part of this program (experiments/external). Entries live as
 /// long as the program does.
 struct SolverSource {
-  std::vector<const SolverEntry*> (*all)() = nullptr;
-  /// The entry of "name:params"; null: it has none of that name. Throws InputError.
+  std::vector<std::string> (*names)() = nullptr;
+  /// The entry of "name:params"; null: it has none of that name. What was not admitted is neither
+  /// started nor opened: its entry makes no solver. Throws InputError.
   const SolverEntry* (*find)(std::string_view name, std::string_view params) = nullptr;
+  /// Null: what it finds needs no admission.
+  void (*admit)(std::string_view name, std::string_view params) = nullptr;
 };
 void set_solver_source(SolverSource);
 
-/// solvers(), and those that the source names.
+/// From here on the program or file that a solver's text names may be started and opened. Said of
+/// what the command line and studies hold; a text that was stored is data, and stays it.
+void admit_solver(std::string_view text);
+
+/// solvers(), and those that the source names, which are admitted.
 std::vector<const SolverEntry*> all_solvers();
 
 /// Throws InputError with a suggestion if there is no such solver. `params` is what follows the

@@ -5,15 +5,14 @@
 
 namespace taut {
 
-std::string printable(std::string_view text) {
-  constexpr std::size_t kMost = 2000;
+std::string printable(std::string_view text, std::size_t most) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto at = [&](std::size_t k) -> unsigned {
       return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U;
     };
     const unsigned c = at(i);
-    if (out.size() >= kMost && (c & 0xC0U) != 0x80) return out + "...";
+    if (out.size() >= most && (c & 0xC0U) != 0x80) return out + "...";
     const bool two = c == 0xC2 && at(i + 1) >= 0x80 && at(i + 1) < 0xA0;  // U+0080 to U+009F
     const bool one = (c < 0x20 && c != '\t' && c != '\n') || c == 0x7f;
     out += one || two ? '?' : text[i];

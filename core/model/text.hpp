@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -8,8 +9,8 @@
 namespace taut {
 
 /// A text from outside as a terminal may have it: each control character but tab and line feed
-/// becomes '?', and what is beyond 2000 bytes "...". The text of every Diagnostic is.
-std::string printable(std::string_view);
+/// becomes '?', and what is beyond `most` bytes "...". The text of every Diagnostic is.
+std::string printable(std::string_view, std::size_t most = 2000);
 
 /// The shortest text that reads back as the same number.
 std::string shortest(double value);

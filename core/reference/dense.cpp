@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <stdexcept>
 
 namespace taut::reference {
 
@@ -11,7 +10,7 @@ namespace {
 template <class Decomposition>
 const Decomposition& converged(const Decomposition& decomposition) {
   if (decomposition.info() != Eigen::Success)
-    throw std::runtime_error("the QR algorithm for eigenvalues does not converge");
+    throw NotComputable("the QR algorithm for eigenvalues does not converge");
   return decomposition;
 }
 
@@ -35,13 +34,19 @@ Eigen::VectorXd tridiagonal_eigenvalues(const Eigen::VectorXd& diagonal,
                                         const Eigen::VectorXd& beside) {
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
-  return converged(solver).eigenvalues();
+  if (solver.info() == Eigen::Success) return solver.eigenvalues();
+  // Eigen 3.4 takes a value beside the diagonal for zero if its square is small beside the
+  // diagonal, which depends on the unit: a matrix of large numbers may never end, the same below 1
+  // does.
+  const double largest = diagonal.cwiseAbs().maxCoeff();
+  solver.computeFromTridiagonal(diagonal / largest, beside / largest, Eigen::EigenvaluesOnly);
+  return largest * converged(solver).eigenvalues();
 }
 
 Eigen::VectorXd solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
   const Eigen::PartialPivLU<Eigen::MatrixXd> factors(matrix);
   if ((factors.matrixLU().diagonal().array() == 0).any())
-    throw std::runtime_error("the matrix of a linear system is singular");
+    throw NotComputable("the matrix of a linear system is singular");
   return factors.solve(right);
 }
 

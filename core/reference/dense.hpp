@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stdexcept>
 
 // The one place that instantiates Eigen's dense decompositions, which take long to compile.
 
@@ -13,8 +14,12 @@ struct Modes {
   Eigen::MatrixXcd eigenvectors;
 };
 
-/// Precondition: square and finite. Accuracy: that of the QR algorithm. Throws std::runtime_error
-/// if that does not converge.
+/// What cannot be computed: a QR algorithm that does not converge, a matrix that is singular.
+struct NotComputable : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Precondition: square and finite. Accuracy: that of the QR algorithm. Throws NotComputable.
 Modes modes(const Eigen::MatrixXd&);
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd&);
 
@@ -22,11 +27,12 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd&);
 double spectral_radius(const Eigen::MatrixXd&);
 
 /// Eigenvalues, ascending, of the symmetric matrix with this diagonal and these values beside it.
+/// Throws NotComputable.
 Eigen::VectorXd tridiagonal_eigenvalues(const Eigen::VectorXd& diagonal,
                                         const Eigen::VectorXd& beside);
 
-/// x of `matrix` x = `right`, by partial pivoting. Throws std::runtime_error if the
-/// matrix is exactly singular.
+/// x of `matrix` x = `right`, by partial pivoting. Throws NotComputable if the matrix is exactly
+/// singular.
 Eigen::VectorXd solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
 }  // namespace taut::reference

@@ -187,10 +187,13 @@ std::optional<LinearStability> stability(const Scene&, std::monostate) { return 
 
 }  // namespace
 
-std::optional<LinearStability> linear_stability(const Scene& scene, const SolverChoice& choice) {
+std::optional<LinearStability> linear_stability(const Scene& scene,
+                                                const SolverChoice& choice) try {
   if (!choice.entry->linear_model) return {};
   return std::visit([&](const auto& model) { return stability(scene, model); },
                     choice.entry->linear_model(scene, choice.params));
+} catch (const reference::NotComputable&) {
+  return {};
 }
 
 }  // namespace taut

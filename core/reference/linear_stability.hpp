@@ -17,7 +17,8 @@ struct LinearStability {
   bool stable() const { return margin <= 1 + 1e-6; }
 };
 
-/// Empty where no theory is known: the solver says what it does (SolverEntry::linear_model).
+/// Empty where no theory is known, for the solver says what it does (SolverEntry::linear_model), or
+/// where its eigenvalues cannot be computed.
 ///
 /// LinearSprings, Verlet and symplectic Euler. With the stiffness K of springs and bending, masses
 /// M, drag C, h the substep, q = exp(-damping h), a mode turns unstable when its multiplier reaches

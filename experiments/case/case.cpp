@@ -24,8 +24,8 @@ const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
   for (const std::string& text : spec.overrides) address += '\n' + text;
   Loaded& loaded = scenes_[address];
   if (!loaded.scene) {
-    loaded.scene =
-        std::make_shared<const Scene>(load_scene(find_scene(spec.scene), spec.overrides));
+    loaded.scene = std::make_shared<const Scene>(
+        load_scene(find_scene(spec.scene), spec.overrides, &loaded.remarks));
     loaded.digest = digest(*loaded.scene);
   }
   return loaded;
@@ -43,10 +43,16 @@ Case CaseMaker::make(const CaseSpec& spec) {
   };
   const Loaded* found = nullptr;
   collect([&] { found = &scene(spec); });
-  collect([&] { one.choice = parse_solver(spec.solver); });
+  collect([&] {
+    one.choice = parse_solver(spec.solver);
+    if (!one.choice.entry->make)
+      throw InputError(spec.solver +
+                       ": is not started, for neither the command line nor a study names it");
+  });
   if (!wrong.empty()) throw InputError(wrong);
   const Loaded& loaded = *found;
   one.scene = loaded.scene;
+  one.remarks = loaded.remarks;
   one.spec.solver = one.choice.canonical();
   one.key = case_key(*loaded.scene, loaded.digest, one.choice);
   one.id = loaded.scene->name;

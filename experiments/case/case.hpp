@@ -16,8 +16,9 @@ struct Case {
   CaseSpec spec;
   std::shared_ptr<const Scene> scene;
   SolverChoice choice;
-  std::string key;  ///< case_key
-  std::string id;   ///< for people: "hang dt=1/64 jakobsen:iterations=8"
+  std::string key;                        ///< case_key
+  std::string id;                         ///< for people: "hang dt=1/64 jakobsen:iterations=8"
+  std::vector<std::string> remarks = {};  ///< what was skipped of the scene's files
 };
 
 /// Makes cases; a scene that many of them share is read once.
@@ -30,6 +31,7 @@ class CaseMaker {
   struct Loaded {
     std::shared_ptr<const Scene> scene;
     std::string digest;
+    std::vector<std::string> remarks;
   };
   const Loaded& scene(const CaseSpec&);
   std::map<std::string, Loaded> scenes_;

@@ -186,7 +186,7 @@ EnergyBudget::EnergyBudget(const Scene& scene, int substeps)
   } else {
     // A vertex takes a third of each face around it; the whole area is more than any can take.
     wind_mass_ = mass;
-    wind_acceleration_ = scene.wind->strength * area(scene) * speed / lightest;
+    if (lightest > 0) wind_acceleration_ = scene.wind->strength * area(scene) * speed / lightest;
   }
 }
 

@@ -153,7 +153,7 @@ void name_it(Record& record, const Case& one) {
 }  // namespace
 
 CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
-  CaseRun run{describe(scene, choice), {}, scene.start};
+  CaseRun run{describe(scene, choice), {}, {}};
   std::unique_ptr<Solver> solver;
   int step = 0;
   try {

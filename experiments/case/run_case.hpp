@@ -28,7 +28,10 @@ struct RunOptions {
 struct CaseRun {
   Record record;  ///< key and id are empty: run_case of a Case (case.hpp) sets them
   Series series;
-  State last;  ///< the last stable boundary: the final state, or the last before an explosion
+  State last;  ///< the last stable boundary: the final state, or the last before an explosion;
+               ///< empty: nothing was computed
+
+  bool computed() const { return !last.x.empty(); }
 };
 
 /// Runs one case in this process, step by step: load, then for every step `step` and `store`, with

@@ -188,8 +188,8 @@ std::string man_page(const CLI::App& app, const std::string& version) {
     add_entry(out, *verb, "");
   }
   return out + R"(.SH EXIT STATUS
-0: passed. 1: a regression, a status change or a broken truth. 2: bad usage or input. 3: some cases
-are missing. 4: nothing was compared or found. 5: another environment. 6: another result under the
+0: passed. 1: a regression, a status change, a broken truth or an external program that failed. 2:
+bad usage or input. 3: some cases are missing. 4: nothing was compared or found. 5: another environment. 6: another result under the
 same key. 130: interrupted.
 )";
 }
@@ -221,6 +221,14 @@ void refuse_empty_values(int argc, char** argv) {
       throw InputError(std::string(word) + ": a value is missing");
 }
 
+/// Whatever is typed may be started, in whatever option it stands.
+void admit_solvers(int argc, char** argv) {
+  for (std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
+    if (word.starts_with("--")) word.remove_prefix(std::min(word.size(), word.find('=') + 1));
+    admit_solver(word);
+  }
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("taut: runs cloth solvers side by side on identical scenes and measures them");
   app.require_subcommand(1);
@@ -233,6 +241,7 @@ int parse_and_run(int argc, char** argv) {
   app.footer("`taut VERB --help` shows the options and an example of each verb.");
   const std::vector<Verb> all = add_verbs(app);
   refuse_empty_values(argc, argv);
+  admit_solvers(argc, argv);
   const std::string first = argc == 2 ? argv[1] : "";  // for `cmake --install`
   if (first == "--man") return std::cout << man_page(app, TAUT_VERSION), flush_output(), kPass;
   if (first == "--bash-completion") return std::cout << bash_completion(app), flush_output(), kPass;

@@ -204,6 +204,10 @@ void check_solvers(const std::vector<std::string>& texts) {
   read_all(texts, [](const std::string& text) { parse_solver(text); });
 }
 
+void tell_remarks(const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks) progress() << remark << '\n';
+}
+
 void CaseOptions::bind(CLI::App& app) {
   app.add_option("SCENE", scene_, "Name of a shipped scene, or a path")->required();
   app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();

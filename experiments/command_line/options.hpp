@@ -74,12 +74,15 @@ void read_all(const All& all, const Read& read) {
 /// load_study(), if figures could draw all that it asks for; else throws InputError, too.
 Study load_study_to_plot(const std::string& name_or_path, const std::string& preset);
 
-/// Throws InputError with everything that is wrong with any of these solvers' texts.
 /// "; preset quick has all of its results: --preset quick", of the presets of a study of which
 /// every case is stored; "" if there is none.
 std::string where_else(const Study&, const Store&);
 
+/// Throws InputError with everything that is wrong with any of these solvers' texts.
 void check_solvers(const std::vector<std::string>& texts);
+
+/// Says on stderr what was skipped of the files of these scenes, a line each.
+void tell_remarks(const std::vector<std::string>& remarks);
 
 /// How verbs name one case: SCENE SOLVER [--dt] [--duration] [--set key=value ...].
 class CaseOptions {

@@ -59,14 +59,16 @@ std::string coloured(std::string_view text, Colour colour) {
 }
 
 void print(const Answer& answer, const Format& format) {
+  // Cells hold what programs and files say; JSON escapes it.
+  const auto shown = [](const std::string& text) { return printable(text, std::string::npos); };
   if (format.json)
     std::cout << to_json(answer);
   else if (format.markdown)
-    std::cout << '`' << typed_command() << "`\n\n" << to_markdown(answer, format.details);
+    std::cout << '`' << typed_command() << "`\n\n" << shown(to_markdown(answer, format.details));
   else if (!format.csv.empty())
-    std::cout << to_csv(answer, format.csv == "true" ? "" : format.csv);
+    std::cout << shown(to_csv(answer, format.csv == "true" ? "" : format.csv));
   else
-    std::cout << with_verdicts(to_text(answer, format.details, columns_of_output()));
+    std::cout << with_verdicts(shown(to_text(answer, format.details, columns_of_output())));
   std::cout << std::flush;
 }
 
@@ -116,6 +118,7 @@ Countdown::Countdown(std::string what)
     : what_(std::move(what)), terminal_(isatty(2) == 1), start_(std::chrono::steady_clock::now()) {}
 
 void Countdown::operator()(std::size_t done, std::size_t total) const {
+  if (done == 0) return;  // nobody knows yet how long a part takes
   if (!g_shown || (!terminal_ && done != total && done % std::max<std::size_t>(1, total / 10) != 0))
     return;
   const double each = seconds_since(start_) / static_cast<double>(done);

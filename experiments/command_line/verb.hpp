@@ -23,7 +23,7 @@ namespace taut {
 /// What a verb's process returns; the same for all verbs.
 enum ExitCode : int {
   kPass = 0,
-  kRegression = 1,   ///< a regression, a status change or a broken truth
+  kRegression = 1,   ///< a regression, a status change, a broken truth, an external program failed
   kUsage = 2,        ///< bad usage or input; nothing was run, nothing was written
   kIncomplete = 3,   ///< some cases are missing
   kNothing = 4,      ///< nothing was compared: a check never passes vacuously

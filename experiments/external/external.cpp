@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <deque>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/io/document.hpp"
@@ -330,6 +332,11 @@ Registered read_registered(const fs::path& file) {
 
 fs::path file_of(const std::string& name) { return registered_folder() / (name + ".toml"); }
 
+bool is_registered(const std::string& name) {
+  std::error_code unreadable;  // the folder of another user: none
+  return fs::is_regular_file(file_of(name), unreadable);
+}
+
 std::vector<std::string> registered_names() {
   std::vector<std::string> names;
   std::error_code none;
@@ -371,12 +378,90 @@ const SolverEntry* program(const std::string& name, std::string_view params,
   return &one->entry();
 }
 
+/// What a solver's text would start or open: a registered name, a command, or files. Empty:
+/// nothing.
+std::set<std::string> named_by(const std::string& name, std::string_view params) {
+  if (!is_solver_name(name)) return {};
+  if (is_registered(name)) return {"solver " + name};
+  std::set<std::string> files;
+  for (const ParamItem& item : param_items(params)) {
+    if (item.key == "cmd") return {"cmd " + item.value};
+    if ((item.key == "file" || item.key == "rest") && !item.value.empty())
+      files.insert("file " + item.value);
+  }
+  return files;
+}
+
+/// What the command line and studies have named so far.
+class Admitted {
+ public:
+  void add(const std::set<std::string>& named) {
+    const std::lock_guard lock(mutex_);
+    all_.insert(named.begin(), named.end());
+  }
+  bool has(const std::set<std::string>& named) {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::includes(all_, named);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::string> all_;
+};
+
+Admitted& admitted() {
+  static Admitted all;
+  return all;
+}
+
+void admit(std::string_view name, std::string_view params) {
+  admitted().add(named_by(std::string(name), params));
+}
+
+/// A program or file that was not admitted: its parameters are texts, as they are stored.
+class Unstarted {
+ public:
+  Unstarted(std::string name, std::string_view given) : name_(std::move(name)) {
+    for (ParamItem& item : param_items(given))
+      if (!item.key.empty()) keys_.insert(std::move(item.key));
+    for (const std::string& key : keys_)
+      specs_.push_back({.name = key, .kind = ParamSpec::Kind::text});
+    entry_ = {.name = name_,
+              .summary = "not started: neither the command line nor a study names it",
+              .source = "unknown",
+              .params = specs_,
+              .unsupported =
+                  [](const Scene&, const Params&) {
+                    return std::vector<std::string>{
+                        "it is not started, for neither the command line nor a study names it"};
+                  },
+              .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
+  }
+  Unstarted(const Unstarted&) = delete;
+  Unstarted& operator=(const Unstarted&) = delete;
+  const SolverEntry& entry() const { return entry_; }
+
+ private:
+  std::string name_;
+  std::set<std::string> keys_;
+  std::vector<ParamSpec> specs_;
+  SolverEntry entry_;
+};
+
+const SolverEntry* unstarted(const std::string& name, std::string_view params) {
+  static std::mutex mutex;
+  static std::map<std::string, Unstarted> entries;
+  const std::lock_guard lock(mutex);
+  return &entries.try_emplace(name + ':' + std::string(params), name, params).first->second.entry();
+}
+
 /// "mine:cmd='...'" and "mine:file=..." give a name to what they call.
 const SolverEntry* find(std::string_view name, std::string_view params) {
   const std::string called(name);
   if (!is_solver_name(name)) return nullptr;
-  if (fs::is_regular_file(file_of(called)))
-    return program(called, params, read_registered(file_of(called)), {});
+  const std::set<std::string> named = named_by(called, params);
+  if (!admitted().has(named)) return unstarted(called, params);
+  if (is_registered(called)) return program(called, params, read_registered(file_of(called)), {});
   const std::vector<ParamItem> items = param_items(params);
   const auto has = [&](std::string_view key) {
     return std::ranges::find(items, key, &ParamItem::key) != items.end();
@@ -389,10 +474,10 @@ const SolverEntry* find(std::string_view name, std::string_view params) {
   return name == kAny.name ? &kAny : name == kPositions.name ? &kPositions : nullptr;
 }
 
-std::vector<const SolverEntry*> all() {
-  std::vector<const SolverEntry*> entries{&kAny, &kPositions};
-  for (const std::string& name : registered_names()) entries.push_back(find(name, ""));
-  return entries;
+std::vector<std::string> names() {
+  std::vector<std::string> all{std::string(kAny.name), std::string(kPositions.name)};
+  std::ranges::move(registered_names(), std::back_inserter(all));
+  return all;
 }
 
 }  // namespace
@@ -409,8 +494,7 @@ fs::path registered_folder() {
 
 Command command_of(const std::string& text) {
   if (!text.starts_with("external:")) {
-    const bool name =
-        text.find_first_of(" /'\"") == text.npos && fs::is_regular_file(file_of(text));
+    const bool name = text.find_first_of(" /'\"") == text.npos && is_registered(text);
     return name ? read_registered(file_of(text)).command : split_command(text, "");
   }
   std::string ours;  // the parameters that are not the program's
@@ -430,6 +514,6 @@ Command command_of(const std::string& text) {
   return command;
 }
 
-void enable() { set_solver_source({.all = all, .find = find}); }
+void enable() { set_solver_source({.names = names, .find = find, .admit = admit}); }
 
 }  // namespace taut::external

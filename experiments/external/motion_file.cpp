@@ -252,6 +252,7 @@ void MotionFile::check_pins(const Scene& scene) {
   for (int k = 0; !scene.pins.empty() && k <= scene.steps; ++k) {
     const std::vector<Vec3> x = frame(k);
     for (const int pin : scene.pins) {
+      if (!x[to_index(pin)].allFinite()) continue;  // how the run ends, not how the file begins
       const Vec3 held = pin_position(scene, pin, k * scene.dt);
       const double distance = (x[to_index(pin)] - held).norm();
       if (distance <= farthest) continue;

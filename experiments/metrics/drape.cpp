@@ -1,3 +1,6 @@
+#include <map>
+#include <numbers>
+#include <set>
 #include <utility>
 
 #include "experiments/metrics/metric.hpp"
@@ -6,16 +9,20 @@ namespace taut {
 
 namespace {
 
-/// Faces whose corners are all pinned lie on the support, in a plane across gravity.
+/// Faces whose corners are all pinned lie on the support, in a plane across gravity. A round cloth
+/// lies on a disc, as the standard has it: through the outermost of its pinned vertices, for the
+/// pinned faces leave gaps at the disc's edge.
 class Drape final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
       {.name = "drape.coefficient",
        .unit = kSignedShare,
-       .help = "(shadow - support)/(cloth - support), mean over the last second: the area that the "
-               "cloth covers seen along gravity, that of the faces whose corners are all pinned, "
-               "and that of all faces at rest; 100 %: flat, 0 %: hangs straight down. Of scenes "
-               "whose pinned faces lie across gravity",
+       .help =
+           "(shadow - support)/(cloth - support), mean over the last second: the area that the "
+           "cloth covers seen along gravity, that of the support, and that of all faces at "
+           "rest; 100 %: flat, 0 %: hangs straight down. The support of a round cloth is the "
+           "disc of its pinned vertices (ISO 9073-9), of others the faces whose corners are all "
+           "pinned. Of scenes whose pinned faces lie across gravity",
        .in_series = true,
        .title = "drape coefficient"}};
   static bool measures(const Scene& scene) {
@@ -25,7 +32,7 @@ class Drape final : public Metric {
   }
   explicit Drape(const Scene& scene)
       : faces_(scene.mesh.triangles),
-        support_(area_of_pinned(scene)),
+        support_(area_of_support(scene)),
         cloth_(area_if(scene, kAll)),
         end_(scene) {
     const Vec3 down = scene.gravity.normalized();
@@ -63,6 +70,39 @@ class Drape final : public Metric {
       return pinned;
     });
     return level ? area : 0;
+  }
+
+  static double area_of_support(const Scene& scene) {
+    const std::vector<Vec3>& x = scene.mesh.rest;
+    const Vec3 centre = centre_of(scene);
+    double near = Summary::kInfinity, far = 0;  // from the centre to the cloth's own edge
+    for (const int v : rim_of(scene.mesh)) {
+      const double distance = (x[to_index(v)] - centre).norm();
+      near = std::min(near, distance), far = std::max(far, distance);
+    }
+    if (near < 0.99 * far) return area_of_pinned(scene);
+    double radius = 0;
+    for (const int v : scene.pins) radius = std::max(radius, (x[to_index(v)] - centre).norm());
+    return std::numbers::pi * radius * radius;
+  }
+
+  /// Of the area of the cloth at rest.
+  static Vec3 centre_of(const Scene& scene) {
+    Vec3 sum = Vec3::Zero();
+    for (const Triangle& t : scene.mesh.triangles)
+      for (const int v : t) sum += doubled_area(scene, t).norm() / 6 * scene.mesh.rest[to_index(v)];
+    return sum / area_if(scene, kAll);
+  }
+
+  /// The vertices of edges that belong to one face.
+  static std::set<int> rim_of(const Mesh& mesh) {
+    std::map<std::pair<int, int>, int> faces;
+    for (const Triangle& t : mesh.triangles)
+      for (std::size_t k = 0; k < 3; ++k) ++faces[std::minmax({t[k], t[(k + 1) % 3]})];
+    std::set<int> rim;
+    for (const auto& [edge, count] : faces)
+      if (count == 1) rim.insert({edge.first, edge.second});
+    return rim;
   }
 
   /// Union of the projected faces [m^2]: exact along each of kLines lines, which are equally far

@@ -77,9 +77,9 @@ class Search {
       found_.values.push_back(answer.is_shape() ? 0 : value_of(answer, full_));
     }
     const Perturbations other = perturbations(found_.full, folder_);
-    if (!add_noise(other.rounding, 2, true) || !add_noise(other.order, other.order.size(), false))
+    if (!add_rounded(other.rounding, 2) || !add_reordered(other.order))
       return give_up("the noise of the full model");
-    if (found_.chaotic && !add_noise(other.rounding, other.rounding.size(), true))
+    if (found_.chaotic && !add_rounded(other.rounding, other.rounding.size()))
       return give_up("the noise of the full model");
     choose_answers();
     return !found_.interrupted;
@@ -92,17 +92,25 @@ class Search {
     return false;
   }
 
-  bool add_noise(const std::vector<CaseSpec>& specs, std::size_t most, bool rounding) {
-    const std::vector<CaseSpec> some(
-        specs.begin(), specs.begin() + static_cast<std::ptrdiff_t>(std::min(most, specs.size())));
-    for (auto& one : observe(some, kNoiseBy)) {
+  /// Runs that end, behind those that are there; false: no time.
+  bool add_runs(const std::vector<CaseSpec>& specs, std::vector<Observation>& to) {
+    for (auto& one : observe(specs, kNoiseBy)) {
       if (!one) return false;
-      if (!completed(one->record.status)) continue;
-      if (rounding) find_horizon(*one);
-      runs_.push_back(std::move(*one));
+      if (completed(one->record.status)) to.push_back(std::move(*one));
     }
     return true;
   }
+
+  bool add_rounded(const std::vector<CaseSpec>& specs, std::size_t most) {
+    most = std::min(most, specs.size());
+    rounded_.clear();
+    if (!add_runs({specs.begin(), specs.begin() + static_cast<std::ptrdiff_t>(most)}, rounded_))
+      return false;
+    for (const Observation& one : rounded_) find_horizon(one);
+    return true;
+  }
+
+  bool add_reordered(const std::vector<CaseSpec>& specs) { return add_runs(specs, reordered_); }
 
   void find_horizon(const Observation& other) {
     const auto shape = std::ranges::find_if(found_.answers, &KeptAnswer::is_shape);
@@ -117,13 +125,16 @@ class Search {
   /// The noise of each answer; the shape of a chaotic scene is none that could be kept.
   void choose_answers() {
     for (const KeptAnswer& answer : found_.answers) {
-      double most = 0;
-      for (std::size_t i = 0; i < runs_.size(); ++i) {
-        most = std::max(most, distance(answer, full_, runs_[i]));
+      double most = 0, reordered = 0;
+      for (std::size_t i = 0; i < rounded_.size(); ++i) {
+        most = std::max(most, distance(answer, full_, rounded_[i]));
         for (std::size_t j = 0; j < i; ++j)
-          most = std::max(most, distance(answer, runs_[j], runs_[i]));
+          most = std::max(most, distance(answer, rounded_[j], rounded_[i]));
       }
+      for (const Observation& one : reordered_)
+        reordered = std::max(reordered, distance(answer, full_, one));
       found_.noise.push_back(most);
+      if (!reordered_.empty()) found_.by_order.push_back(reordered);
     }
     drop_shape();
   }
@@ -141,6 +152,7 @@ class Search {
       found_.answers.erase(found_.answers.begin() + place);
       found_.values.erase(found_.values.begin() + place);
       if (measured) found_.noise.erase(found_.noise.begin() + place);
+      if (i < found_.by_order.size()) found_.by_order.erase(found_.by_order.begin() + place);
     }
   }
 
@@ -323,7 +335,7 @@ class Search {
   SteadyClock::time_point start_ = SteadyClock::now();
   CaseMaker maker_;
   Observation full_;
-  std::vector<Observation> runs_;  ///< the full model under noise
+  std::vector<Observation> rounded_, reordered_;  ///< the full model, perturbed
   std::vector<Effect> effects_;
   int combinations_ = 0;
   Requirement found_;

@@ -78,10 +78,13 @@ struct Effect {
 /// does not have is not listed.
 std::vector<Effect> effects_of(const Case&);
 
-/// The same simulation with differences that mean nothing: what it moves by under them is noise.
+/// The same simulation with differences that nobody asked for.
 struct Perturbations {
-  std::vector<CaseSpec> rounding;  ///< one free vertex starts off by 2^-23 of the cloth's extent
-  std::vector<CaseSpec> order;     ///< the links in another order; empty: the solver offers none
+  /// One free vertex starts off by 2^-23 of the cloth's extent: what that moves is noise.
+  std::vector<CaseSpec> rounding;
+  /// The links in another order: another path to the same model, whose results may differ by more
+  /// than rounding where sweeps do not converge; empty: the solver offers none.
+  std::vector<CaseSpec> order;
 };
 
 /// Scenes that are made for it are written to `folder`. Throws InputError if they cannot be.
@@ -180,9 +183,12 @@ struct Requirement {
   Case full;
   std::vector<KeptAnswer> answers;  ///< kept
   std::vector<double> values;       ///< of the full model; 0 for the shape
-  /// Largest difference between any two of the full model, the same started off by a rounding error
-  /// and the same with its links in another order: what an answer moves by without any reason.
+  /// Largest difference between any two of the full model and the same started off by a rounding
+  /// error: what an answer moves by without any reason.
   std::vector<double> noise;
+  /// Largest difference from the full model of the same with its links in another order; empty: the
+  /// solver offers none. No noise, so nothing is judged by it.
+  std::vector<double> by_order;
   std::vector<std::string> given_up;  ///< answers that are not kept, and why
   bool chaotic = false;               ///< a rounding error moves the shape beyond its tolerance
   double horizon = 0;                 ///< until then [s] it does not; meaningful if chaotic

@@ -34,6 +34,7 @@ Table answers_of(const Requirement& found) {
                {"value", "full model"},
                {"tolerance", "may move by"},
                {"noise", "moves by rounding"},
+               {"order", "by order of links"},
                Column("unit").in_detail()}};
   for (std::size_t i = 0; i < found.answers.size(); ++i) {
     const KeptAnswer& answer = found.answers[i];
@@ -51,7 +52,7 @@ Table answers_of(const Requirement& found) {
          said(answer.tolerance, vacuous ? "LARGER THAN THE VALUE: SAYS NOTHING" : ""),
          i < found.noise.size() ? said(found.noise[i], noisy ? "MORE THAN THE TOLERANCE" : "")
                                 : Cell(),
-         unit.si});
+         i < found.by_order.size() ? said(found.by_order[i]) : Cell(), unit.si});
   }
   return table;
 }

@@ -101,6 +101,27 @@ std::int64_t Database::number_of(const std::string& sql) {
   return row.integer(0);
 }
 
+namespace {
+constexpr const char* kParts =
+    "SELECT type || ' ' || name, sql FROM sqlite_master WHERE sql NOT NULL";
+}
+
+std::map<std::string, std::string> Database::parts() {
+  std::map<std::string, std::string> all;
+  Rows row = rows(kParts);
+  while (row.next()) all[row.text(0)] = row.text(1);
+  return all;
+}
+
+std::map<std::string, std::string> parts_made_by(const std::string& statements) {
+  SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  made.exec(statements);
+  std::map<std::string, std::string> all;
+  SQLite::Statement row(made, kParts);
+  while (row.executeStep()) all[row.getColumn(0).getString()] = row.getColumn(1).getString();
+  return all;
+}
+
 void Database::transaction(const std::function<void()>& work) {
   if (within_) return work();
   run("BEGIN IMMEDIATE");
@@ -119,8 +140,9 @@ void Database::transaction(const std::function<void()>& work) {
 bool damaged(const fs::path& file) {
   try {
     SQLite::Database db(fs::absolute(file), SQLite::OPEN_READWRITE, Database::kPatience);
-    SQLite::Statement check(db, "PRAGMA quick_check(1)");
-    return check.executeStep() && check.getColumn(0).getString() != "ok";
+    SQLite::Statement rows(db, "PRAGMA integrity_check(1)");
+    if (rows.executeStep() && rows.getColumn(0).getString() != "ok") return true;
+    return SQLite::Statement(db, "PRAGMA foreign_key_check").executeStep();
   } catch (const SQLite::Exception& error) {
     const int code = error.getErrorCode() & 0xff;
     return code == SQLITE_CORRUPT || code == SQLITE_NOTADB;

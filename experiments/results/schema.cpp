@@ -39,11 +39,13 @@ CREATE TABLE numbers (
 
 CREATE TABLE series (
   case_id INTEGER PRIMARY KEY REFERENCES cases ON DELETE CASCADE,
-  columns TEXT NOT NULL);
+  columns TEXT NOT NULL,
+  digest TEXT NOT NULL);
 
 CREATE TABLE frames (
   case_id INTEGER PRIMARY KEY REFERENCES cases ON DELETE CASCADE,
-  motion BLOB NOT NULL);
+  motion BLOB NOT NULL,
+  digest TEXT NOT NULL);
 
 CREATE TABLE conflicts (
   key TEXT NOT NULL,
@@ -78,6 +80,7 @@ CREATE TABLE answers (
   program TEXT NOT NULL,
   made TEXT NOT NULL,
   answer TEXT NOT NULL,
+  digest TEXT NOT NULL,
   PRIMARY KEY (kind, subject)) WITHOUT ROWID;
 
 CREATE TABLE benches (

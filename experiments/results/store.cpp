@@ -88,6 +88,16 @@ Record record_in(const Database::Rows& row) {
   return r;
 }
 
+/// The same; nothing, and why, where it is none.
+std::optional<Record> record_of_row(const Database::Rows& row, std::string& why) {
+  try {
+    return record_in(row);
+  } catch (const InputError& error) {
+    why = error.what();
+    return {};
+  }
+}
+
 /// What becomes of a record beside the one that is there, if any.
 Store::Commit beside(const std::optional<Record>& old, const Record& record, bool adds_frames) {
   using Commit = Store::Commit;
@@ -96,6 +106,27 @@ Store::Commit beside(const std::optional<Record>& old, const Record& record, boo
     return adds_frames ? Commit::stored : Commit::same;
   if (!old->status.is_result()) return Commit::stored;
   return record.status.is_result() ? Commit::conflict : Commit::same;
+}
+
+/// Why nothing in the file can be trusted to be what it is called; "": it can. A view of a foreign
+/// file in the place of a table may never end, a trigger does what it wants.
+std::string wrong_part(Database& database) {
+  static const std::map<std::string, std::string> kOurs = parts_made_by(tables());
+  const std::map<std::string, std::string> theirs = database.parts();
+  for (const auto& [name, sql] : kOurs)
+    if (const auto at = theirs.find(name); at == theirs.end() || at->second != sql)
+      return "its " + name + " is not that of a results file";
+  for (const auto& [name, sql] : theirs)
+    if (name.starts_with("trigger ")) return "it has a " + name;
+  return {};
+}
+
+/// Of this taut, and not what it wrote.
+bool unusable(const fs::path& file) {
+  if (damaged(file)) return true;
+  Database database(file, Database::Access::read);
+  return database.number_of("PRAGMA user_version") == kSchemaVersion &&
+         !wrong_part(database).empty();
 }
 
 void require_version(const fs::path& file, std::int64_t version) {
@@ -140,6 +171,8 @@ Database* Store::reading() const {
   const std::int64_t version = database->number_of("PRAGMA user_version");
   if (version == 0) return nullptr;  // being made
   require_version(file(), version);
+  if (const std::string wrong = wrong_part(*database); !wrong.empty())
+    throw InputError(file().string() + ": " + wrong);
   state_->database = std::move(database);
   return state_->database.get();
 }
@@ -166,7 +199,7 @@ Database& Store::writing() {
 
 void Store::prepare() {
   std::error_code none;
-  if (!state_->database && fs::is_regular_file(file(), none) && damaged(file())) {
+  if (!state_->database && fs::is_regular_file(file(), none) && unusable(file())) {
     const fs::path aside = file().string() + ".damaged-" + unique_suffix();
     std::error_code error;
     fs::rename(file(), aside, error);
@@ -186,13 +219,9 @@ std::optional<Record> Store::sound_record(Database& database, const std::string&
     Database::Rows row = database.rows(
         "SELECT " + join(case_columns(), ", ") + ", result_digest FROM cases WHERE key = ?", key);
     if (!row.next()) return {};
-    try {
-      record = record_in(row);
-      result = row.text(static_cast<int>(case_columns().size()));
-    } catch (const InputError& error) {
-      why = error.what();
-      return {};
-    }
+    record = record_of_row(row, why);
+    if (!record) return {};
+    result = row.text(static_cast<int>(case_columns().size()));
   }
   Database::Rows values = database.rows(
       "SELECT name, value FROM cases JOIN numbers USING (case_id) JOIN metrics USING (metric_id) "
@@ -209,9 +238,12 @@ std::optional<Record> Store::find(const std::string& key) const {
   if (!database) return {};
   std::string why;
   std::optional<Record> record = sound_record(*database, key, why);
-  if (!why.empty())
-    notice_(file().string() + ": damaged case " + key + " (" + why + "), counts as none");
+  if (!why.empty()) say_damaged(key, why);
   return record;
+}
+
+void Store::say_damaged(const std::string& key, const std::string& why) const {
+  notice_(file().string() + ": damaged case " + key + " (" + why + "), counts as none");
 }
 
 std::optional<Record> Store::find(const Case& one) const {
@@ -223,30 +255,42 @@ std::optional<Record> Store::find(const Case& one) const {
 Series Store::series(const std::string& key) const {
   Database* database = reading();
   if (!database) return {};
-  Database::Rows row =
-      database->rows("SELECT columns FROM series JOIN cases USING (case_id) WHERE key = ?", key);
-  return row.next() ? series_from_json(row.text(0), file().string() + ": series of " + key)
-                    : Series{};
+  Database::Rows row = database->rows(
+      "SELECT columns, series.digest FROM series JOIN cases USING (case_id) WHERE key = ?", key);
+  if (!row.next()) return {};
+  if (sha256(row.text(0)) == row.text(1))
+    return series_from_json(row.text(0), file().string() + ": series of " + key);
+  notice_(file().string() + ": damaged series of " + key + ", counts as none");
+  return {};
 }
 
 bool Store::has_frames(const std::string& key) const {
   Database* database = reading();
-  return database &&
-         database->rows("SELECT 1 FROM frames JOIN cases USING (case_id) WHERE key = ?", key)
-             .next();
+  if (!database) return false;
+  Database::Rows row = database->rows(
+      "SELECT motion, frames.digest FROM frames JOIN cases USING (case_id) WHERE key = ?", key);
+  if (!row.next()) return false;
+  if (sha256(row.text(0)) == row.text(1)) return true;
+  notice_(file().string() + ": damaged motion of " + key + ", counts as none");
+  return false;
 }
 
 Trajectory Store::motion(const std::string& key) const {
   Database::Rows row = reading()->rows(
-      "SELECT motion, vertices, solver_text, dt FROM frames JOIN cases USING "
+      "SELECT motion, vertices, solver_text, dt, frames.digest FROM frames JOIN cases USING "
       "(case_id) WHERE key = ?",
       key);
-  row.next();
+  const auto fail = [&](const std::string& why) {
+    throw InputError(file().string() + ": motion of " + key + ": " + why);
+  };
+  if (!row.next()) fail("there is none");
+  if (sha256(row.text(0)) != row.text(4)) fail("it does not match its digest");
   try {
     return {row.text(2), row.number(3), frames_in(row.text(0), place(row, 1))};
   } catch (const InputError& error) {
-    throw InputError(file().string() + ": motion of " + key + ": " + error.what());
+    fail(error.what());
   }
+  return {};
 }
 
 fs::path Store::stage(const std::string& key) {
@@ -284,9 +328,11 @@ void Store::insert(Database& database, const Record& r, const CaseFiles& files) 
     }
     database.run("INSERT INTO numbers VALUES (?, ?, ?)", id, metric, value);
   }
-  if (!files.series.empty()) database.run("INSERT INTO series VALUES (?, ?)", id, files.series);
+  if (!files.series.empty())
+    database.run("INSERT INTO series VALUES (?, ?, ?)", id, files.series, sha256(files.series));
   if (!files.motion.empty())
-    database.run("INSERT INTO frames VALUES (?, ?)", id, Database::Bytes{files.motion});
+    database.run("INSERT INTO frames VALUES (?, ?, ?)", id, Database::Bytes{files.motion},
+                 sha256(files.motion));
 }
 
 Store::Commit Store::commit(const Record& record, const CaseFiles& files) {
@@ -331,9 +377,29 @@ std::vector<Store::Entry> Store::entries() const {
   std::vector<Entry> all;
   Database* database = reading();
   if (!database) return all;
-  Database::Rows row =
-      database->rows("SELECT key, id, result_digest, is_result FROM cases ORDER BY key");
-  while (row.next()) all.push_back({row.text(0), row.text(1), row.text(2), row.integer(3) != 0});
+  const std::size_t columns = case_columns().size();
+  Database::Rows row = database->rows("SELECT " + join(case_columns(), ", ") +
+                                      ", result_digest, is_result FROM cases ORDER BY key");
+  Database::Rows value = database->rows(
+      "SELECT cases.key, name, value FROM cases JOIN numbers USING (case_id) "
+      "JOIN metrics USING (metric_id) ORDER BY cases.key");
+  bool more = value.next();
+  while (row.next()) {
+    std::string why;
+    std::optional<Record> record = record_of_row(row, why);
+    const std::string key = row.text(0);
+    for (; more && value.text(0) <= key; more = value.next())
+      if (record && value.text(0) == key) record->values[value.text(1)] = value.number(2);
+    const std::string result = record ? result_digest(*record) : "";
+    const bool is_result = row.integer(static_cast<int>(columns) + 1) != 0;
+    if (record &&
+        (result != row.text(static_cast<int>(columns)) || is_result != record->status.is_result()))
+      why = "it does not match its digest";
+    if (why.empty())
+      all.push_back({key, record->id, result, is_result});
+    else
+      say_damaged(key, why);
+  }
   return all;
 }
 
@@ -363,56 +429,101 @@ std::vector<std::string> Store::conflicts() const {
 }
 
 void Store::keep(const Answer& answer) {
-  writing().run("INSERT OR REPLACE INTO answers VALUES (?, ?, ?, ?, ?)", answer.kind,
-                answer.subject, program_digest(), utc_stamp(), to_json(answer));
+  const std::string text = to_json(answer);
+  writing().run("INSERT OR REPLACE INTO answers VALUES (?, ?, ?, ?, ?, ?)", answer.kind,
+                answer.subject, program_digest(), utc_stamp(), text, sha256(text));
 }
 
 std::vector<Answer> Store::answers(const std::string& kind, std::string_view program) const {
   std::vector<Answer> all;
   Database* database = reading();
   if (!database) return all;
-  Database::Rows row =
-      database->rows("SELECT answer FROM answers WHERE kind = ? AND program = ? ORDER BY subject",
-                     kind, std::string(program));
-  while (row.next())
-    all.push_back(answer_from_json(row.text(0), file().string() + ": answer of " + kind));
+  const std::string place = file().string() + ": answer of " + kind;
+  Database::Rows row = database->rows(
+      "SELECT answer, digest FROM answers WHERE kind = ? AND program = ? ORDER BY subject", kind,
+      std::string(program));
+  while (row.next()) {
+    if (sha256(row.text(0)) != row.text(1))
+      throw InputError(place + ": it does not match its digest");
+    all.push_back(answer_from_json(row.text(0), place));
+  }
   return all;
 }
+
+std::vector<std::string> Store::unsound_keys() const {
+  std::vector<std::string> all = keys();
+  const std::vector<Entry> sound = entries();
+  std::erase_if(all, [&](const std::string& key) {
+    return std::ranges::binary_search(sound, key, {}, &Entry::key);
+  });
+  return all;
+}
+
+namespace {
+
+/// A temporary table of these keys, for as long as this lives.
+class SoundKeys {
+ public:
+  SoundKeys(Database& database, const std::vector<Store::Entry>& all) : database_(database) {
+    database_.script("CREATE TEMP TABLE sound (key TEXT PRIMARY KEY) WITHOUT ROWID");
+    for (const Store::Entry& one : all) database_.run("INSERT INTO temp.sound VALUES (?)", one.key);
+  }
+  ~SoundKeys() {
+    try {
+      database_.script("DROP TABLE IF EXISTS temp.sound");
+    } catch (const InputError&) {  // of a connection that is of no use any more
+    }
+  }
+  SoundKeys(const SoundKeys&) = delete;
+  SoundKeys& operator=(const SoundKeys&) = delete;
+
+ private:
+  Database& database_;
+};
+
+}  // namespace
 
 void Store::take(const Store& other) {
   if (!other.reading()) return;
   Database& database = writing();
   const std::string columns = join(case_columns(), ", ") + ", is_result, result_digest, errors";
+  const SoundKeys sound(database, other.entries());
+  const std::vector<std::string> unsound = unsound_keys();
   database.run("ATTACH ? AS other", fs::absolute(other.file()).string());
   try {
     database.transaction([&] {
+      for (const std::string& key : unsound)
+        database.run("DELETE FROM cases WHERE key = ? AND key IN (SELECT key FROM temp.sound)",
+                     key);
       database.script(
           "INSERT OR IGNORE INTO metrics (name, unit, definition) "
           "SELECT name, unit, definition FROM other.metrics;"
           "DELETE FROM cases WHERE NOT is_result AND key IN "
-          "(SELECT key FROM other.cases WHERE is_result)");
+          "(SELECT key FROM other.cases JOIN temp.sound USING (key) WHERE is_result)");
       const std::int64_t last =
           database.number_of("SELECT coalesce(max(case_id), 0) FROM main.cases");
       const std::string taken =
           " FROM main.cases AS mine JOIN other.cases AS theirs USING (key) WHERE mine.case_id > " +
           std::to_string(last);
-      database.script("INSERT OR IGNORE INTO main.cases (" + columns + ") SELECT " + columns +
-                      " FROM other.cases ORDER BY case_id;"
-                      "CREATE TEMP TABLE taken AS SELECT mine.case_id AS mine, theirs.case_id AS "
-                      "theirs" +
-                      taken +
-                      " ORDER BY mine.case_id;"
-                      "INSERT INTO main.numbers SELECT mine, n.metric_id, value FROM taken JOIN "
-                      "(SELECT n.case_id, m.metric_id, n.value FROM other.numbers AS n JOIN "
-                      "other.metrics AS o USING (metric_id) JOIN main.metrics AS m USING (name)) "
-                      "AS n ON n.case_id = theirs;"
-                      "INSERT INTO main.series SELECT mine, columns FROM taken JOIN other.series "
-                      "ON case_id = theirs;"
-                      "INSERT OR IGNORE INTO main.sessions SELECT * FROM other.sessions;"
-                      "INSERT OR IGNORE INTO main.planned SELECT * FROM other.planned;"
-                      "INSERT INTO main.frames SELECT mine, motion FROM taken JOIN other.frames "
-                      "ON case_id = theirs;"
-                      "DROP TABLE taken");
+      database.script(
+          "INSERT OR IGNORE INTO main.cases (" + columns + ") SELECT " + columns +
+          " FROM other.cases WHERE key IN (SELECT key FROM temp.sound) ORDER BY "
+          "case_id;"
+          "CREATE TEMP TABLE taken AS SELECT mine.case_id AS mine, theirs.case_id AS "
+          "theirs" +
+          taken +
+          " ORDER BY mine.case_id;"
+          "INSERT INTO main.numbers SELECT mine, n.metric_id, value FROM taken JOIN "
+          "(SELECT n.case_id, m.metric_id, n.value FROM other.numbers AS n JOIN "
+          "other.metrics AS o USING (metric_id) JOIN main.metrics AS m USING (name)) "
+          "AS n ON n.case_id = theirs;"
+          "INSERT INTO main.series SELECT mine, columns, digest FROM taken JOIN other.series "
+          "ON case_id = theirs;"
+          "INSERT OR IGNORE INTO main.sessions SELECT * FROM other.sessions;"
+          "INSERT OR IGNORE INTO main.planned SELECT * FROM other.planned;"
+          "INSERT INTO main.frames SELECT mine, motion, digest FROM taken JOIN other.frames "
+          "ON case_id = theirs;"
+          "DROP TABLE taken");
     });
   } catch (...) {
     database.run("DETACH other");

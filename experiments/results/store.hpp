@@ -79,10 +79,11 @@ class Store {
   /// What is known of a stored case without reading it all.
   struct Entry {
     std::string key, id;
-    std::string result;  ///< result_digest
+    std::string result;  ///< result_digest, computed
     bool is_result = false;
   };
-  std::vector<Entry> entries() const;     ///< sorted by key
+  /// Sorted by key. What does not match its digest is said, and counts as none.
+  std::vector<Entry> entries() const;
   std::vector<std::string> keys() const;  ///< as they were stored
   /// SHA-256 over the keys and results of all cases that are results: two stores that know the same
   /// have the same.
@@ -107,8 +108,9 @@ class Store {
   /// What `program` (program_digest) found of this kind, by subject. Throws InputError: damaged.
   std::vector<Answer> answers(const std::string& kind, std::string_view program) const;
 
-  /// Takes over the cases and sessions of another store: results before failures, nothing twice.
-  /// Throws InputError; then nothing of it was taken.
+  /// Takes over the cases and sessions of another store: results before failures, nothing twice,
+  /// and what matches its digest alone, in place of what does not. Throws InputError; then nothing
+  /// of it was taken.
   void take(const Store& other);
 
   Database* reading() const;  ///< nullptr: there is no file yet
@@ -117,6 +119,8 @@ class Store {
  private:
   struct State;
   void say_earlier_results() const;
+  void say_damaged(const std::string& key, const std::string& why) const;
+  std::vector<std::string> unsound_keys() const;  ///< of cases that count as none
   std::optional<Record> sound_record(Database&, const std::string& key, std::string& why) const;
   void insert(Database&, const Record&, const CaseFiles&);
   std::filesystem::path root_;

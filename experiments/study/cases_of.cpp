@@ -102,6 +102,7 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
   std::vector<Diagnostic> wrong;
   const auto add = [&](const std::string& scene, const CaseSpec& spec) {
     try {
+      admit_solver(spec.solver);  // an axis may name a file
       Case one = maker.make(spec);
       if (keys.insert(one.key).second) visit(std::move(one));
     } catch (const InputError& error) {

@@ -1,6 +1,7 @@
 #include "experiments/study/study.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -14,30 +15,54 @@ namespace taut {
 
 namespace {
 
+std::string in_quotes(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string key_text(const std::string& key) {
+  constexpr std::string_view kBare =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  return !key.empty() && key.find_first_not_of(kBare) == key.npos ? key : in_quotes(key);
+}
+
+/// Whether text_of() can say the value: no date, and a table as TOML only.
+bool has_text(const Value& value, bool toml) {
+  if (value.kind == Value::Kind::date || (value.is_table() && !toml)) return false;
+  return std::ranges::all_of(value.items, [&](const Value& item) { return has_text(item, toml); });
+}
+
 /// A value as a command line would have it: for a solver's parameter bare, for a scene key as TOML.
+/// Precondition: has_text().
 std::string text_of(const Value& value, bool toml) {
+  const auto text_of_item = [&](const Value& item) { return text_of(item, toml); };
   switch (value.kind) {
     case Value::Kind::boolean:
       return value.boolean ? "true" : "false";
-    case Value::Kind::string: {
-      if (!toml) return value.string;
-      std::string quoted = "\"";
-      for (const char c : value.string) {
-        if (c == '"' || c == '\\') quoted += '\\';
-        quoted += c;
-      }
-      return quoted + '"';
-    }
-    case Value::Kind::array: {
-      const auto text_of_item = [&](const Value& item) { return text_of(item, toml); };
+    case Value::Kind::string:
+      return toml ? in_quotes(value.string) : value.string;
+    case Value::Kind::array:
       return "[" + join(value.items, ", ", text_of_item) + "]";
+    case Value::Kind::table: {
+      std::vector<std::string> items;
+      for (std::size_t i = 0; i < value.items.size(); ++i)
+        items.push_back(key_text(value.keys[i].text) + " = " + text_of_item(value.items[i]));
+      return "{ " + join(items, ", ") + " }";
     }
     case Value::Kind::integer:  // 100000 and not 1e+05
       if (std::abs(value.number) < 1e15) return std::to_string(std::lround(value.number));
       return shortest(value.number);
-    default:
+    case Value::Kind::real:
       return shortest(value.number);
+    case Value::Kind::date:
+      break;
   }
+  assert(false && "a date has no text");
+  return {};
 }
 
 constexpr const char* kAll = "all";  ///< shipped scenes
@@ -98,7 +123,11 @@ class StudyReader {
         if (std::ranges::count(study_.scenes, name) == 0) study_.scenes.push_back(name);
   }
   void read_solvers(Section& section) {
-    if (strings(section, "solvers", study_.solvers, parse_solver)) remember_solvers();
+    const auto read = [](const std::string& text) {
+      admit_solver(text);
+      parse_solver(text);
+    };
+    if (strings(section, "solvers", study_.solvers, read)) remember_solvers();
   }
   void read_set(Section& section) {
     if (strings(section, "set", study_.settings, [](const std::string&) {}))
@@ -171,6 +200,15 @@ class StudyReader {
     return false;
   }
 
+  /// The text of a value that a key may have; "" if it may not, which is reported.
+  std::string text(const Value& value, const std::string& key, bool toml) {
+    if (has_text(value, toml)) return text_of(value, toml);
+    diagnostics_.report(
+        value.place,
+        "'" + key + "' holds " + (toml ? "no dates" : "texts and numbers, no tables or dates"));
+    return {};
+  }
+
   void remember_solvers() {
     choices_.clear();
     for (const std::string& text : study_.solvers) try {
@@ -221,7 +259,10 @@ class StudyReader {
     if (value.is_table())
       axis.values = range(value, has_param(choices_, axis, true));
     else if (value.is_array())
-      for (const Value& item : value.items) axis.values.push_back(text_of(item, axis.of_scene()));
+      for (const Value& item : value.items) {
+        axis.values.push_back(text(item, axis.name, axis.of_scene()));
+        if (axis.values.back().empty() && !item.is_string()) return;  // which is reported
+      }
     if (axis.values.empty()) {
       if (!value.is_table())
         diagnostics_.report(value.place, "'" + axis.name +
@@ -304,7 +345,7 @@ class StudyReader {
                                                       " (scene, solver, or an axis's name)");
         std::vector<std::string>& values = exclusion.when[key];
         const auto add = [&](const Value& value) {
-          values.push_back(text_of(value, toml));
+          values.push_back(text(value, key, toml));
           guarded(value, [&] {  // of a preset's scenes and solvers too
             if (key == "scene") find_scene(parse_scene(values.back()).name);
             if (key == "solver") find_solver(values.back());
@@ -341,7 +382,7 @@ class StudyReader {
                                                      suggestion(table.keys[i].text, known));
     for (std::size_t i = 0; i < table.items.size(); ++i) {
       const std::string& key = table.keys[i].text;
-      (key == "kind" ? plot.kind : plot.options[key]) = text_of(table.items[i], false);
+      (key == "kind" ? plot.kind : plot.options[key]) = text(table.items[i], key, false);
       plot.places[key] = table.items[i].place;
     }
     if (plot.kind.empty())

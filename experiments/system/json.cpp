@@ -5,11 +5,34 @@
 #include <iostream>
 
 #include "core/model/input_error.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut {
 
+namespace {
+
+/// The library leaves U+007F to U+009F in texts as they are, which a terminal may obey.
+std::string with_escaped_controls(const std::string& json) {
+  const auto is_control = [&](std::size_t i) {
+    return json[i] == '\x7f' || (json[i] == '\xC2' && json[i + 1] < '\xA0');
+  };
+  std::string out;
+  std::size_t kept = 0;
+  for (std::size_t i = json.find_first_of("\x7f\xC2"); i != std::string::npos;
+       i = json.find_first_of("\x7f\xC2", i + 1)) {
+    if (!is_control(i)) continue;
+    const bool two = json[i] == '\xC2';
+    out.append(json, kept, i - kept);
+    out += formatted("\\u%04x", static_cast<unsigned char>(json[i + (two ? 1 : 0)]));
+    kept = i + (two ? 2 : 1);
+  }
+  return out.append(json, kept);
+}
+
+}  // namespace
+
 std::string to_text(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  return with_escaped_controls(json.dump(indent, ' ', false, Json::error_handler_t::replace));
 }
 
 void print_json(const Json& json, int indent) { std::cout << to_text(json, indent) << '\n'; }

@@ -81,7 +81,7 @@ struct Pipes {
 /// Everything here runs between fork and exec: system calls only.
 [[noreturn]] void become(char* const* argv, char* const* variables, const ProcessOptions& options,
                          const Pipes& pipes, int errors_file, pid_t parent) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) std::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

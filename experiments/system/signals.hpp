@@ -6,9 +6,10 @@
 #include <functional>
 #include <string>
 
-/// The one handler of SIGINT, SIGTERM and SIGHUP. It kills the processes that this one started,
-/// removes its temporary files and ends the program with kInterruptedExit; while a GracefulStop
-/// lives, the first signal is only noted. It is installed by the first thing that needs it.
+/// The one handler of SIGINT, SIGTERM, SIGHUP and SIGQUIT. It kills the processes that this one
+/// started, removes its temporary files and ends the program with kInterruptedExit; while a
+/// GracefulStop lives, the first signal is only noted. It is installed by the first thing that
+/// needs it.
 namespace taut {
 
 inline constexpr int kInterruptedExit = 130;

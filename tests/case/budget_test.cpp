@@ -99,6 +99,14 @@ TEST(Budget, WindBlowsByItsLaw) {
   EXPECT_NEAR(more(plain, scene, 3), 0.2 / 2 * speed * speed, 1e-9);
 }
 
+TEST(Budget, OfAClothThatIsAllPinnedIsANumber) {
+  Scene scene = hanging_sheet(3, 2);
+  scene.pins = {0, 1, 2, 3, 4, 5};
+  scene.wind = Wind{.velocity = {2, 3, 6}, .strength = 0.5, .law = Wind::Law::literal};
+  EXPECT_TRUE(std::isfinite(EnergyBudget(scene).available(3)));
+  EXPECT_TRUE(std::isfinite(EnergyBudget(scene).farthest(3)));
+}
+
 TEST(Budget, EveryChangeOfAPrescribedVelocityCounts) {
   const auto of = [](const Motion& motion) {
     Scene scene = chain();

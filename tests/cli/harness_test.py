@@ -206,7 +206,7 @@ class Signals(CommandLine):
         self.taut("run", "small", env=self.env)
         for k in range(6):  # they are filmed, too: when the first line is said there is more to do
             shutil.copy(self.folder / "data/scenes/small.toml", self.folder / f"data/scenes/small-{k}.toml")
-        for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
             for films in self.folder.glob("results/**/films"):
                 shutil.rmtree(films)  # what is there already is not made
             self.end_at("small", stop, "report", "small")

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """The results file for people: its document and the schema agree, README's query answers, and means take no zeros."""
 
+import contextlib
+import os
 import pathlib
 import re
 import shutil
@@ -96,6 +98,105 @@ class ResultsFile(CommandLine):
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, said)
         self.assertEqual(self.query(HOW_FAR), [("study", 0, 4)])
+
+
+class Damage(CommandLine):
+    """What cannot be used is set aside once, said, and begun anew; what does not match its digest counts as none."""
+    RESULTS = "results/runs"
+
+    def file(self, folder=RESULTS):
+        return self.folder / folder / "results.db"
+
+    def sql(self, *statements, folder=RESULTS):
+        with contextlib.closing(sqlite3.connect(self.file(folder))) as file:
+            for statement, *values in statements:
+                file.execute(statement, values)
+            file.commit()
+
+    def flip_in(self, index, folder=RESULTS):
+        """A bit of the last entry of an index, which is read by nobody who looks at rows alone."""
+        with contextlib.closing(sqlite3.connect(self.file(folder))) as file:
+            page, = file.execute("SELECT rootpage FROM sqlite_master WHERE name = ?", [index]).fetchone()
+            size, = file.execute("PRAGMA page_size").fetchone()
+        data = bytearray(self.file(folder).read_bytes())
+        data[page * size - 12] ^= 1  # within the text of the first entry that was put there
+        self.file(folder).write_bytes(data)
+
+    def test_an_index_that_disagrees_with_its_table_is_set_aside_once(self):
+        study = self.study(rest="axes.iterations = [1, 2, 3]\n")
+        self.taut("run", study)
+        sound = self.store_digest(self.taut("run", study))
+        for index in ("planned_key", "sqlite_autoindex_cases_1"):
+            self.flip_in(index)
+            again = self.taut("run", study)
+            self.assertIn("damaged, set aside as", again.err, index)
+            self.assertEqual(self.store_digest(again), sound)
+            self.assertNotIn("damaged", self.taut("run", study).err)
+            self.assertEqual(len(self.records()), 3)
+            self.taut("report", study, "--json")
+
+    def test_references_to_nothing_are_damage(self):
+        study = self.study()
+        self.taut("run", study)
+        self.sql(["PRAGMA foreign_keys = OFF"], ["UPDATE numbers SET metric_id = 4711 WHERE metric_id = 1"])
+        self.assertIn("damaged, set aside as", self.taut("run", study).err)
+
+    def test_a_merge_takes_what_matches_its_digest_alone(self):
+        study = self.study(rest="axes.iterations = [1, 2]\n")
+        for folder in ("one", "two"):
+            self.taut("run", study, "--out", folder)
+        whole = self.store_digest(self.taut("run", study, "--out", "one"))
+        self.sql(["UPDATE numbers SET value = 1e9 WHERE case_id = 1 AND metric_id = 1"], folder="one")
+        for folders in (["one", "two"], ["two", "one"]):
+            merged = self.taut("cluster", "merge", *folders, "--out", "merged")
+            self.assertIn("damaged case", merged.err)
+            self.assertIn(whole.split()[1], merged.out)
+            self.assertNotIn("damaged", self.taut("export", study, "--out", "merged").err)
+            shutil.rmtree(self.folder / "merged")
+        self.assertIn("damaged case", self.taut("cluster", "merge", "one", "--out", "merged", expect=3).err)
+        self.taut("cluster", "merge", "two", "--out", "one")  # the sound one stands in its place
+        self.assertEqual(self.store_digest(self.taut("run", study, "--out", "one")), whole)
+        said = self.taut("cluster", "merge", "one", "merged", "--out", "x", "--quiet", expect=None)
+        self.assertNotEqual((said.returncode, said.err), (2, ""), "it says why it exits with 2")
+
+    def test_series_and_answers_have_digests(self):
+        study = self.study(rest='[[plot]]\nkind = "series"\ny = "stretch.rms"\n')
+        self.taut("run", study)
+        self.taut("converge", "./small.toml", "--solver", "jakobsen", "--record")
+        self.sql(["UPDATE series SET columns = replace(columns, '0.1', '0.2')"], ["UPDATE answers SET answer = replace(answer, '1', '2')"])
+        self.assertIn("damaged series", self.taut("plot", study, expect=None).err)
+        self.assertIn("does not match its digest", self.taut("report", study, "--json").err)
+
+    def test_a_foreign_file_with_a_view_without_end_is_refused(self):
+        study = self.study()
+        self.taut("run", study)
+        shutil.copytree(self.folder / self.RESULTS, self.folder / "other")
+        self.sql(["ALTER TABLE answers RENAME TO kept"],
+                 ["CREATE VIEW answers AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+                  "SELECT i AS kind, i AS subject, i AS program, i AS made, i AS answer, i AS digest FROM n"])
+        self.assertIn("its table answers is not that of a results file", self.taut("report", study, "--json", expect=2).err)
+        self.assertIn("set aside as", self.taut("run", study).err)
+        self.sql(["CREATE TRIGGER t AFTER INSERT ON sessions BEGIN DELETE FROM cases; END"], folder="other")
+        self.assertIn("trigger t", self.taut("report", study, "--json", "--out", "other", expect=2).err)
+
+    def test_a_kept_film_is_the_one_that_was_made(self):
+        study = self.study()
+        self.taut("run", study)
+        filmed = lambda: "small filmed" in self.taut("report", study, "-o", "page.html").err  # noqa: E731
+        self.assertTrue(filmed())
+        self.assertFalse(filmed())
+        films = sorted((self.folder / self.RESULTS / "films").iterdir())
+        self.assertGreaterEqual(len(films), 2)
+        for film in films:
+            data = bytearray(film.read_bytes())
+            data[len(data) // 2] ^= 1
+            film.write_bytes(data)
+            self.assertTrue(filmed(), film)
+            self.assertFalse(filmed(), film)
+            film.unlink()
+            os.mkfifo(film)  # nobody waits for the other end
+            self.assertTrue(filmed(), film)
+            self.assertFalse(filmed(), film)
 
 
 if __name__ == "__main__":

@@ -384,6 +384,7 @@ class NoMoreFiles {
 TEST(Programs, OfOneCommandAreOthersWithAnotherTimeout) {
   const std::string cmd = R"(external:cmd='sh -c "read x; sleep 1; echo {}; read x"',timeout=)";
   enable();
+  admit_solver(cmd + "60");
   EXPECT_NE(parse_solver(cmd + "0.1").entry->summary.find("within 0.1 s"), std::string::npos);
   EXPECT_EQ(parse_solver(cmd + "60").entry->summary.find("within"), std::string::npos);
   set_solver_source({});
@@ -395,9 +396,10 @@ TEST(Probe, IsMadeAgainIfItCouldNotBeMade) {
   program.replace(program.find("self.off(\"gravity\")"), 19, "1");
   write_file(scratch.path() / "wrong.py", program);
   enable();
-  const SolverChoice choice =
-      parse_solver("external:cmd='python3 \"" + (scratch.path() / "wrong.py").string() + "\" \"" +
-                   TAUT_SOURCE_DIR + "/experiments/external/sdk\"'");
+  const std::string solver = "external:cmd='python3 \"" + (scratch.path() / "wrong.py").string() +
+                             "\" \"" + TAUT_SOURCE_DIR + "/experiments/external/sdk\"'";
+  admit_solver(solver);
+  const SolverChoice choice = parse_solver(solver);
   const Scene scene = hanging_sheet(4, 4);
   {
     const NoMoreFiles limit;

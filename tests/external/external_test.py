@@ -62,8 +62,8 @@ class Programs(CommandLine):
         rows = csv.DictReader((self.folder / "end.csv").read_text().splitlines())
         return [float(row[key]) for row in rows for key in ("x", "y", "z", "vx", "vy", "vz")]
 
-    def case(self, solver, scene="./five.toml"):
-        return json.loads(self.taut("case", scene, solver, "--json").out)
+    def case(self, solver, scene="./five.toml", expect=0):
+        return json.loads(self.taut("case", scene, solver, "--json", expect=expect).out)
 
     def five(self):
         text = (self.folder / "small.toml").read_text().replace("[4, 4]", "[5, 5]")
@@ -286,6 +286,8 @@ class Everywhere(Programs):
         fronts = [p["case"] for chart in model["charts"] for p in chart.get("front", [])]
         self.assertNotIn(records[file]["key"], fronts)
         self.taut("case", "./small.toml", "positions:file=none.npy", expect=2)
+        (self.folder / "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\n")
+        self.assertIn("one.obj: has one frame", self.taut("external", "score", "./small.toml", "one.obj", expect=2).err)
         self.assertIn("has 33 frames, the scene needs 65",
                       json.loads(self.taut("case", "./small.toml", "positions:file=run.pc2", "--duration", 1, "--json").out)["status"]["reason"])
         self.taut("render", "./small.toml", "--solver", "positions:file=run.pc2", "--solver", "bullet", "-o", "end.png")
@@ -430,8 +432,23 @@ class Probe(Programs):
                 self.assertRegex(probe.out, "FAILED +(" + says.replace(": ", " +", 1) + ")")
                 self.assertIn("it is not scored", probe.out)
 
+    def test_of_what_was_not_computed_nothing_is_written(self):
+        self.five()
+        files = ["--final-state", "end.csv", "--trajectory", "way.pc2", "--series", "series.csv"]
+        for solver, status, code in [("external", "unsupported", 0), (hostile("exit"), "crash", 1), ("external:cmd='false'", "crash", 1)]:
+            done = self.taut("case", "./five.toml", solver, *files, "--json", expect=code)
+            record = json.loads(done.out)
+            self.assertEqual(record["status"]["kind"], status)
+            written = [name for name in files[1::2] if (self.folder / name).exists()]
+            self.assertEqual(written, files[1::2] if record["status"]["step"] >= 0 else [], status)
+            if not written:
+                self.assertIn(f"{status} ({record['status']['reason'][:40]}", done.err)
+            for name in written:
+                (self.folder / name).unlink()
+        self.assertIn("cloud.xyz", self.taut("case", "./small.toml", "jakobsen", "--trajectory", "cloud.xyz", expect=2).err)
+
     def test_nobody_is_scored_before_it_passes(self):
-        status = self.case(f"""external:cmd='python3 "{HERE}/wrong.py" down'""", "./small.toml")["status"]
+        status = self.case(f"""external:cmd='python3 "{HERE}/wrong.py" down'""", "./small.toml", expect=1)["status"]
         self.assertEqual(status["kind"], "error")
         self.assertRegex(status["reason"], "not scored, free fall: .*it falls along")
 

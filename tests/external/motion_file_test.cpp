@@ -13,6 +13,7 @@
 #include "core/io/positions/positions.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/case/run_case.hpp"
 
 namespace taut::external::motion_file_test {
 namespace {
@@ -139,6 +140,29 @@ TEST_F(MotionFiles, AVertexThatLeavesItsPinRefusesTheFile) {
   EXPECT_EQ(misfit(scene, held(0.9e-4 * extent(scene))), "");
   EXPECT_NE(misfit(scene, held(0.3)).find("does not hold the scene's pins: vertex 8 is 0.3 m from"),
             std::string::npos);
+}
+
+// FILES.md: a coordinate that is not finite is a result, of a pin too.
+TEST_F(MotionFiles, WhatIsNotFiniteExplodesWhereItStands) {
+  Scene scene = sheet();
+  scene.pins = {0, 8};
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    for (const std::size_t vertex : {std::size_t{8}, std::size_t{20}}) {
+      int k = 0;
+      const MotionOptions file = write("pins.npy", scene, [&](std::vector<Vec3> x) {
+        x[0] = scene.start.x[0], x[8] = scene.start.x[8];
+        if (k >= 2) x[vertex].y() = value;
+        ++k;
+        return x;
+      });
+      const Params params("positions", kPositions.params, solver_text(file).substr(10));
+      const CaseRun run = run_case(scene, {&kPositions, params});
+      EXPECT_EQ(run.record.status.kind, Status::Kind::exploded) << run.record.status.reason;
+      EXPECT_EQ(run.record.status.reason, "nonfinite");
+      EXPECT_EQ(run.record.status.step, 2);
+      EXPECT_EQ(run.record.status.vertex, static_cast<int>(vertex));
+    }
 }
 
 /// A scene that does not start at rest, in a file that does not begin with its start.

@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "core/io/scene_io.hpp"
+#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 
 namespace taut::mesh_io_test {
@@ -141,6 +142,105 @@ TEST(MeshFromObj, EachTriangleGivesAThirdToItsCorners) {
   const double expected[] = {2, 2.0 / 3, 2, 4.0 / 3};
   for (std::size_t v = 0; v < 4; ++v) EXPECT_NEAR(mesh.mass[v], expected[v], 1e-15);
   EXPECT_EQ(make_mesh(p, 6, Lumping::equal).mass, std::vector<double>(4, 1.5));
+}
+
+std::string vertices_of(const std::vector<Vec3>& corners) {
+  std::ostringstream out;
+  out.precision(17);
+  for (const Vec3& x : corners) out << "v " << x[0] << ' ' << x[1] << ' ' << x[2] << '\n';
+  return out.str();
+}
+
+/// The outline as one face that begins with each of its corners in turn, in either direction, its
+/// vertices in the order of the face or in that of the outline.
+std::vector<Polygons> every_way_round(const std::vector<Vec3>& outline) {
+  const std::size_t n = outline.size();
+  std::vector<Polygons> all;
+  for (std::size_t first = 0; first < n; ++first)
+    for (const bool back : {false, true}) {
+      std::vector<Vec3> turned;
+      std::string in_order = "f", of_outline = "f";
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t at = back ? (first + n - k) % n : (first + k) % n;
+        turned.push_back(outline[at]);
+        in_order += ' ' + std::to_string(k + 1), of_outline += ' ' + std::to_string(at + 1);
+      }
+      all.push_back(parse_obj("x.obj", vertices_of(turned) + in_order + '\n'));
+      all.push_back(parse_obj("x.obj", vertices_of(outline) + of_outline + '\n'));
+    }
+  return all;
+}
+
+// Area by the outline (the shoelace formula); the mass of a corner is its own wherever the face
+// begins.
+TEST(MeshFromObj, AFaceThatIsNotConvexIsCutWithinItsOutlineWhereverItBegins) {
+  struct Shape {
+    std::vector<Vec3> outline;
+    double area;
+  };
+  const std::vector<Shape> shapes{
+      {{{0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {1, 0, 1}, {1, 0, 2}, {0, 0, 2}}, 3},  // an L
+      {{{0, 0, 0}, {1, 0, 0}, {0.25, 0, 0.25}, {0, 0, 1}}, 0.25},               // a dart
+      {{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}, 7},
+      {{{0, 0, 0}, {2, 0, 0}, {2, 0, 0.5}, {2, 0, 1}, {1, 0, 1}, {1, 0, 2}, {0, 0, 2}}, 3}};
+  for (const Shape& shape : shapes) {
+    std::map<std::array<double, 3>, double> mass_at;
+    for (const Polygons& p : every_way_round(shape.outline)) {
+      EXPECT_NEAR(area(p), shape.area, 1e-12);
+      const Mesh mesh = make_mesh(p, 3, Lumping::area);
+      EXPECT_EQ(mesh.triangles.size(), shape.outline.size() - 2);
+      double covered = 0;
+      for (const auto& [a, b, c] : mesh.triangles)
+        covered += (mesh.rest[to_index(b)] - mesh.rest[to_index(a)])
+                       .cross(mesh.rest[to_index(c)] - mesh.rest[to_index(a)])
+                       .norm() /
+                   2;
+      EXPECT_NEAR(covered, shape.area, 1e-12) << "triangles reach out of the face";
+      for (std::size_t v = 0; v < mesh.rest.size(); ++v) {
+        const Vec3& x = mesh.rest[v];
+        const auto [at, fresh] = mass_at.emplace(std::array{x[0], x[1], x[2]}, mesh.mass[v]);
+        EXPECT_NEAR(at->second, mesh.mass[v], 1e-12) << "depends on where the face begins";
+      }
+    }
+    EXPECT_EQ(mass_at.size(), shape.outline.size());
+  }
+}
+
+TEST(MeshFromObj, AFaceThatCrossesItselfIsRefused) {
+  const std::string said =
+      ": the outline of the face crosses or touches itself: it has to go once round an area";
+  EXPECT_EQ(errors_of("v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nf 1 2 3 4\n"), "x.obj:5:1" + said)
+      << "a crossed quad";
+  std::string star;  // five corners, twice round
+  for (const int k : {0, 2, 4, 1, 3})
+    star += "v " + std::to_string(std::cos(1.2566370614 * k)) + " " +
+            std::to_string(std::sin(1.2566370614 * k)) + " 0\n";
+  EXPECT_EQ(errors_of(star + "f 1 2 3 4 5\n"), "x.obj:6:1" + said);
+  EXPECT_EQ(errors_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n"),
+            "x.obj:5:1: the face has no area");
+}
+
+TEST(MeshFromObj, WhatOtherProgramsAddIsSkippedAndCounted) {
+  const std::string sheet = "v 0 0 0\nvv 0 0 0\nny 0 0 0\nv 1 0 0\nvv 0 0 0\nv 0 1 0\n";
+  const Polygons p = parse_obj("x.obj", sheet +
+                                            "nv 0\nvl 1\ne 1 2\nea 0\ned 0\ntl 1\nadje 0\nadjf 0\n"
+                                            "stitch 1 2\nl 1 2\np 1\nmg 1\nlod 1\nusemap x\nvt 0\n"
+                                            "f 1 2 3\n");
+  EXPECT_EQ(p.faces.size(), 1u);
+  EXPECT_EQ(p.skipped.size(), 16u);
+  EXPECT_EQ(p.skipped.at("vv"), 2);
+  EXPECT_EQ(errors_of(sheet + "vvv 1\nf 1 2 3\n"),
+            "x.obj:7:1: 'vvv' is not read: a cloth is made of 'v' and 'f' lines");
+}
+
+TEST(MeshFromObj, ALineMayBeContinuedAndAMarkOfTheByteOrderIsNoWord) {
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(parse_obj("x", "\xEF\xBB\xBF" + v + "f 1 \\\n2\\\r\n 3\n").faces[0],
+            (std::vector{0, 1, 2}));
+  EXPECT_EQ(parse_obj("x", "v 0 0 \\\n0\n# of a folder C:\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\\")
+                .vertices.size(),
+            3u);
+  EXPECT_EQ(errors_of(v + "f 1 \\\n 2 x\nf 1 2 3\n"), "x.obj:5:4: 'x' is not a vertex number");
 }
 
 TEST(MeshFromObj, NegativeNumbersCountBackAndLaterVerticesMayBeNamed) {

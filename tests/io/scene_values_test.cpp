@@ -287,20 +287,27 @@ TEST(SceneValues, AStartInsideAColliderIsMeasured) {
   expect_near(moved.mesh.rest[5], Vec3(1, 0, 0.5));
 }
 
-TEST(SceneValues, APathJumpsIfAStepIsLongerThanTheCloth) {
-  const auto path = [](const std::string& end) {
+TEST(SceneValues, APathJumpsIfItGoesFurtherThanTheClothWithinAStep) {
+  const auto moved = [](const std::string& motion) {
     return problems(
         "[cloth]\ngrid = [3, 3]\nsize = [3, 4]\n[time]\ndt = 0.25\n[[collider]]\n"
-        "type = \"ball\"\ncenter = [0, 90, 0]\nradius = 1\npath = [{ t = 0, displacement "
-        "= [0, 0, 0] }, { t = 1, displacement = [0, 1, 0] }, { t = 1.5, displacement = "
-        "[0, 1, " +
-        end + "] }]\n");
+        "type = \"ball\"\ncenter = [0, 90, 0]\nradius = 1\n" +
+        motion + "\n");
   };
-  EXPECT_EQ(path("10"), "none") << "5 m a step, the diagonal";
+  const auto path = [&](const std::string& t, const std::string& end) {
+    return moved(
+        "path = [{ t = 0, displacement = [0, 0, 0] }, { t = 1, displacement = [0, 1, 0] }, { t = " +
+        t + ", displacement = [0, 1, " + end + "] }]");
+  };
+  EXPECT_EQ(path("1.125", "5"), "none") << "the diagonal";
   EXPECT_EQ(
-      path("-12"),
-      "x:6:1: the path jumps: from key 2 to key 3 it makes 6 m in one time step, more than the "
+      path("1.125", "-6"),
+      "x:6:1: the path jumps: from key 2 to key 3 it makes 6 m within one time step, more than the "
       "size of the cloth");
+  for (const char* same : {"velocity = [0, 0, 24]",
+                           "path = [{ t = 0, displacement = [0, 0, 0] }, { t = 9, displacement = "
+                           "[0, 0, 216] }]"})
+    EXPECT_EQ(moved(same), "none") << same;
   EXPECT_EQ(problems(level("",
                            "[[collider]]\ntype = \"plane\"\noffset = -9\npath = [{ t = 1, "
                            "displacement = [0, 0, 0] }, { t = 0.5, displacement = [0, 0, 0] }]\n")),

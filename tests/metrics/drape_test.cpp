@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
+#include "core/io/scene_io.hpp"
 #include "core/reference/elastica.hpp"
 #include "tests/metrics/measured.hpp"
 #include "tests/support/cloths.hpp"
@@ -54,6 +56,26 @@ TEST(Drape, IsWhatTheShadowCoversBesideTheSupport) {
   x = s.mesh.rest;
   for (Vec3& p : x) p = Vec3(p.x() - p.z(), 0, p.x() + p.z()) / std::sqrt(2.0);
   EXPECT_NEAR(coefficient(s, x), 1, 1e-5) << "turned by 45 degrees: lines cut corners";
+}
+
+// ISO 9073-9: a round cloth of 30 cm on a disc of 18 cm, 254.47 cm^2 whatever the mesh.
+TEST(Drape, OfARoundClothTheSupportIsADisc) {
+  for (const char* mesh : {"woven-disc.obj", "woven-disc-fine.obj"}) {
+    Scene s =
+        load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/drape-disc.toml",
+                   {std::string("cloth.mesh=\"") + mesh + "\""});
+    s.steps = 4;
+    double cloth = 0;
+    for (const auto& [a, b, c] : s.mesh.triangles) {
+      const auto x = [&](int v) { return s.mesh.rest[to_index(v)]; };
+      cloth += (x(b) - x(a)).cross(x(c) - x(a)).norm() / 2;
+    }
+    const double support = std::numbers::pi * 0.09 * 0.09;
+    EXPECT_NEAR(coefficient(s, s.mesh.rest), 1, 1e-4) << "flat";
+    std::vector<Vec3> x = s.mesh.rest;
+    for (Vec3& p : x) p *= 0.8;  // whatever holds the cloth: its shadow alone counts
+    EXPECT_NEAR(coefficient(s, x), (0.64 * cloth - support) / (cloth - support), 1e-4) << mesh;
+  }
 }
 
 TEST(Drape, IsOfScenesWithALevelSupportAlone) {

@@ -414,6 +414,27 @@ TEST_F(Plots, WithoutGnuplotTheErrorSaysWhatToInstall) {
   EXPECT_FALSE(fs::exists(dir_ / "x.svg"));
 }
 
+/// gnuplot does not see that a disk is full, and ends well.
+TEST_F(Plots, APictureWithoutItsEndIsNone) {
+  fs::create_directories(dir_);
+  write_file(dir_ / "x.gp", "");
+  for (const char* written : {"", "<svg>half", "<svg></svg>"}) {
+    const fs::path program = dir_ / "gnuplot";
+    write_file(program, "#!/bin/bash\nout=${2#*output ?}\nprintf '" + std::string(written) +
+                            "' >\"${out%?}\"\n");
+    fs::permissions(program, fs::perms::owner_all);
+    const auto draw_it = [&] {
+      run_gnuplot(dir_ / "x.gp", "svg", dir_ / "x.svg", program.string());
+    };
+    if (std::string(written).ends_with("</svg>"))
+      EXPECT_NO_THROW(draw_it());
+    else
+      EXPECT_THROW(draw_it(), FigureNotWritten) << written;
+    EXPECT_EQ(fs::exists(dir_ / "x.svg"), std::string(written).ends_with("</svg>"));
+    EXPECT_EQ(files(), fs::exists(dir_ / "x.svg") ? 3 : 2);
+  }
+}
+
 TEST_F(Plots, ABrokenScriptLeavesNoFile) {
   fs::create_directories(dir_);
   write_file(dir_ / "x.gp", "plot nonsense(\n");

@@ -58,14 +58,16 @@ TEST(Bending, SecondDerivativesOfQuadraticShapesAreExactOnAnyMesh) {
   for (const int n : inner) EXPECT_GT(n, 80) << "of 160 triangles";
 }
 
-/// Energy over the area of a sheet rolled up at an angle a to the warp, curvature 1/m, over that of
-/// a plate of 1 N m; without the triangles at the edges.
-double stiffness_at(double angle, const Bending& bending) {
+/// Energy of a sheet that is bent at an angle to the warp [1/m]: along that line, across it, and
+/// its twist; without the triangles at the edges.
+double energy_at(double angle, const Bending& bending, double along, double across, double twist) {
   Scene s = hanging_sheet(41, 41, {false, false, false});
   s.pins.clear();
   s.bending = bending;
   const double c = std::cos(angle), d = std::sin(angle);
-  const std::vector<Vec3> x = bent(s, c * c, d * d, c * d);
+  const std::vector<Vec3> x = bent(s, along * c * c + across * d * d - 2 * twist * c * d,
+                                   along * d * d + across * c * c + 2 * twist * c * d,
+                                   (along - across) * c * d + twist * (c * c - d * d));
   double energy = 0;
   for (const BendingElement& e : make_bending(s)) {
     const auto inside = [&](int v) {
@@ -76,6 +78,32 @@ double stiffness_at(double angle, const Bending& bending) {
       energy += bending_energy({e}, x);
   }
   return energy;
+}
+
+/// Rolled up: bent along the line alone.
+double stiffness_at(double angle, const Bending& bending) {
+  return energy_at(angle, bending, 1, 0, 0);
+}
+
+/// The same if it may bend across the line and twist as it costs least.
+double free_stiffness_at(double angle, const Bending& bending) {
+  const auto energy = [&](double a, double b, double t) {
+    return energy_at(angle, bending, a, b, t);
+  };
+  const double b = energy(0, 1, 0), t = energy(0, 0, 1), a = energy(1, 0, 0);
+  const double bt = energy(0, 1, 1) - b - t, ab = energy(1, 1, 0) - a - b,
+               at = energy(1, 0, 1) - a - t;
+  return a - (t * ab * ab - bt * ab * at + b * at * at) / (4 * b * t - bt * bt);
+}
+
+TEST(Bending, AStripAtAnAngleToTheWarpTwistsIfItMay) {
+  const double isotropic = stiffness_at(0, {1, 1, kWarp});
+  for (const double angle : {0.0, 0.3, 0.7854, 1.2, 1.5708}) {
+    const double c = std::cos(angle), d = std::sin(angle);
+    EXPECT_NEAR(free_stiffness_at(angle, {4, 1, kWarp}) / isotropic,
+                1 / std::pow(c * c / 2 + d * d, 2), 0.06)
+        << angle;
+  }
 }
 
 TEST(Bending, AStripAtAnAngleToTheWarpIsAsStiffAsThePlate) {

@@ -111,6 +111,41 @@ kind = "scaling"
   EXPECT_EQ(study.plots[1].kind, "scaling");
 }
 
+TEST_F(StudyFile, AnAxisMayHoldTables) {
+  const std::string head = "question = \"?\"\nscenes = [\"hang\"]\nsolvers = [\"jakobsen\"]\n";
+  std::string pins, stiffness;
+  for (const Case& one : cases_of(read(
+           head + "set = [\"cloth.grid=[3, 3]\"]\n[axes]\n"
+                  "\"cloth.pins\" = [[\"top\"], [{ edge = \"bottom\", at = 0.5 }], [0, 8]]\n"))) {
+    for (const int pin : one.scene->pins) pins += std::to_string(pin) + " ";
+    pins += "; ";
+  }
+  EXPECT_EQ(pins, "0 1 2 ; 7 ; 0 8 ; ");
+  for (const Case& one : cases_of(
+           read("question = \"?\"\nscenes = [\"hang\"]\nsolvers = [\"pd\"]\n"
+                "exclude = [{ \"links.stiffness\" = { structural = 7, shear = 8 } }]\n[axes]\n"
+                "\"links.stiffness\" = [{ structural = 50, shear = 2.5 }, { structural = 7, shear "
+                "= 8 }]\n\"bending.stiffness\" = [1e-5, { warp = 1e-5, weft = 2e-5 }]\n"))) {
+    for (const double k :
+         {one.scene->stiffness[0], one.scene->stiffness[1], 1e5 * one.scene->bending->weft})
+      stiffness += std::to_string(std::lround(2 * k)) + " ";
+    stiffness += "; ";
+  }
+  EXPECT_EQ(stiffness, "100 5 2 ; 100 5 4 ; ");
+}
+
+TEST_F(StudyFile, WhatIsNoTextOrNumberIsNeverZero) {
+  const std::string head = "question = \"?\"\nscenes = [\"hang\"]\nsolvers = [\"jakobsen\"]\n";
+  const std::string said = "holds texts and numbers, no tables or dates\n";
+  EXPECT_EQ(wrong(head + "axes.iterations = [{ from = 1 }]\n"), "4:20: 'iterations' " + said);
+  EXPECT_EQ(wrong(head + "axes.\"time.duration\" = [1979-05-27]\n"),
+            "4:25: 'time.duration' holds no dates\n");
+  EXPECT_EQ(wrong(head + "axes.iterations = [1]\nexclude = [{ iterations = [{ a = 1 }] }]\n"),
+            "5:28: 'iterations' " + said);
+  EXPECT_EQ(wrong(head + "[[plot]]\nkind = \"convergence\"\ntitle = { a = 1 }\n"),
+            "6:9: 'title' " + said);
+}
+
 TEST_F(StudyFile, APresetReplacesAnAxisAndPutsItLast) {
   const std::string text = R"(question = "?"
 scenes = ["hang"]

@@ -16,7 +16,7 @@ class Scripted {
   explicit Scripted(const std::string& body) {
     write(body);
     set_solver_source(
-        {.all = [] { return std::vector<const SolverEntry*>{&entry()}; },
+        {.names = [] { return std::vector<std::string>{"scripted"}; },
          .find = [](std::string_view name,
                     std::string_view) { return name == "scripted" ? &entry() : nullptr; }});
   }

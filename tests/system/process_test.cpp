@@ -107,7 +107,7 @@ TEST(Processes, SayHowTheyEnded) {
   EXPECT_EQ(killed.text(), "SIGSEGV");
   EXPECT_FALSE(killed.good());
   EXPECT_EQ((ProcessEnd{-1, SIGRTMIN + 1}).text(), "signal " + std::to_string(SIGRTMIN + 1));
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) {  // ignored here, not there
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) {  // ignored here, not there
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     std::signal(signal, SIG_IGN);

@@ -31,7 +31,7 @@ class Counted {
   Counted() {
     steps_of().clear();
     set_solver_source(
-        {.all = [] { return std::vector<const SolverEntry*>{&entry()}; },
+        {.names = [] { return std::vector<std::string>{"counting"}; },
          .find = [](std::string_view name,
                     std::string_view) { return name == "counting" ? &entry() : nullptr; }});
   }

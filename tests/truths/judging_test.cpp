@@ -68,7 +68,7 @@ const TruthEntry& truth(std::string_view name) {
 class AnySolver : public testing::Test {
  protected:
   void SetUp() override {
-    set_solver_source({[] { return std::vector<const SolverEntry*>{&kOutside}; },
+    set_solver_source({[] { return std::vector<std::string>{"outside"}; },
                        [](std::string_view name, std::string_view) {
                          return name == "outside" ? &kOutside : nullptr;
                        }});

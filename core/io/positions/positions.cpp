@@ -268,6 +268,8 @@ const Format& format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+void check_positions_name(const std::filesystem::path& path) { format_of(path); }
+
 std::unique_ptr<PositionReader> open_positions(const std::filesystem::path& path) {
   return format_of(path).open(path);
 }

@@ -55,6 +55,9 @@ class PositionWriter {
   virtual void append(double t, const std::vector<Vec3>& x) = 0;
 };
 
+/// Throws InputError: no format has this extension.
+void check_positions_name(const std::filesystem::path&);
+
 /// Replaces what is there; frames of a sequence are NAME_00000.obj and on, with the triangles; .obj
 /// has material coordinates too, and a line for a chain.
 /// Throws InputError: another extension, or it cannot be written.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/io/obj_lines.hpp"
 #include "core/io/positions/formats.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
@@ -65,15 +66,13 @@ std::vector<fs::path> files_of(const fs::path& path) {
 std::vector<Vec3> obj_vertices(const fs::path& path) {
   const std::string text = read_text(path, kMostMeshBytes);
   std::vector<Vec3> x;
-  int line = 0;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::vector<std::string_view> words = words_of(take_line(rest));
-    ++line;
-    if (words.empty() || words[0] != "v") continue;
+  std::vector<ObjWord> words;
+  for (ObjLines lines(text); lines.next(words);) {
+    if (words.empty() || words[0].text != "v") continue;
     Vec3& v = x.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto c = axis + 1 < words.size() ? whole<double>(words[axis + 1]) : std::nullopt;
-      if (!c) fail_in(path, "a vertex needs three numbers", line, 1);
+      const auto c = axis + 1 < words.size() ? whole<double>(words[axis + 1].text) : std::nullopt;
+      if (!c) fail_in(path, "a vertex needs three numbers", words[0].line, 1);
       v[static_cast<Eigen::Index>(axis)] = *c;
     }
   }

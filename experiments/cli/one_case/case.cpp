@@ -48,24 +48,36 @@ class SlowRun {
   double next_ = 2;  ///< when to speak [s since the start]
 };
 
+/// What was asked for; of a case of which nothing was computed nothing is written.
+void write_files(const CaseRun& result, const Options& options) {
+  if (!result.computed()) {
+    std::cerr << result.record.id << ": " << describe(result.record.status) << '\n';
+    return;
+  }
+  if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
+  if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
+}
+
 int run(const Options& options) try {
   const Case one = options.which.make();
   continue_in_right_program(one.choice);
   if (!options.into.empty()) return run_into(one, options.into, options.frames);
 
+  tell_remarks(one.remarks);
   for (const std::string& file : {options.final_state, options.series, options.trajectory})
     if (!file.empty()) test_writable(file);
-  const std::unique_ptr<PositionWriter> motion =
-      options.trajectory.empty() ? nullptr : create_positions(options.trajectory, one.scene->mesh);
+  if (!options.trajectory.empty()) check_positions_name(options.trajectory);
+  std::unique_ptr<PositionWriter> motion;  // from the first state on: there may be none
   SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(
       one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
+              if (!options.trajectory.empty() && !motion)
+                motion = create_positions(options.trajectory, one.scene->mesh);
               if (motion) motion->append(m.t, m.state.x);
               slow.at(m.step);
               if (options.verbose) tell(m, one.scene->steps);
             }});
-  if (!options.final_state.empty()) write_durably(options.final_state, to_csv(result.last));
-  if (!options.series.empty()) write_durably(options.series, to_csv(result.series));
+  write_files(result, options);
   if (options.json)
     std::cout << to_json(result.record, 2) << '\n';
   else
@@ -73,7 +85,7 @@ int run(const Options& options) try {
   if (options.verbose)
     for (const ResolvedSetting& setting : result.record.resolved_settings)
       std::cerr << setting.name << ": " << setting.text << '\n';
-  return kPass;
+  return result.record.status.is_result() ? kPass : kRegression;
 } catch (const std::bad_alloc&) {  // while the scene was read
   if (options.into.empty()) throw;
   return kOutOfMemory;
@@ -100,5 +112,7 @@ TAUT_VERB(case) = {
     .name = "case",
     .group = VerbGroup::one_case,
     .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
-    .example = "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv",
+    .example =
+        "taut case hang jakobsen:iterations=1,substeps=15 --dt 1/120 --final-state hang.csv\n"
+        "Exit: 0 a result, whatever its status; 1 an external program failed",
     .bind = taut::bind_verb<taut::verb::one_case::add_options, taut::verb::one_case::run>};

@@ -29,13 +29,18 @@ std::vector<std::string> fitted(const Options& o) {
     settings.push_back("time.dt=" + shortest(motion.frame_dt()));
     scene = load_scene(find_scene(o.scene), settings);
   }
+  if (motion.header().frames < 2)
+    throw InputError(o.motion.file.string() +
+                     ": has one frame; a motion has two at least, the start and what follows");
   if (const int steps = motion.header().frames - 1; steps < scene.steps)
     settings.push_back("time.duration=" + shortest(steps * motion.frame_dt()));
   return settings;
 }
 
 int run(const Options& o) {
-  const Case one = CaseMaker().make({o.scene, fitted(o), external::solver_text(o.motion)});
+  const std::string solver = external::solver_text(o.motion);
+  admit_solver(solver);
+  const Case one = CaseMaker().make({o.scene, fitted(o), solver});
   for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
     throw InputError(why);
   const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : 120});

@@ -171,9 +171,14 @@ int merge(const MergeOptions& o) {
   answer.add(sentences("foreign", plan.foreign));
   answer.add(sentences("conflicts", plan.conflicts));
   print(answer, o.format);
-  if (!plan.foreign.empty()) return kUsage;
-  if (!plan.conflicts.empty()) return kConflict;
+  const auto tell = [](const char* what, const std::vector<std::string>& all) {
+    std::cerr << "not merged: " << all.size() << ' ' << what << ", the first: " << all.front()
+              << '\n';
+  };
+  if (!plan.foreign.empty()) return tell("foreign", plan.foreign), kUsage;
+  if (!plan.conflicts.empty()) return tell("in conflict", plan.conflicts), kConflict;
   if (plan.cases.empty()) return kNothing;
+  if (!may) tell("missing", missing);
   return missing.empty() ? kPass : kIncomplete;
 }
 

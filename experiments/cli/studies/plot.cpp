@@ -139,10 +139,11 @@ void keep(const char* option, std::vector<Record>& records, const std::vector<st
     });
 }
 
-/// Every figure of a study. Maps have their panels by solver: a figure for each scene.
+/// Every figure of a study, and how many could not be drawn, which is said. Maps have their panels
+/// by solver: a figure for each scene.
 std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted,
                                         const report::ReportInput& input, const Store& store,
-                                        const std::filesystem::path& out) {
+                                        const std::filesystem::path& out, int& dropped) {
   const report::StudyResult& study = input.studies.front();
   std::vector<std::string> scenes;
   for (const Record& r : study.records) push_unique(scenes, r.scene);
@@ -161,8 +162,11 @@ std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted,
     }
     for (const std::vector<std::string>& set : sets) try {
         figures.push_back(draw(want, study, set, store, out));
+      } catch (const report::FigureNotWritten&) {
+        throw;
       } catch (const InputError& error) {
-        std::cerr << error.what() << '\n';
+        std::cerr << "not drawn: " << error.what() << '\n';
+        ++dropped;
       }
   }
   return figures;
@@ -198,8 +202,9 @@ int run(const Options& options) {
   make_folder(out);  // what cannot be written is said once, not for every scene
   std::vector<std::string> files;
   bool drawn = true;
+  int dropped = 0;
   try {
-    for (const report::PlotFiles& plot : draw_all(all, input, store, out)) {
+    for (const report::PlotFiles& plot : draw_all(all, input, store, out, dropped)) {
       for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
       for (const std::string& why : plot.without) std::cerr << why << '\n';
     }
@@ -210,7 +215,7 @@ int run(const Options& options) {
   print_files(files, options.json);
   if (!drawn) return kEnvironment;
   if (files.empty()) return kNothing;
-  return missing > 0 ? kIncomplete : kPass;
+  return missing > 0 || dropped > 0 ? kIncomplete : kPass;
 }
 
 void add_options(CLI::App& app, Options& options) {
@@ -243,5 +248,6 @@ TAUT_VERB(plot) = {.name = "plot",
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "
                        "stability -o figures\n  taut plot trade --kind profile\n  taut plot "
                        "iterations --preset quick --x projections --y stretch.max\n"
-                       "Exit: 0 drawn; 3 drawn without cases that were not run; 4 nothing to draw",
+                       "Exit: 0 drawn; 3 drawn, but for cases that were not run or a figure "
+                       "that cannot be drawn; 4 nothing to draw",
                    .bind = taut::bind_verb<taut::verb::plot::add_options, taut::verb::plot::run>};

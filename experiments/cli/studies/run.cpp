@@ -162,6 +162,15 @@ void print_next(const Options& options, const Study& leading, bool bare) {
              << first << more << in << " -o table.csv\n";
 }
 
+/// On the files of all scenes, each once.
+std::vector<std::string> remarks_of(const std::vector<StudyCases>& studies) {
+  std::vector<std::string> all;
+  for (const StudyCases& study : studies)
+    for (const Case& one : study.cases)
+      for (const std::string& remark : one.remarks) push_unique(all, remark);
+  return all;
+}
+
 int run(Options options) {
   const bool bare = options.studies.empty();
   const MainJob job = bare ? main_job() : MainJob{};
@@ -177,6 +186,7 @@ int run(Options options) {
     std::cerr << "these studies have no case: their exclusions leave out all\n";
     return kNothing;
   }
+  tell_remarks(remarks_of(cases));
   Store store(options.out);
   store.prepare();
   if (bare && !options.no_report) say_part(1, "cases of the studies");

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/model/input_error.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -10,7 +11,7 @@ namespace taut {
 
 namespace {
 
-constexpr const char* kSchema = "taut-film-3";
+constexpr const char* kSchema = "taut-film-4";
 
 /// Beside the file of its numbers: KEY.mp4, KEY-poster.jpg.
 std::filesystem::path picture_of(const std::filesystem::path& file, const char* what,
@@ -19,12 +20,26 @@ std::filesystem::path picture_of(const std::filesystem::path& file, const char* 
   return file.parent_path() / (file.stem().string() + what + extension);
 }
 
-/// Throws InputError unless the picture has as many bytes as its film says.
-std::string picture(const std::filesystem::path& file, const JsonReader& size) {
+/// Throws InputError unless the picture has the bytes that its film was kept with.
+std::string picture(const std::filesystem::path& file, const JsonReader& digest) {
   std::string bytes = read_text(file);
-  if (static_cast<double>(bytes.size()) != size.number())
-    throw InputError(file.string() + " is damaged");
+  if (sha256(bytes) != digest.text()) throw InputError(file.string() + " is damaged");
   return bytes;
+}
+
+/// Over what is a file or can go: a pipe would be waited for.
+void write_regular(const std::filesystem::path& file, const std::string& bytes) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none)) std::filesystem::remove(file, none);
+  if (std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
+    throw InputError(file.string() + ": is no regular file");
+  write_file(file, bytes);
+}
+
+/// Of all numbers and names of a film, which are a file beside its pictures.
+std::string digest_of(Json numbers) {
+  numbers.erase("digest");
+  return sha256(to_text(numbers));
 }
 
 FilmResult film_of(const JsonReader& json, const std::filesystem::path& file) {
@@ -61,8 +76,8 @@ void keep_film(const std::filesystem::path& file, const FilmResult& film) {
             {"frame", media.frame},
             {"poster_t", media.poster},
             {"type", clip.type},
-            {"bytes", clip.bytes.size()},
-            {"poster_bytes", clip.poster.size()},
+            {"bytes", sha256(clip.bytes)},
+            {"poster_bytes", sha256(clip.poster)},
             {"poster_type", clip.poster_type},
             {"alt", clip.alt},
             {"bar", to_text(media.bar)}};
@@ -72,15 +87,20 @@ void keep_film(const std::filesystem::path& file, const FilmResult& film) {
                 {"t", series.t},         {"y", json_array(series.y, json_number)}};
   });
   make_folder(file.parent_path());
-  write_file(picture_of(file, "", clip.type), clip.bytes);
-  write_file(picture_of(file, "-poster", clip.poster_type), clip.poster);
-  write_file(file, to_text(json));  // the last: a film without it is none
+  json["digest"] = digest_of(json);
+  write_regular(picture_of(file, "", clip.type), clip.bytes);
+  write_regular(picture_of(file, "-poster", clip.poster_type), clip.poster);
+  write_regular(file, to_text(json));  // the last: a film without it is none
 }
 
 std::optional<FilmResult> kept_film(const std::filesystem::path& file) try {
   if (!std::filesystem::exists(file)) return std::nullopt;
-  return read_json(read_text(file), file.string(),
-                   [&](const JsonReader& json) { return film_of(json, file); });
+  const std::string text = read_text(file);
+  return read_json(text, file.string(), [&](const JsonReader& json) {
+    if (json.at("digest").text() != digest_of(parse_json(text)))
+      throw InputError(file.string() + " is damaged");
+    return film_of(json, file);
+  });
 } catch (const InputError&) {
   return std::nullopt;
 }

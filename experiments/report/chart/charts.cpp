@@ -29,7 +29,7 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
       if (const auto equals = text.find('='); equals != std::string::npos)
         all[text.substr(0, equals)] = text.substr(equals + 1);
   for (const std::string& name : free) {
-    all.erase(name == "vertices" ? "cloth.grid" : name);
+    all.erase(name == "vertices" ? "cloth.grid" : own_parameter(record.solver, name));
     if (name != "setting") continue;
     for (const char* work : {kSubsteps, kSweeps}) all.erase(work);
     for (const std::string& parameter : labelled_parameters(record.solver)) all.erase(parameter);

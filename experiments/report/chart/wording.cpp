@@ -143,6 +143,12 @@ std::string title_from(std::string_view name) {
 
 }  // namespace
 
+std::string own_parameter(std::string_view solver, std::string_view name) {
+  const auto colon = name.find(':');
+  const bool of_it = colon != name.npos && name.substr(0, colon) == solver;
+  return std::string(of_it ? name.substr(colon + 1) : name);
+}
+
 double value_of(const Record& record, std::string_view name) {
   if (name == "dt") return record.dt;
   if (name == "steps") return record.steps;
@@ -158,7 +164,7 @@ double value_of(const Record& record, std::string_view name) {
   const std::string key(name);
   if (const auto value = record.values.find(key); value != record.values.end())
     return value->second;
-  const auto param = record.params.find(key);
+  const auto param = record.params.find(own_parameter(record.solver, key));
   return param == record.params.end() ? overridden(record, key) : number(param->second);
 }
 

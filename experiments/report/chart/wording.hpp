@@ -31,10 +31,15 @@ std::string joined(const std::vector<std::string>& names);
 inline constexpr const char *kSweeps = "iterations", *kSubsteps = "substeps";
 
 /// What a record holds under `name`: "dt" [s], "steps", "vertices", "links", "projections" (per
-/// step), kSweeps, kSubsteps, any numeric parameter of its solver ("omega"), any metric value
+/// step), kSweeps, kSubsteps, any numeric parameter of its solver ("omega", "xpbd:omega"), any
+/// metric value
 /// ("stretch.rms"), kStrainFloor, any scene key that its case sets to a number ("wind.strength").
 /// NaN if it has none.
 double value_of(const Record&, std::string_view name);
+
+/// The parameter that an axis of this solver alone varies, "structural" of "xpbd:structural"; the
+/// name itself of any other.
+std::string own_parameter(std::string_view solver, std::string_view name);
 
 /// What people are told of a quantity.
 struct Quantity {

@@ -107,7 +107,7 @@ std::string script(const PlotSpec& spec, const Sheet& sheet, const Layout& layou
 }
 
 PlotFiles write_plot(const PlotSpec& spec, const Sheet& sheet,
-                     const std::filesystem::path& folder) {
+                     const std::filesystem::path& folder) try {
   make_folder(folder);
   const auto path = [&](const char* extension) { return folder / (spec.file + extension); };
   PlotFiles files{path(".svg"), path(".pdf"), path(".gp"), path(".csv"), {}};
@@ -125,6 +125,8 @@ PlotFiles write_plot(const PlotSpec& spec, const Sheet& sheet,
               "pdfcairo noenhanced size " + size(0.01, "in") + " font 'sans,13' fontscale 0.72",
               files.pdf);
   return files;
+} catch (const InputError& error) {
+  throw FigureNotWritten(error.diagnostics());
 }
 
 }  // namespace

@@ -62,9 +62,16 @@ class PlotError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The disk does not take a figure.
+class FigureNotWritten : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// Runs `script` with its folder as working directory; the picture goes to `out` by way of a
-/// temporary name, and only if gnuplot succeeded and wrote something. `terminal` is the argument of
-/// "set terminal"; `program` is looked up in PATH. Throws PlotError.
+/// temporary name, and only if gnuplot succeeded and wrote it to its end. `terminal` is the
+/// argument of "set terminal"; `program` is looked up in PATH. Throws PlotError, and
+/// FigureNotWritten.
 void run_gnuplot(const std::filesystem::path& script, const std::string& terminal,
                  const std::filesystem::path& out, const std::string& program = "gnuplot");
 

@@ -83,7 +83,7 @@ std::string start_command(const std::vector<int>& shards, const fs::path& folder
   const auto list = [&](const char* separator) {
     return join(shards, separator, [](int shard) { return std::to_string(shard); });
   };
-  const bool slurm = read_text(folder / "job.sh").find("#SBATCH") != std::string::npos;
+  const bool slurm = read_text(folder / "job.sh").find("\n#SBATCH") != std::string::npos;
   return "cd " + shell_word(folder.string()) + " && " +
          (slurm ? "sbatch --array=" + list(",") + " job.sh" : "./job.sh " + list(" "));
 }

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "core/model/text.hpp"
@@ -36,18 +38,29 @@ constexpr const char* kParallel =
     R"SH(# GNU parallel: ./job.sh runs what has not ended well yet; ./job.sh 3 5 runs some shards. Nodes are the lines of the file
 # "nodes", if there is one: they see this folder under the same path. $JOBS shards at a time on each node, or one per core.
 cd "$(dirname "$0")" || exit
-options=(--jobs "${JOBS:-100%}" --termseq TERM,20000,KILL,25)
+if [[ ${1:-} == --shard ]]; then  # what GNU parallel starts: it reads braces and a shell reads the rest, so no name is told to it
+  shard=$2
+  exec "${run[@]}" --shard "$shard/@SHARDS@" --out "shards/$shard"
+fi
+export TAUT=$taut ONLY=${ONLY:-}
+options=(--env TAUT --env ONLY --jobs "${JOBS:-100%}" --termseq TERM,20000,KILL,25)
 [[ ! -f nodes ]] || options+=(--sshloginfile ./nodes --workdir "$PWD")
 [[ $# -gt 0 ]] || { set -- {1..@SHARDS@}; options+=(--joblog joblog --resume --resume-failed); }
 shards=($(printf '%04d ' "$@"))
 for shard in "${shards[@]}"; do rm -f "shards/$shard/results.db.writer"; done  # who left these marks is gone
-exec parallel "${options[@]}" "${run[@]}" --shard '{}/@SHARDS@' --out 'shards/{}' ::: "${shards[@]}"
+exec parallel "${options[@]}" bash ./job.sh --shard {} ::: "${shards[@]}"
 )SH";
 
-std::string filled(std::string text, const std::string& mark, const std::string& value) {
-  for (std::size_t at; (at = text.find(mark)) != std::string::npos;)
-    text.replace(at, mark.size(), value);
-  return text;
+/// The text with each mark, "@RUN@", replaced by its value; a value is not searched for marks.
+std::string filled(std::string_view text, const std::map<std::string_view, std::string>& values) {
+  std::string all;
+  while (!text.empty()) {
+    const auto mark =
+        std::ranges::find_if(values, [&](const auto& one) { return text.starts_with(one.first); });
+    all += mark == values.end() ? std::string(1, text.front()) : mark->second;
+    text.remove_prefix(mark == values.end() ? 1 : mark->first.size());
+  }
+  return all;
 }
 
 }  // namespace
@@ -63,7 +76,7 @@ std::string job_script(const Plan& plan, Scheduler on) {
   std::ostringstream text;
   text << "#!/bin/bash\n";
   if (slurm)
-    text << "#SBATCH --job-name=" << shell_word("taut-" + plan.study) << "\n#SBATCH --array=1-"
+    text << "#SBATCH --job-name=" << slug("taut-" + plan.study) << "\n#SBATCH --array=1-"
          << plan.shards << "\n#SBATCH --time=" << shard_minutes(plan)
          << "\n#SBATCH --mem=" << (bytes >> 20) << "M\n#SBATCH --ntasks=1 --cpus-per-task=1\n"
          << "#SBATCH --requeue --open-mode=append --output=log/%a.txt --signal=B:USR1@60\n";
@@ -72,8 +85,9 @@ std::string job_script(const Plan& plan, Scheduler on) {
                           " -j 1 --timeout " + shortest(plan.limits.seconds) + " --memory " +
                           std::to_string(plan.limits.bytes >> 20);
   text << kHead << (slurm ? kSlurm : kParallel);
-  return filled(filled(filled(text.str(), "@RUN@", run), "@SHARDS@", std::to_string(plan.shards)),
-                "@BUILD@", program_digest().substr(0, 10));
+  return filled(text.str(), {{"@RUN@", run},
+                             {"@SHARDS@", std::to_string(plan.shards)},
+                             {"@BUILD@", program_digest().substr(0, 10)}});
 }
 
 std::string readme(const Plan& plan, Scheduler on) {

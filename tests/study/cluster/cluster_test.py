@@ -96,8 +96,8 @@ class Submit(Cluster):
             (self.folder / "bin" / name).write_text(f'#!/bin/bash\necho "$PWD $TAUT $*" >{self.folder}/told\nexit $ANSWER\n')
             (self.folder / "bin" / name).chmod(0o755)
         (self.folder / "hosts").write_text("2/near\nfar\n")
-        options = "--jobs 100% --termseq TERM,20000,KILL,25"
-        run = f"{BINARIES}/taut run ./study.toml -j 1 --timeout 120 --memory 2048 --shard {{}}/2 --out shards/{{}} ::: 0001 0002\n"
+        options = "--env TAUT --env ONLY --jobs 100% --termseq TERM,20000,KILL,25"
+        run = "bash ./job.sh --shard {} ::: 0001 0002\n"
         resumed = f"--joblog joblog --resume --resume-failed {run}"
         for on, words, told in [
                 ("slurm", [], "job.sh\n"), ("parallel", [], f"{options} {resumed}"),
@@ -119,6 +119,33 @@ class Submit(Cluster):
                 self.assertTrue((self.folder / "c/results.db").exists(), "the folder is whole: it can be started elsewhere")
             shutil.rmtree(self.folder / "c")
             (self.folder / "told").unlink()
+
+    def test_a_name_is_no_mark_no_pattern_and_no_command(self):
+        """What GNU parallel is told and a shell reads holds no word of a study; Slurm's directives neither."""
+        parallel = shutil.which("parallel")
+        names = ["a@RUN@b", "@SHARDS@", "a b", "{}", "{#} {= s:a:b: =}", "$(touch canary)", "`touch canary`;touch canary", "it's \"odd\" \\",
+                 "#SBATCH x", "\u00e4 {}", "a\nb", "a\tb\x1b"]
+        for name in names:
+            self.study(rest=self.MANY)
+            (self.folder / "study.toml").rename(self.folder / f"{name}.toml")
+            for on in ("slurm", "parallel"):
+                self.submit("--shards", 2, study=f"./{name}.toml", on=on)
+                text = (self.folder / "c/job.sh").read_text()
+                self.assertEqual(subprocess.run(["bash", "-n", "c/job.sh"], cwd=self.folder).returncode, 0, text)
+                if on == "slurm":
+                    self.assertRegex(text, r"\A#!/bin/bash\n#SBATCH --job-name=taut-[\w.-]+\n#SBATCH --array=1-2\n")
+                start = "sbatch" if on == "slurm" else "./job.sh"
+                self.assertIn(start, facts_of(self.status(expect=3))["start"])
+                if on == "slurm":
+                    shutil.rmtree(self.folder / "c")
+            if parallel:
+                done = subprocess.run(["./job.sh"], cwd=self.folder / "c", env={**AWAKE, "TAUT": str(BINARIES / "taut")}, text=True, capture_output=True)
+                self.assertEqual(done.returncode, 0, name + done.stderr)
+                self.status()
+            shutil.rmtree(self.folder / "c")
+            self.assertEqual(list(self.folder.rglob("canary")), [], name)
+        if not parallel:
+            self.skipTest("not installed: GNU parallel; its scripts were written and not run")
 
     def test_bad_input_writes_nothing(self):
         study = self.study(rest=self.MANY)

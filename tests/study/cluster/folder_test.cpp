@@ -99,6 +99,10 @@ TEST(JobScript, AsksForTimeAndMemoryAndNamesTheCommandOfAShard) {
   EXPECT_NE(other.find("set -- {1..8}"), std::string::npos);
   EXPECT_NE(other.find("program " + program_digest().substr(0, 10)), std::string::npos);
   EXPECT_EQ((text + other).find("@"), text.find("USR1@60") + 4) << "every mark is filled";
+  Plan odd = plan;
+  odd.study = "a@RUN@b@SHARDS@@BUILD@";  // a value is no text to fill in
+  EXPECT_NE(job_script(odd, Scheduler::parallel).find("run ./a@RUN@b@SHARDS@@BUILD@.toml "),
+            std::string::npos);
   EXPECT_EQ(std::ranges::count(readme(plan, Scheduler::slurm), '\n'), 5);
   EXPECT_TRUE(readme(plan, Scheduler::parallel)
                   .starts_with("Study study --preset small: 90 cases in 8 shards"));

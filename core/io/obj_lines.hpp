@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "core/io/text_file.hpp"
+
+namespace taut {
+
+/// A word of an OBJ file and where it stands (1-based).
+struct ObjWord {
+  std::string_view text;
+  int line = 0, column = 0;
+};
+
+/// The lines of an OBJ file. A `\` at the end of one continues it in the next; a mark of the byte
+/// order before the first word is no part of it.
+class ObjLines {
+ public:
+  explicit ObjLines(std::string_view text) : rest_(without_mark(text)) {}
+
+  /// The words of the next line, none of an empty one; false at the end of the file.
+  bool next(std::vector<ObjWord>& words) {
+    words.clear();
+    if (rest_.empty()) return false;
+    for (bool more = true; more && !rest_.empty();) more = add_line(words);
+    return true;
+  }
+
+ private:
+  static std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+    return text;
+  }
+
+  /// Whether the next line continues this one.
+  bool add_line(std::vector<ObjWord>& words) {
+    const std::string_view line = take_line(rest_);
+    ++line_;
+    std::vector<std::string_view> all = words_of(line);
+    const bool more = !all.empty() && all.back().ends_with('\\');
+    if (more) all.back().remove_suffix(1);
+    for (const std::string_view word : all)
+      if (!word.empty())
+        words.push_back({word, line_, static_cast<int>(word.data() - line.data()) + 1});
+    return more;
+  }
+
+  std::string_view rest_;
+  int line_ = 0;
+};
+
+}  // namespace taut
