@@ -68,8 +68,9 @@ Record record_of(const JsonReader& j) {
   for (const RecordColumn& column : record_columns()) {
     const auto [object, key] = object_and_key(column.json);
     const JsonReader within = object.empty() ? j : j.at(object.c_str());
-    if (const auto value = within.find(key.c_str()); value || !column.may_be_absent())
-      with_member(r, column, [&](auto& member) { read_into(within.at(key.c_str()), member); });
+    const std::optional<JsonReader> value =
+        column.may_be_absent() ? within.find(key.c_str()) : within.at(key.c_str());
+    if (value) with_member(r, column, [&](auto& member) { read_into(*value, member); });
   }
   if (!is_key(r.key)) j.at("key").fail("expected 64 hexadecimal digits");
   if (!(r.dt > 0)) j.at("dt").fail("expected a time step greater than 0");
