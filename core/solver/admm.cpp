@@ -114,7 +114,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
       {"links solved",
        "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};
-  return loop::resolved_settings(scene, params, own, "constant terms of the factored system");
+  return loop::resolved_settings(scene, params, own, "constant terms of the factored system",
+                                 loop::kSolvedFriction);
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"penalty", "30|100|300"},

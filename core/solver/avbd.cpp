@@ -132,7 +132,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  {{"links", "rigid"},
                                   {"vertex order", std::string(params.choice("order"))},
                                   {"work unit", "vertices, not projections"}},
-                                 "in each vertex' force and Hessian");
+                                 "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"beta", "10|100|1000"},

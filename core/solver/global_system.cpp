@@ -47,7 +47,7 @@ GlobalSystem::GlobalSystem(const loop::Setup& s, std::vector<Spring> springs)
     : springs_(std::move(springs)),
       bending_(make_bending(s.scene)),
       row_(s.w.size(), -1),
-      contacts_(make_contacts(s)),
+      contacts_(make_contacts(s.scene, s.params)),
       factor_(std::make_unique<Factor>()) {
   for (std::size_t i = 0; i < s.w.size(); ++i)
     if (s.w[i] > 0) {

@@ -287,7 +287,7 @@ class NewtonPass final : public Pass<double> {
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
                                        s.w, [](double w) { return w > 0; }))))),
         stiffness_(s.w.size()),
-        contacts_(make_contacts(s)),
+        contacts_(make_contacts(s.scene, s.params)),
         contact_stiffness_(contacts_ ? s.w.size() : 0) {
     for (const Spring& spring : springs_)
       stiffness_[spring.a] += spring.stiffness, stiffness_[spring.b] += spring.stiffness;
@@ -578,7 +578,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                            (factors(params, moving) ? "sparse LDLT, analysed once as set-up"
                                                     : "conjugate gradients")},
       {"work unit", "Newton iterations, not projections"}};
-  return loop::resolved_settings(scene, params, own, "constant terms of the Hessian");
+  return loop::resolved_settings(scene, params, own, "constant terms of the Hessian",
+                                 loop::kSolvedFriction);
 }
 
 }  // namespace

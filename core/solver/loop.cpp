@@ -299,7 +299,8 @@ ResolvedSetting link_order(const Params& params, const std::string& of) {
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
-                                   const ResolvedSettings& own, std::string_view bending) {
+                                   const ResolvedSettings& own, std::string_view bending,
+                                   std::string_view friction) {
   const double h = scene.dt / params.integer("substeps");
   ResolvedSettings lines{
       {"time step", shortest(h) + " s x " + std::string(params.value("substeps"))},
@@ -317,7 +318,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
                        "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");
   if (!scene.colliders.empty()) {
     lines.emplace_back("contact response", std::string(params.choice("contact")));
-    lines.emplace_back("friction", "Coulomb: tangential correction at most mu times the depth");
+    const bool every_sweep = params.is("contact", "continuous") || params.is("contact", "discrete");
+    lines.emplace_back("friction", std::string(every_sweep ? friction : kProjectedFriction));
     lines.emplace_back("contact distance", "the scene's thickness");
     lines.emplace_back("contact of faces", std::string(params.choice("faces")));
   }

@@ -89,11 +89,17 @@ inline std::unique_ptr<Solver> make(const Scene& scene, const Params& params,
 /// What the loop itself would get wrong (SolverEntry::unsupported).
 std::vector<std::string> unsupported(const Scene&, const Params&);
 
+/// How friction acts where contact is projected, and where it is part of the solve (Contacts).
+inline constexpr std::string_view
+    kProjectedFriction = "Coulomb: tangential correction at most mu times the depth",
+    kSolvedFriction = "Coulomb: friction at most mu times the push, forces of the solve itself";
+
 /// The loop's lines, `own` after those of time integration (SolverEntry::resolved_settings);
 /// `bending`: how the scene's is taken.
 ResolvedSettings resolved_settings(
     const Scene&, const Params&, const ResolvedSettings& own,
-    std::string_view bending = "projected after the links with compliance and multipliers (XPBD)");
+    std::string_view bending = "projected after the links with compliance and multipliers (XPBD)",
+    std::string_view friction = kProjectedFriction);
 
 /// That setting by the parameter `order`; `of`: which links it is the order of.
 ResolvedSetting link_order(const Params&, const std::string& of = "");
@@ -109,8 +115,9 @@ constexpr ParamSpec substeps(std::string_view default_value, std::string_view he
 inline constexpr ParamSpec kContact =
     ParamSpec::choice("contact", "continuous", "continuous|discrete|before|after|freeze|halt",
                       "response to colliders: out in every sweep, with a test against passing "
-                      "through (continuous) or without (discrete); once, before or after the "
-                      "sweeps; or put on the surface for good (freeze) or for a step (halt)");
+                      "through (continuous) or without (discrete); or as published, where cloth "
+                      "does not rest as physics has it: out once, before or after the sweeps; or "
+                      "put on the surface for good (freeze) or for a step (halt)");
 inline constexpr ParamSpec kFaces =
     ParamSpec::choice("faces", "off", "off|on",
                       "keep faces, not only vertices, out of balls and capsules and of the edges "

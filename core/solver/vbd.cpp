@@ -104,7 +104,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  {{"links", describe_springs(scene, params)},
                                   {"vertex order", std::string(params.choice("order"))},
                                   {"work unit", "vertices, not projections"}},
-                                 "in each vertex' force and Hessian");
+                                 "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"chebyshev", "0.5|0.8|0.9"},

@@ -38,7 +38,7 @@ class VertexBlocks {
   VertexBlocks(const loop::Setup& s, const std::vector<Spring>& springs)
       : springs_(springs),
         bending_(make_bending(s.scene)),
-        contacts_(make_contacts(s)),
+        contacts_(make_contacts(s.scene, s.params)),
         bent_(bending_.empty() ? 0 : s.w.size()),
         ends_(links_of(springs), static_cast<int>(s.w.size())),
         pool_(s.pool) {

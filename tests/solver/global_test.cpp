@@ -169,16 +169,20 @@ TEST(Admm, AgreesWithADenseProgramOnAnIrregularMesh) {
   EXPECT_LT(largest_distance(after_one_step(scene, "admm:iterations=7,penalty=150").x, x), 1e-9);
 }
 
-TEST(GlobalSolvers, SayThatContactIsALaggedProjectionAndKeepClothOutOfAPlane) {
+TEST(GlobalSolvers, SayThatFrictionIsPartOfTheSolveAndKeepClothOutOfAPlane) {
   Scene scene = hanging_sheet(6, 6);
   scene.pins.clear();
   scene.colliders = {{.shape = Plane{{0, 1, 0}, -1.2}}};
-  for (const char* solver : {"implicit:iterations=8", "pd", "admm"}) {
-    const SolverChoice choice = parse_solver(solver);
-    const ResolvedSettings lines = choice.entry->resolved_settings(scene, choice.params);
-    EXPECT_TRUE(std::ranges::any_of(lines, [](const ResolvedSetting& one) {
-      return one.text.find("a lagged projection") != std::string::npos;
-    })) << solver;
+  for (const char* solver : {"implicit:iterations=8", "pd", "admm", "vbd", "avbd"}) {
+    const auto says = [&](const std::string& text, const char* part) {
+      const SolverChoice choice = parse_solver(text);
+      const ResolvedSettings lines = choice.entry->resolved_settings(scene, choice.params);
+      return std::ranges::any_of(lines, [&](const ResolvedSetting& line) {
+        return line.name == "friction" && line.text.find(part) != std::string::npos;
+      });
+    };
+    EXPECT_TRUE(says(solver, "forces of the solve")) << solver;
+    EXPECT_TRUE(says(with(solver, "contact=after"), "times the depth")) << solver;
     for (const Vec3& x : simulate(scene, solver, 40).x) EXPECT_GE(x.y(), -1.2 - 1e-12) << solver;
   }
 }

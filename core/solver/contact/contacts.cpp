@@ -6,7 +6,6 @@
 
 #include "core/model/index.hpp"
 #include "core/solver/contact/projector.hpp"
-#include "core/solver/loop.hpp"
 #include "core/solver/simd/contact.hpp"
 
 namespace taut {
@@ -180,11 +179,10 @@ void Contacts::settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian,
   }
 }
 
-std::unique_ptr<Contacts> make_contacts(const loop::Setup& s) {
-  const bool continuous = s.params.is("contact", "continuous");
-  if (s.scene.colliders.empty() || !(continuous || s.params.is("contact", "discrete")))
-    return nullptr;
-  return std::make_unique<Contacts>(s.scene, continuous);
+std::unique_ptr<Contacts> make_contacts(const Scene& scene, const Params& params) {
+  const bool continuous = params.is("contact", "continuous");
+  if (scene.colliders.empty() || !(continuous || params.is("contact", "discrete"))) return nullptr;
+  return std::make_unique<Contacts>(scene, continuous);
 }
 
 }  // namespace taut

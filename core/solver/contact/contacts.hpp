@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/model/params.hpp"
 #include "core/model/scene.hpp"
 #include "core/model/vec3.hpp"
 #include "core/solver/contact/responses.hpp"
@@ -138,10 +139,7 @@ class Contacts {
   std::vector<Vec3> y_;                  ///< m, of the last predict(); empty: there was none
 };
 
-namespace loop {
-struct Setup;
-}
 /// Null where there is no collider or the response is another one than to put out in every sweep.
-std::unique_ptr<Contacts> make_contacts(const loop::Setup&);
+std::unique_ptr<Contacts> make_contacts(const Scene&, const Params&);
 
 }  // namespace taut

@@ -55,13 +55,13 @@ Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& 
   /// which is no difference.
   const auto row = [&](const std::string& name, const auto& setting) -> std::vector<Cell>& {
     std::vector<Cell> cells{name};
-    std::set<std::string> compared;
+    std::set<std::string> different;
     for (const Record* r : cases) {
       const ResolvedSetting one = setting(*r);
       cells.emplace_back(one.name.empty() ? "–" : typeset(one.text));
-      if (!one.name.empty()) compared.insert(one.compared());
+      if (!one.name.empty()) different.insert(one.compared());
     }
-    if (compared.size() > 1) cells[0].note = "differs";
+    if (different.size() > 1) cells[0].note = "differs";
     return table.rows.emplace_back(std::move(cells));
   };
   if (cases.empty()) return table;
