@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 namespace taut {
 
@@ -11,7 +12,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int kRounds = 4, kSweeps = 2;
+/// Rounds at most; sweeps after them, and where they led nowhere.
+constexpr int kRounds = 4, kSweeps = 2, kSweepsAlone = 30;
 constexpr double kEnough = 1e-14;  ///< of coordinates, of gaps and slips
 
 MatrixXd part(const MatrixXd& matrix, const std::vector<Index>& rows,
@@ -35,7 +37,13 @@ CoupledContacts::Rows CoupledContacts::resolve(
   Rows change = Rows::Zero(x.rows(), 3);
   std::vector<Trial> trials(at.size());
   const double enough = kEnough * x.cwiseAbs().maxCoeff();
-  for (int round = 0; round < kRounds; ++round) {
+  struct {
+    double away = std::numeric_limits<double>::infinity();
+    int round = 0;
+    std::vector<ContactForce> forces;
+    Rows x, change;
+  } best;
+  for (int round = 0; round <= kRounds; ++round) {
     double away = 0;
     bool same = round > 0;
     for (std::size_t c = 0; c < at.size(); ++c) {
@@ -44,11 +52,19 @@ CoupledContacts::Rows CoupledContacts::resolve(
       away = std::max(away, now.away);
       trials[c] = now;
     }
+    if (away < best.away) {
+      best = {away, round, {}, x, change};
+      for (std::size_t c = 0; c < at.size(); ++c) best.forces.push_back(force(c));
+    }
     if (away <= enough) return change;
-    if (same) break;
+    if (same || round == kRounds) break;
     solve(trials, x, change);
   }
-  for (int n = 0; n < kSweeps; ++n) sweep(x, change);
+  for (std::size_t c = 0; c < at.size(); ++c) force(c) = best.forces[c];
+  x = best.x;
+  change = best.change;
+  const int sweeps = best.round > 0 ? kSweeps : kSweepsAlone;
+  for (int n = 0; n < sweeps; ++n) sweep(x, change);
   return change;
 }
 
@@ -130,7 +146,10 @@ void CoupledContacts::solve(const std::vector<Trial>& trials, Rows& x, Rows& cha
   for (Index k = 0; k < holds.rows(); ++k) {
     const std::size_t c = sticking[static_cast<std::size_t>(k)];
     const Vec3 f = holds.row(k).transpose();
-    (*force_)(c) = {std::max(0.0, at_[c].normal.dot(f)), at_[c].across(f)};
+    ContactForce& force = (*force_)(c);
+    force = {std::max(0.0, at_[c].normal.dot(f)), at_[c].across(f)};
+    const double length = force.rub.norm(), most = at_[c].friction * force.push;
+    if (length > most) force.rub *= most / length;
   }
   for (std::size_t c = 0; c < at_.size(); ++c)
     total.row(place_[c]) += at_[c].total((*force_)(c)).transpose();
