@@ -47,9 +47,9 @@ using Eigen::Matrix3d;
 constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
 /// Beyond so many vertices that move, conjugate gradients take less time than a factor.
 constexpr std::size_t kFactorPays = 20000;
-/// Contact is stiffer than all else at its vertex by this factor: an iteration leaves less than its
-/// inverse of the error of a force; much stiffer, and sticking and slipping take turns.
-constexpr double kContactStiffer = 10;
+/// Of the stiffness of all else at a vertex, that of its contact: ten times stiffer, and sticking
+/// and slipping take turns for as many more iterations; a third, and forces settle later.
+constexpr double kContactStiffness = 1;
 
 constexpr ParamSpec kOwn[] = {
     loop::iterations("50", "Newton iterations, at most; they end at 1e-9 of the forces of inertia"),
@@ -469,7 +469,7 @@ class NewtonPass final : public Pass<double> {
     enough_at_first_ = std::min(enough_, kFirstTolerance * std::sqrt(inertia2));
     for (std::size_t i = 0; i < contact_stiffness_.size(); ++i)
       if (p.w[i] > 0)
-        contact_stiffness_[i] = kContactStiffer * (stiffness_[i] + 1 / (p.w[i] * h * h));
+        contact_stiffness_[i] = kContactStiffness * (stiffness_[i] + 1 / (p.w[i] * h * h));
   }
 
   void linearise(const std::vector<Vec3>& x, bool clamped) {
