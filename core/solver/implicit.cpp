@@ -455,13 +455,26 @@ class NewtonPass final : public Pass<double> {
     return change > enough_;
   }
 
-  /// p.x is x_t.
+  /// A cloth moves with its pins before anything drives it [m].
+  Vec3 mean_way_of_pins(const Particles<double>& p) const {
+    Vec3 sum = Vec3::Zero();
+    int pins = 0;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (hessian_.column(i) < 0) {
+        sum += p.x[i] - p.previous[i];
+        ++pins;
+      }
+    return pins > 0 ? Vec3(sum / pins) : sum;
+  }
+
+  /// p.x is x_t, of pins where they are at its end.
   void set_tolerances(const Particles<double>& p, double h) {
     double inertia2 = 0, rounding2 = 0;
+    const Vec3 frame = mean_way_of_pins(p);
     for (std::size_t i = 0; i < p.size(); ++i)
       if (hessian_.column(i) >= 0) {
         const double m = hessian_.mass(i) / (h * h);
-        inertia2 += m * m * (y_[i] - p.x[i]).squaredNorm();
+        inertia2 += m * m * (y_[i] - p.x[i] - frame).squaredNorm();
         rounding2 += std::pow((stiffness_[i] + m) * p.x[i].cwiseAbs().maxCoeff(), 2);
       }
     enough_ = std::max(kTolerance * std::sqrt(inertia2),

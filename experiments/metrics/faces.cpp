@@ -30,6 +30,10 @@ class Faces final : public Metric {
       {"face.ball", kErrorLength, "face.max of the balls alone"},
       {"face.box", kErrorLength, "face.max of the boxes alone"},
       {"face.capsule", kErrorLength, "face.max of the capsules alone"},
+      {"face.passages", kErrorCount,
+       "how often the middle of a ball, a corner of a box or a place of a capsule's axis goes "
+       "through a face, returns included; their ways are straight from step to step",
+       false, Window::run, "passages through faces"},
   };
   static bool measures(const Scene& scene) {
     return !scene.mesh.triangles.empty() && has_solid(scene);
@@ -44,6 +48,7 @@ class Faces final : public Metric {
 
   void observe(const Snapshot& m) override {
     const bool at_end = end_.contains(m.step);
+    count_passages(m);
     const Depths d = measure(m);
     any_.add(m.step, at_end, d.max());
     if (has<Ball>()) ball_.add(m.step, at_end, d.ball);
@@ -54,13 +59,14 @@ class Faces final : public Metric {
   }
   std::vector<double> finish() override {
     return {any_.max(),  any_.peak(), geometry_.max(), excess_.max(),
-            ball_.max(), box_.max(),  capsule_.max()};
+            ball_.max(), box_.max(),  capsule_.max(),  static_cast<double>(passages_)};
   }
   std::vector<double> now(const Snapshot& m) const override {
     constexpr double none = Summary::kNone;
     const Depths d = measure(m);
     const bool round = has_round();
-    return {d.max(), none, round ? d.geometry : none, round ? d.excess : none, none, none, none};
+    return {d.max(), none, round ? d.geometry : none, round ? d.excess : none, none, none,
+            none,    none};
   }
 
  private:
@@ -112,6 +118,54 @@ class Faces final : public Metric {
       depths.box = std::max(depths.box, deepest_in(box, corners(face, state), depths.box).depth);
   }
 
+  /// Places of a solid that a face cannot be on both sides of without having been pierced.
+  static std::vector<Vec3> places_of(const Shape& shape) {
+    if (const Ball* ball = std::get_if<Ball>(&shape)) return {ball->center};
+    std::vector<Vec3> places;
+    if (const Capsule* capsule = std::get_if<Capsule>(&shape))
+      for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})
+        places.push_back(capsule->from + at * (capsule->to - capsule->from));
+    if (const Box* box = std::get_if<Box>(&shape))
+      for (const double x : {-1.0, 1.0})
+        for (const double y : {-1.0, 1.0})
+          for (const double z : {-1.0, 1.0})
+            places.push_back(box->center +
+                             box->rotation * Vec3(x, y, z).cwiseProduct(box->half_extents));
+    return places;
+  }
+  /// Height above the face's plane, times twice its area.
+  static double height(const Corners& t, const Vec3& p) {
+    return (t[1] - t[0]).cross(t[2] - t[0]).dot(p - t[0]);
+  }
+  static bool within(const Corners& t, const Vec3& p) {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const auto side = [&](std::size_t a, std::size_t b) {
+      return (t[b] - t[a]).cross(p - t[a]).dot(normal) >= 0;
+    };
+    return side(0, 1) && side(1, 2) && side(2, 0);
+  }
+  void count_passages(const Snapshot& m) {
+    std::vector<Vec3> places;
+    for (const Collider& collider : colliders_)
+      for (const Vec3& p : places_of(shape_at(collider, m.t))) places.push_back(p);
+    for (std::size_t f = 0; m.step > 0 && f < faces_.size(); ++f) {
+      const Corners now = corners(faces_[f], m.state), before = corners(faces_[f], last_);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const double was = height(before, places_[k]), is = height(now, places[k]);
+        if ((was > 0) == (is > 0)) continue;
+        const double share = was / (was - is);
+        const auto between = [&](const Vec3& a, const Vec3& b) {
+          return Vec3(a + share * (b - a));
+        };
+        passages_ += within(
+            {between(before[0], now[0]), between(before[1], now[1]), between(before[2], now[2])},
+            between(places_[k], places[k]));
+      }
+    }
+    places_ = std::move(places);
+    last_ = m.state;
+  }
+
   static Corners corners(const Triangle& t, const State& s) {
     return {s.x[to_index(t[0])], s.x[to_index(t[1])], s.x[to_index(t[2])]};
   }
@@ -121,6 +175,9 @@ class Faces final : public Metric {
   double thickness_;
   LastSecond end_;
   Summary any_, ball_, geometry_, excess_, box_, capsule_;
+  std::vector<Vec3> places_;  ///< m, of all colliders, at the last step
+  State last_;
+  int passages_ = 0;
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ struct Unit {
 inline constexpr Unit kNumber{"1", ""}, kCount{"1", "", 1, false}, kShare{"1", "%", 100},
     kSignedShare{"1", "%", 100, false}, kLength{"m", "mm", 1e3},
     kSignedLength{"m", "mm", 1e3, false}, kTime{"s", "s", 1, false}, kSpeed{"m/s", "m/s"},
-    kAcceleration{"m/s^2", "m/s\u00B2"};
+    kAcceleration{"m/s^2", "m/s\u00B2"}, kForce{"N", "N", 1, false};
 /// The same of errors, which are never below 0.
 inline constexpr Unit kErrorCount{"1", "", 1, false, true}, kErrorShare{"1", "%", 100, true, true},
     kErrorLength{"m", "mm", 1e3, true, true}, kErrorSpeed{"m/s", "m/s", 1, true, true},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/case/run_case.hpp"
 #include "tests/metrics/measured.hpp"
 
 namespace taut::contact_metrics_test {
@@ -119,7 +120,61 @@ TEST(Slip, IsZeroForCoulombsLawAndElseTheAccelerationThatIsWrong) {
   EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
 }
 
-/// In substeps of dt/n a block goes a dt^2 (1 + 1/n)/2 in its first step, and obeys Coulomb with any.
+/// A corner that goes through a coarse face touches none of its vertices; there and back are two.
+TEST(Faces, ThatAColliderPiercesArePassages) {
+  Scene scene = sheet(2);  // 1 m wide, level
+  for (Vec3& x : scene.start.x) x.y() = 0.3;
+  const double half = 0.05;
+  const auto passages = [&](const Shape& shape, double amplitude) {
+    scene.colliders = {{.shape = shape}};
+    return measure(scene,
+                   [&](int step) {  // the cloth comes down on it, and is lifted off
+                     State state = scene.start;
+                     const double t = static_cast<double>(step) / scene.steps;
+                     for (Vec3& x : state.x)
+                       x.y() = 0.3 - amplitude * std::sin(std::numbers::pi * t);
+                     return state;
+                   })
+        .at("face.passages");
+  };
+  const Vec3 low(0.3, 0, 0.4);
+  EXPECT_EQ(passages(Box{low, {half, half, half}}, 0.2), 0);
+  EXPECT_EQ(passages(Box{low, {half, half, half}}, 0.29), 8) << "four corners, there and back";
+  EXPECT_EQ(passages(Ball{low, half}, 0.29), 0) << "not to its middle";
+  EXPECT_EQ(passages(Ball{low, half}, 0.35), 2);
+  EXPECT_EQ(passages(Capsule{low - Vec3(0, 0.1, 0), low + Vec3(0, 0.1, 0), 0.01}, 0.25), 2);
+  EXPECT_EQ(passages(Ball{{2, 0, 0.4}, half}, 0.35), 0) << "beside the cloth";
+}
+
+/// A cloth that lies still is held by its weight, with every solver; while it falls, by nothing.
+TEST(ContactForce, IsTheWeightOfAClothAtRestWithEverySolver) {
+  Scene scene = sheet(3);
+  double weight = 0;
+  for (const double mass : scene.mesh.mass) weight += 9.81 * mass;
+  for (Vec3& x : scene.start.x) x.y() += 0.02;
+  scene.colliders = {{.shape = Plane{}, .friction = 0.3},
+                     {.shape = Box{{0.5, 0, 0.5}, {0.2, 0.005, 0.2}}, .friction = 0.3}};
+  scene.damping = 3;
+  scene.steps = 200;
+  const auto force = [&](const char* solver, const char* value) {
+    const auto values = run_case(scene, parse_solver(solver)).record.values;
+    const auto at = values.find(value);
+    return at == values.end() ? -1 : at->second;
+  };
+  for (const char* solver : {"jakobsen:precision=double", "xpbd:precision=double", "mass-spring",
+                             "implicit", "pd", "admm", "vbd", "avbd"}) {
+    EXPECT_NEAR(force(solver, "contact.force"), weight, 1e-3 * weight) << solver;
+    EXPECT_GT(force(solver, "contact.force.peak"), 2 * weight) << solver;
+  }
+  scene.colliders = {{.shape = Plane{.offset = -1000}}};
+  scene.damping = 0;
+  EXPECT_NEAR(force("mass-spring", "contact.force.peak"), 0, 1e-6 * weight);
+  scene.pins = {0};
+  EXPECT_EQ(force("mass-spring", "contact.force"), -1);
+}
+
+/// In substeps of dt/n a block goes a dt^2 (1 + 1/n)/2 in its first step, and obeys Coulomb with
+/// any.
 TEST(Slip, IsZeroForAnyNumberOfSubsteps) {
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Plane{.normal = {0.5, std::sqrt(0.75), 0}}, .friction = 0.3}};

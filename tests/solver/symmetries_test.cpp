@@ -308,7 +308,7 @@ double tolerance(const std::string& solver, const Change& c) {
 
 /// Solvers with contact as a constraint of their own decide anew in every iteration who touches,
 /// sticks and slips: of what has not converged, rounding chooses sooner or later.
-constexpr int kStepsInContact = 4;
+constexpr int kStepsInContact = 3;
 bool decides_who_touches(const std::string& solver) {
   return std::ranges::any_of(std::array{"implicit", "pd", "admm", "vbd", "avbd"},
                              [&](auto name) { return solver_name(solver) == name; });

@@ -99,8 +99,9 @@ TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
       const double end = after(many);
       EXPECT_LT(end, 1e-8) << solver << " on a " << name_of(scene) << ", friction "
                            << scene.colliders[0].friction;
-      if (!std::holds_alternative<Plane>(scene.colliders[0].shape))  // there it is right at once
+      if (!std::holds_alternative<Plane>(scene.colliders[0].shape)) {  // there it is right at once
         EXPECT_GT(after(few), 1e-6) << solver << " on a " << name_of(scene);
+      }
     }
 }
 

@@ -1,0 +1,75 @@
+#include "experiments/metrics/metric.hpp"
+
+namespace taut {
+
+namespace {
+
+/// What all colliders push and rub the cloth with: where nothing is pinned and no wind blows, the
+/// cloth's threads cancel, and its momentum changes by gravity, damping and contact alone,
+///
+///     F = m ((c_n+1 - c_n) - e^(-damping dt) (c_n - c_n-1)) / dt^2 - m g,   c the centre of mass.
+///
+/// Of a cloth at rest it is the weight. In substeps velocities are those of the ways between step
+/// boundaries, so the first step counts for none.
+class ContactForce final : public Metric {
+ public:
+  static constexpr ValueSpec kValues[] = {
+      {.name = "contact.force",
+       .unit = kForce,
+       .help = "size of the sum of all forces of colliders on the cloth, by its momentum, of its "
+               "mean over the last second: the weight, where the cloth lies still",
+       .in_series = true,
+       .title = "force of all colliders on the cloth"},
+      {"contact.force.peak", kForce, "the largest over the run", false, Window::run,
+       "largest force of all colliders on the cloth"},
+  };
+  static bool measures(const Scene& scene) {
+    return !scene.colliders.empty() && scene.pins.empty() && !scene.wind;
+  }
+  explicit ContactForce(const Scene& scene)
+      : mass_(scene.mesh.mass),
+        gravity_(scene.gravity),
+        keep_(std::exp(-scene.damping * scene.dt)),
+        dt_(scene.dt),
+        end_(scene) {
+    for (const double m : mass_) total_ += m;
+  }
+
+  void observe(const Snapshot& m) override {
+    const Vec3 center = mean(mass_, m.state.x);
+    const Vec3 way = center - center_;
+    center_ = center;
+    if (m.step >= 2) {
+      force_ = total_ * ((way - keep_ * way_) / (dt_ * dt_) - gravity_);
+      peak_.add(m.step, false, force_.norm());
+      if (end_.contains(m.step)) {
+        sum_ += force_;
+        ++count_;
+      }
+    }
+    way_ = way;
+  }
+  std::vector<double> finish() override {
+    return {count_ > 0 ? (sum_ / count_).norm() : Summary::kNone, peak_.peak()};
+  }
+  std::vector<double> now(const Snapshot& m) const override {
+    return {m.step >= 2 ? force_.norm() : Summary::kNone, Summary::kNone};
+  }
+
+ private:
+  std::vector<double> mass_;
+  double total_ = 0;  ///< kg
+  Vec3 gravity_;
+  double keep_, dt_;
+  LastSecond end_;
+  Vec3 center_ = Vec3::Zero(), way_ = Vec3::Zero(), force_ = Vec3::Zero(), sum_ = Vec3::Zero();
+  int count_ = 0;
+  Summary peak_;
+};
+
+}  // namespace
+
+TAUT_METRIC(contact_force, ContactForce, "With what the colliders hold a cloth that nothing pins",
+            "momentum of the whole cloth");
+
+}  // namespace taut
