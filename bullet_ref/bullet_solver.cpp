@@ -214,7 +214,6 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
     reasons.emplace_back("stepSimulation ignores a substep this short");
   if (scene.bending)
     reasons.emplace_back("bending: Bullet's cloth has links alone, and no bending stiffness");
-  for (const std::string& reason : too_wide_for_planes(scene)) reasons.push_back(reason);
   return reasons;
 }
 

@@ -28,12 +28,14 @@ btTransform transform_of(const Eigen::Quaterniond& rotation, const Vec3& origin)
   return btTransform(basis, to_bullet(origin));
 }
 
-/// Half extents of a plane's slab [m], whose solid side is -y. It follows a cloth that leaves its
-/// middle, and is so thick that no cloth gets to its far side within a time step: larger slabs gain
-/// nothing and cost GJK digits in float.
-constexpr double kSlabWidth = 50, kSlabDepth = 5;
-/// How far the cloth's middle may be from the slab's, along it [m].
-constexpr double kSlabFollows = 20;
+/// What stands in for planes: its solid side is -y. It follows a cloth that leaves its middle, and
+/// is so thick that no cloth gets to its far side within a time step. Larger slabs gain nothing and
+/// cost GJK digits in float.
+struct Slab {
+  double half_width = 50, half_depth = 5;  ///< m
+  /// How far the cloth's middle may be from the slab's, along it [m].
+  double follows() const { return 0.4 * half_width; }
+};
 
 /// At least the way of a vertex against a plane in a time step [m]: after a free fall of the whole
 /// duration.
@@ -46,7 +48,14 @@ double longest_way(const Scene& scene) {
   return (fastest + plane + scene.gravity.norm() * scene.dt * scene.steps) * scene.dt;
 }
 
-double slab_depth(const Scene& scene) { return std::max(kSlabDepth, 1.5 * longest_way(scene)); }
+Slab slab_for(const Scene& scene) {
+  Eigen::AlignedBox3d cloth;
+  for (const Vec3& p : scene.start.x) cloth.extend(p);
+  Slab slab;
+  slab.half_width = std::max(slab.half_width, cloth.sizes().norm());
+  slab.half_depth = std::max(slab.half_depth, 1.5 * longest_way(scene));
+  return slab;
+}
 
 /// The shortest rotation of y onto a unit vector; half a turn about x onto -y.
 Eigen::Quaterniond tilt(const Vec3& normal) {
@@ -55,13 +64,13 @@ Eigen::Quaterniond tilt(const Vec3& normal) {
   return {s / 2, normal.z() / s, 0, -normal.x() / s};
 }
 
-RigidPose slab_pose(const Plane& plane, const Vec3& above, double depth) {
+RigidPose slab_pose(const Plane& plane, const Vec3& above, const Slab& slab) {
   const Vec3 top = above - (plane.normal.dot(above) - plane.offset) * plane.normal;
-  return {tilt(plane.normal), top - depth * plane.normal};
+  return {tilt(plane.normal), top - slab.half_depth * plane.normal};
 }
 
-RigidPose pose_at_start(const Shape& shape, const Vec3& above, double depth) {
-  if (const auto* plane = std::get_if<Plane>(&shape)) return slab_pose(*plane, above, depth);
+RigidPose pose_at_start(const Shape& shape, const Vec3& above, const Slab& slab) {
+  if (const auto* plane = std::get_if<Plane>(&shape)) return slab_pose(*plane, above, slab);
   if (const auto* ball = std::get_if<Ball>(&shape))
     return {Eigen::Quaterniond::Identity(), ball->center};
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
@@ -72,7 +81,7 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above, double depth) {
   return {box.rotation, box.center};
 }
 
-std::unique_ptr<btCollisionShape> make_shape(const Shape& shape, double slab) {
+std::unique_ptr<btCollisionShape> make_shape(const Shape& shape, const Slab& slab) {
   if (const auto* ball = std::get_if<Ball>(&shape))
     return std::make_unique<btSphereShape>(static_cast<btScalar>(ball->radius));
   if (const auto* capsule = std::get_if<Capsule>(&shape))
@@ -80,7 +89,8 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape, double slab) {
         static_cast<btScalar>(capsule->radius),
         static_cast<btScalar>((capsule->to - capsule->from).norm()));
   const auto* box = std::get_if<Box>(&shape);
-  const Vec3 half = box ? box->half_extents : Vec3(kSlabWidth, slab, kSlabWidth);
+  const Vec3 half =
+      box ? box->half_extents : Vec3(slab.half_width, slab.half_depth, slab.half_width);
   auto made = std::make_unique<btBoxShape>(to_bullet(half));
   made->setMargin(0);  // the default rounds a box by 0.04 m
   return made;
@@ -94,21 +104,12 @@ Vec3 middle(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-std::vector<std::string> too_wide_for_planes(const Scene& scene) {
-  const bool has_plane = std::ranges::any_of(
-      scene.colliders, [](const Collider& c) { return std::holds_alternative<Plane>(c.shape); });
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : scene.start.x) box.extend(p);
-  if (!has_plane || box.sizes().norm() / 2 <= kSlabWidth - kSlabFollows) return {};
-  return {"a slab of 100 m stands in for the plane, too small for a cloth of " +
-          std::to_string(std::lround(box.sizes().norm())) + " m"};
-}
-
 struct RigidColliders::Body {
-  Body(const Collider& collider, const Vec3& above, double slab)
+  Body(const Collider& collider, const Vec3& above, const Slab& slab)
       : start(pose_at_start(collider.shape, above, slab)),
         motion(collider.motion),
         is_plane(std::holds_alternative<Plane>(collider.shape)),
+        follows(slab.follows()),
         shape(make_shape(collider.shape, slab)),
         rigid(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape.get())) {
     rigid.setFriction(static_cast<btScalar>(collider.friction));
@@ -132,7 +133,7 @@ struct RigidColliders::Body {
     const Vec3 normal = turned * start.rotation * Vec3::UnitY();
     Vec3 way = cloth - motion.moved(start.origin, t);
     way -= normal.dot(way) * normal;
-    if (!(way.norm() > kSlabFollows)) return;  // or no number
+    if (!(way.norm() > follows)) return;  // or no number
     start.origin += turned.conjugate() * way;
     rigid.setWorldTransform(at(t));
     rigid.setInterpolationWorldTransform(at(t));
@@ -141,13 +142,14 @@ struct RigidColliders::Body {
   RigidPose start;
   Motion motion;
   bool is_plane;
+  double follows;  ///< m, of a slab
   std::unique_ptr<btCollisionShape> shape;
   btRigidBody rigid;
 };
 
 RigidColliders::RigidColliders(const Scene& scene, btDiscreteDynamicsWorld& world) : world_(world) {
   for (const Collider& collider : scene.colliders) {
-    bodies_.push_back(std::make_unique<Body>(collider, middle(scene.start.x), slab_depth(scene)));
+    bodies_.push_back(std::make_unique<Body>(collider, middle(scene.start.x), slab_for(scene)));
     world_.addRigidBody(&bodies_.back()->rigid);
   }
 }

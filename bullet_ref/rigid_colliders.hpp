@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "core/model/scene.hpp"
@@ -12,9 +11,6 @@ class btRigidBody;
 
 namespace taut {
 
-/// Why the slabs cannot stand in for the scene's planes; empty: they can.
-std::vector<std::string> too_wide_for_planes(const Scene&);
-
 /// A scene's colliders as Bullet's rigid bodies, in the scene's order: a ball as btSphereShape, a
 /// capsule as btCapsuleShape (along its own y), a box as btBoxShape, a plane as the top of a
 /// btBoxShape slab (btStaticPlaneShape tunnels and lets the cloth rest 0.10 m too high). Boxes have
@@ -22,7 +18,7 @@ std::vector<std::string> too_wide_for_planes(const Scene&);
 class RigidColliders {
  public:
   /// Adds the bodies to the world, which must outlive this object. Slabs are centred below the
-  /// middle of the scene's start, 100 m wide.
+  /// middle of the scene's start, 100 m wide or twice as wide as the cloth.
   RigidColliders(const Scene&, btDiscreteDynamicsWorld&);
   ~RigidColliders();
   RigidColliders(const RigidColliders&) = delete;

@@ -307,8 +307,10 @@ double tolerance(const std::string& solver, const Change& c) {
 }
 
 /// Solvers with contact as a constraint of their own decide anew in every iteration who touches,
-/// sticks and slips: of what has not converged, rounding chooses sooner or later.
+/// sticks and slips: of what has not converged, rounding chooses sooner or later, and at once where
+/// two colliders hold a vertex.
 constexpr int kStepsInContact = 3;
+constexpr double kWithinSeveral = 1e-3;  ///< m
 bool decides_who_touches(const std::string& solver) {
   return std::ranges::any_of(std::array{"implicit", "pd", "admm", "vbd", "avbd"},
                              [&](auto name) { return solver_name(solver) == name; });
@@ -322,7 +324,9 @@ void compare(Scene scene, const std::string& solver, const Change& c) {
   EXPECT_EQ(to_string(was.record.status.kind), to_string(is.record.status.kind)) << where;
   if (was.record.status.kind != Status::Kind::ok || is.record.status.kind != Status::Kind::ok)
     return;
-  const double within = tolerance(solver, c);
+  double within = tolerance(solver, c);
+  if (within > 0 && scene.colliders.size() > 1 && decides_who_touches(solver))
+    within = std::max(within, kWithinSeveral);
   const double far = apart(was, is, c, scene);
   EXPECT_LE(far, within) << where;
   if (!(far <= within)) return;
