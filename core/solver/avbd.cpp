@@ -19,6 +19,7 @@ constexpr ParamSpec kOwn[] = {
     loop::substeps("1", "each step is this many steps of dt / substeps"),
     kVertexOrder,
     kAdaptiveStart,
+    kVertexPrecision,
     ParamSpec::real("alpha", "", "0.95", 0, 1,
                     "share of the violation at a substep's start that is left for later"),
     ParamSpec::real("beta", "N/m^2", "10", 0, 1e12, "growth of k per violation and sweep"),
@@ -28,97 +29,81 @@ constexpr ParamSpec kOwn[] = {
 };
 constexpr auto kParams = loop::with_common(kOwn);
 
-class AugmentedPass final : public Pass<double> {
+template <class Real>
+class AugmentedPass final : public Pass<Real> {
  public:
   explicit AugmentedPass(const loop::Setup& s)
-      : springs_(make_springs(s.scene, s.w, {1, 1, 1})),
-        blocks_(s, springs_),
-        start_(s.scene, s.params.is("start", "adaptive")),
+      : kernels_(kernels<Real>(s.simd)),
+        springs_(make_springs(s.scene, s.w, {1, 1, 1})),
+        blocks_(s, springs_, kernels_.sweep_augmented),
         alpha_(s.params.real("alpha")),
         beta_(s.params.real("beta")),
         gamma_(s.params.real("gamma")),
         k_min_(s.params.real("k-min")),
-        k_max_(std::max(s.params.real("k-max"), k_min_)),
-        links_(springs_.size()) {
+        k_max_(std::max(s.params.real("k-max"), k_min_)) {
     restart();
   }
 
+  const Layout& layout() const { return blocks_.groups().layout(); }
+
   void restart() override {
-    start_.restart();
     blocks_.restart();
-    links_.assign(links_.size(), {.k = k_min_});
+    for (AugmentedSlot<Real>& slot : blocks_.slots()) {
+      std::ranges::fill(slot.stiffness, static_cast<Real>(k_min_));
+      std::ranges::fill(slot.multiplier, Real(0));
+    }
   }
 
-  void begin(Particles<double>& p, double t, double h) override {
-    for (std::size_t j = 0; j < links_.size(); ++j) {
-      LinkState& link = links_[j];
-      const auto& [a, b, rest, unused] = springs_[j];
-      link.left = alpha_ * ((p.previous[b] - p.previous[a]).norm() - rest);
-      link.multiplier *= alpha_ * gamma_;
-      link.k = std::clamp(gamma_ * link.k, k_min_, k_max_);
-    }
-    y_ = positions(p);
-    start_.begin(p, h);
-    blocks_.begin(p, y_, t, h);
+  void begin(Particles<Real>& p, double t, double h) override {
+    update(p, kernels_.begin_augmented);
+    blocks_.begin(p, t, h);
   }
 
-  void apply(Particles<double>& p, double, double h) override {
-    blocks_.sweep(p, [&](std::size_t i, const Vec3& x, const auto& links) {
-      const double inertia = 1 / (p.w[i] * h * h);
-      Vec3 force = -inertia * (x - y_[i]);
-      Eigen::Matrix3d hessian = inertia * Eigen::Matrix3d::Identity();
-      links([&](std::size_t j, const Vec3& u, double stretch, double length) {
-        const LinkState& link = links_[j];
-        const double pull = link.k * (stretch - link.left) + link.multiplier;
-        force += pull * u;
-        hessian += link.k * u * u.transpose();
-        // a column of I - u u^T, a projection, has the norm sqrt(1 - u_c^2)
-        hessian.diagonal().array() +=
-            std::abs(pull) / length * (1 - u.array().square()).max(0.0).sqrt();
-      });
-      blocks_.add_bending(p, i, force, hessian);
-      return blocks_.minimum(p, i, x, force, hessian);
-    });
-    for (std::size_t j = 0; j < links_.size(); ++j) {
-      LinkState& link = links_[j];
-      const auto& [a, b, rest, unused] = springs_[j];
-      const double violation = (p.x[b] - p.x[a]).norm() - rest - link.left;
-      link.multiplier += link.k * violation;
-      link.k = std::min(link.k + beta_ * std::abs(violation), k_max_);
-    }
+  void apply(Particles<Real>& p, double, double h) override {
+    constexpr double no_damping = 0;
+    blocks_.sweep(p, no_damping, h);
+    update(p, kernels_.augment);
   }
 
   std::vector<PassCost> cost() const override {
-    return {{.pass = "vertices",
-             .items = y_.size(),
-             .bytes = y_.size() * sizeof(Vec3) + start_.bytes()},
-            {.pass = "links, each from both ends and once for its multiplier",
-             .items = 3 * springs_.size(),
-             .bytes = blocks_.bytes() + links_.size() * sizeof(LinkState)}};
+    return {{.pass = "vertices", .items = blocks_.groups().vertices(), .bytes = 0},
+            {.pass = "links, each from both ends and there again for its multiplier",
+             .items = 4 * springs_.size(),
+             .bytes = blocks_.bytes()}};
   }
 
  private:
-  struct LinkState {
-    double k = 0;           ///< N/m
-    double multiplier = 0;  ///< N
-    double left = 0;        ///< m, alpha C_0
-  };
+  /// Multipliers and stiffnesses of all links.
+  void update(const Particles<Real>& p,
+              void (*kernel)(const AugmentedStep<Real>&, std::size_t, std::size_t)) {
+    const AugmentedStep<Real> step{.groups = blocks_.groups().data(),
+                                   .slots = blocks_.slots().data(),
+                                   .x = p.x.data(),
+                                   .previous = p.previous.data(),
+                                   .alpha = static_cast<Real>(alpha_),
+                                   .beta = static_cast<Real>(beta_),
+                                   .gamma = static_cast<Real>(gamma_),
+                                   .k_min = static_cast<Real>(k_min_),
+                                   .k_max = static_cast<Real>(k_max_)};
+    blocks_.share(blocks_.groups().size(),
+                  [&](std::size_t begin, std::size_t end) { kernel(step, begin, end); });
+  }
+
+  const Kernels<Real>& kernels_;
   std::vector<Spring> springs_;
-  VertexBlocks blocks_;
-  AdaptiveStart start_;
+  VertexBlocks<Real, AugmentedSlot<Real>> blocks_;
   double alpha_, beta_, gamma_, k_min_, k_max_;
-  std::vector<LinkState> links_;
-  std::vector<Vec3> y_;  ///< m, where they would go without links
 };
 
-loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()),
-          .pass = std::make_unique<AugmentedPass>(s),
-          .bends = true};
+template <class Real>
+loop::Links<Real> links(const loop::Setup& s) {
+  auto pass = std::make_unique<AugmentedPass<Real>>(s);
+  Layout layout = pass->layout();
+  return {.layout = std::move(layout), .pass = std::move(pass), .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
-  return loop::make<double>(scene, params, links);
+  return loop::make(scene, params, links<float>, links<double>);
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
@@ -135,8 +120,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"beta", "10|100|1000"},
-                                                        {"k-min", "1|10|100"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {
+    {"beta", "10|100|1000"}, {"k-min", "1|10|100"}, {"precision", "double|float"}};
 
 }  // namespace
 }  // namespace taut::solver::avbd
@@ -152,4 +137,4 @@ TAUT_SOLVER(avbd) = {.name = "avbd",
                      .accuracy = {.substeps = "substeps",
                                   .sweeps = "iterations",
                                   .alternatives = taut::solver::avbd::kAlternatives,
-                                  .labelled = "substeps|iterations|beta|k-min"}};
+                                  .labelled = "substeps|iterations|beta|k-min|precision"}};

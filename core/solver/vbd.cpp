@@ -24,6 +24,7 @@ constexpr ParamSpec kOwn[] = {
     kMaterial,
     kVertexOrder,
     kAdaptiveStart,
+    kVertexPrecision,
     ParamSpec::real("damping", "s", "0", 0, 1e3,
                     "k_d, of the springs' Hessian; as published it brakes each vertex' own way, "
                     "rigid motion, too"),
@@ -31,50 +32,22 @@ constexpr ParamSpec kOwn[] = {
 };
 constexpr auto kParams = loop::with_common(kOwn);
 
-class DescentPass final : public Pass<double> {
+template <class Real>
+class DescentPass final : public Pass<Real> {
  public:
   explicit DescentPass(const loop::Setup& s)
       : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
-        blocks_(s, springs_),
-        start_(s.scene, s.params.is("start", "adaptive")),
+        blocks_(s, springs_, kernels<Real>(s.simd).sweep_springs),
         damping_(s.params.real("damping")) {}
 
-  void restart() override {
-    start_.restart();
-    blocks_.restart();
-  }
+  const Layout& layout() const { return blocks_.groups().layout(); }
 
-  void begin(Particles<double>& p, double t, double h) override {
-    y_ = positions(p);
-    start_.begin(p, h);
-    blocks_.begin(p, y_, t, h);
-  }
-
-  void apply(Particles<double>& p, double, double h) override {
-    blocks_.sweep(p, [&](std::size_t i, const Vec3& x, const auto& links) {
-      using Eigen::Matrix3d;
-      const double inertia = 1 / (p.w[i] * h * h);
-      Vec3 force = -inertia * (x - y_[i]);
-      Matrix3d hessian = Matrix3d::Zero();
-      links([&](std::size_t j, const Vec3& u, double stretch, double length) {
-        const double k = springs_[j].stiffness, across = k * std::max(0.0, stretch / length);
-        force += k * stretch * u;
-        hessian += across * Matrix3d::Identity() + (k - across) * u * u.transpose();
-      });
-      if (damping_ > 0) {
-        force -= damping_ / h * (hessian * (x - p.previous[i]));
-        hessian *= 1 + damping_ / h;
-      }
-      blocks_.add_bending(p, i, force, hessian);
-      hessian.diagonal().array() += inertia;
-      return blocks_.minimum(p, i, x, force, hessian);
-    });
-  }
+  void restart() override { blocks_.restart(); }
+  void begin(Particles<Real>& p, double t, double h) override { blocks_.begin(p, t, h); }
+  void apply(Particles<Real>& p, double, double h) override { blocks_.sweep(p, damping_, h); }
 
   std::vector<PassCost> cost() const override {
-    return {{.pass = "vertices",
-             .items = y_.size(),
-             .bytes = y_.size() * sizeof(Vec3) + start_.bytes()},
+    return {{.pass = "vertices", .items = blocks_.groups().vertices(), .bytes = 0},
             {.pass = "links, each from both ends",
              .items = 2 * springs_.size(),
              .bytes = blocks_.bytes()}};
@@ -82,21 +55,22 @@ class DescentPass final : public Pass<double> {
 
  private:
   std::vector<Spring> springs_;
-  VertexBlocks blocks_;
-  AdaptiveStart start_;
-  double damping_;       ///< s
-  std::vector<Vec3> y_;  ///< m, where they would go without links
+  VertexBlocks<Real, SpringSlot<Real>> blocks_;
+  double damping_;  ///< s
 };
 
-loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()),
-          .pass = with_chebyshev<double>(std::make_unique<DescentPass>(s),
-                                         s.params.real("chebyshev"), s.w.size(), s.pool),
-          .bends = true};
+template <class Real>
+loop::Links<Real> links(const loop::Setup& s) {
+  auto pass = std::make_unique<DescentPass<Real>>(s);
+  Layout layout = pass->layout();
+  return {
+      .layout = std::move(layout),
+      .pass = with_chebyshev<Real>(std::move(pass), s.params.real("chebyshev"), s.w.size(), s.pool),
+      .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
-  return loop::make<double>(scene, params, links);
+  return loop::make(scene, params, links<float>, links<double>);
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
@@ -107,8 +81,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"chebyshev", "0.5|0.8|0.9"},
-                                                        {"start", "adaptive|inertia"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {
+    {"chebyshev", "0.5|0.8|0.9"}, {"start", "adaptive|inertia"}, {"precision", "double|float"}};
 
 }  // namespace
 }  // namespace taut::solver::vbd
@@ -124,5 +98,5 @@ TAUT_SOLVER(vbd) = {.name = "vbd",
                     .accuracy = {.substeps = "substeps",
                                  .sweeps = "iterations",
                                  .alternatives = taut::solver::vbd::kAlternatives,
-                                 .labelled = "substeps|iterations|chebyshev|start",
+                                 .labelled = "substeps|iterations|chebyshev|start|precision",
                                  .accelerators = "chebyshev|threads"}};

@@ -156,6 +156,49 @@ TEST(SameBits, OfWindAndContactThatThreadsShare) {
   }
 }
 
+/// Everything that a sweep over vertices takes: bending, contact, wind and pins that move.
+Scene with_everything(Scene scene) {
+  scene.colliders = obstacles(scene);
+  scene.thickness = 0.002;
+  scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
+  scene.bending = Bending{.warp = 1e-4, .weft = 3e-4};
+  PinMotion& moved = scene.pin_motions.emplace_back();
+  moved.motion.velocity = {0.5, 1, 0};
+  moved.vertices = {scene.pins.back()};
+  return scene;
+}
+
+TEST(SameBits, OfVertexSweepsForEveryInstructionSet) {
+  for (const Scene& plain : scenes())
+    for (const bool everything : {false, true})
+      for (const char* solver :
+           {"vbd:iterations=3,damping=1e-3,chebyshev=0.5", "vbd:iterations=3,order=mesh",
+            "avbd:iterations=3,beta=1000,substeps=2", "avbd:iterations=2,order=mesh"})
+        for (const char* precision : {",precision=float", ",precision=double"}) {
+          const Scene scene = everything ? with_everything(plain) : plain;
+          const std::string method = std::string(solver) + precision;
+          const State want = simulate(scene, method + ",simd=scalar", 3);
+          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+            if (available(simd)) {
+              const std::string with = method + ",simd=" + std::string(to_string(simd));
+              EXPECT_TRUE(same_bits(simulate(scene, with, 3), want)) << with << everything;
+            }
+        }
+}
+
+TEST(SameBits, OfVertexSweepsThatThreadsShare) {
+  const Scene plain = crumpled(hanging_sheet(160, 150), 0.002);  // large colours, with bending too
+  for (const bool everything : {false, true})
+    for (const char* solver : {"vbd:iterations=2", "avbd:iterations=2"})
+      for (const char* precision : {",precision=float", ",precision=double"}) {
+        const Scene scene = everything ? with_everything(plain) : plain;
+        const std::string method = std::string(solver) + precision;
+        const State want = simulate(scene, method, 2);
+        for (const char* threads : {",threads=2", ",threads=3"})
+          EXPECT_TRUE(same_bits(simulate(scene, method + threads, 2), want)) << method << threads;
+      }
+}
+
 TEST(SameBits, OfSelfCollisionThatThreadsShare) {
   // Without shear links, diagonal neighbours are close at rest: two searches' lists are swept.
   Scene scene = crumpled(hanging_sheet(92, 90, {true, false, true}), 0.005);

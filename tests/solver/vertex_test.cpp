@@ -148,6 +148,29 @@ TEST(AugmentedVertexBlockDescent, ItsLinksBecomeRigid) {
     EXPECT_NEAR((mine.x[to_index(l.b)] - mine.x[to_index(l.a)]).norm(), l.rest, 1e-9);
 }
 
+TEST(VertexBlocks, FloatFollowsDouble) {
+  const Scene scene = crumpled(hanging_sheet(12, 10), 0.01);
+  for (const std::string solver : {"vbd:iterations=20", "avbd:iterations=20"}) {
+    const State in_double = simulate(scene, solver, 16);
+    const State in_float = simulate(scene, solver + ",precision=float", 16);
+    const double way = largest_distance(in_double.x, scene.start.x);
+    EXPECT_GT(way, 0.01) << solver;
+    EXPECT_LT(largest_distance(in_float.x, in_double.x), 3e-4 * way) << solver;
+    EXPECT_GT(largest_distance(in_float.x, in_double.x), 0) << solver;
+  }
+}
+
+/// A link without a length pulls nowhere: its ends are moved by the others, alike.
+TEST(VertexBlocks, ALinkOfNoLengthHasNoDirection) {
+  Scene scene = hanging_sheet(6, 5);
+  scene.start.x[14] = scene.start.x[15];
+  for (const char* solver : {"vbd:iterations=1", "avbd:iterations=1"})
+    for (const char* precision : {",precision=float", ",precision=double"}) {
+      const State state = simulate(scene, std::string(solver) + precision, 2);
+      for (const Vec3& x : state.x) EXPECT_TRUE(x.allFinite()) << solver << precision;
+    }
+}
+
 TEST(VertexBlocks, AnyNumberOfThreadsComputesTheSameBits) {
   Scene scene = crumpled(hanging_sheet(101, 100), 0.002);
   for (const char* solver : {"vbd:iterations=3", "avbd:iterations=3"}) {

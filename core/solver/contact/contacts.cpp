@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/model/index.hpp"
 #include "core/solver/contact/projector.hpp"
@@ -124,24 +125,29 @@ bool Contacts::holds(std::size_t vertex) const {
                      [](const ContactForce& f) { return f.holds(); });
 }
 
-void Contacts::predict(Particles<double>& p, const std::vector<Vec3>& y, double h) {
+template <class Real>
+void Contacts::predict(Particles<Real>& p, const Points<Real>& y, double h) {
+  const bool first = y_.empty();
+  y_.resize(p.size());
   TouchingVertex at;
   for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec3 before = std::exchange(y_[i], y[i].template cast<double>());
     if (p.w[i] == 0) continue;
-    const Vec3 previous = p.previous[i];
-    const IsotropicCompliance free{p.w[i] * h * h};
+    const Vec3 previous = p.previous[i].template cast<double>();
+    const IsotropicCompliance free{static_cast<double>(p.w[i]) * h * h};
     bool touching = false;
-    Vec3 x = y[i];
-    if (!y_.empty() && holds(i)) x += previous - y_[i];
+    Vec3 x = y_[i];
+    if (!first && holds(i)) x += previous - before;
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
       if (!touches(i, k, x, previous, at)) continue;
       touching = true;
       settle(at, free, force(i, k), x);
     }
-    if (touching) p.x.set(i, x);
+    if (touching) p.x.set(i, x.cast<Real>());
   }
-  y_ = y;
 }
+template void Contacts::predict(Particles<float>&, const Points<float>&, double);
+template void Contacts::predict(Particles<double>&, const Points<double>&, double);
 
 void Contacts::predict_new(const Particles<double>& p, double h) {
   TouchingVertex at;
@@ -151,6 +157,13 @@ void Contacts::predict_new(const Particles<double>& p, double h) {
       if (!force(i, k).holds() && touches(i, k, x, p.previous[i], at))
         settle(at, IsotropicCompliance{p.w[i] * h * h}, force(i, k), x);
   }
+}
+
+bool Contacts::reaches(std::size_t vertex, const Vec3& x, const Vec3& previous) {
+  TouchingVertex at;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k)
+    if (force(vertex, k).holds() || touches(vertex, k, x, previous, at)) return true;
+  return false;
 }
 
 Vec3 Contacts::force_at(std::size_t vertex, const Vec3& x, const Vec3& previous) {

@@ -118,10 +118,13 @@ class Contacts {
   /// Where sweeps start. What begins to touch moves from y [m] out of the collider and against its
   /// slip as if it had no link, which is all there is to a sheet that lands flat; what was held
   /// ends as far from y as in the last substep, which is all there is to one that rests or slides.
-  void predict(Particles<double>& p, const std::vector<Vec3>& y, double h);
+  template <class Real>
+  void predict(Particles<Real>& p, const Points<Real>& y, double h);
   /// The forces of what newly touches as if it had no link; p.x is y, and stays.
   void predict_new(const Particles<double>& p, double h);
 
+  /// Whether any collider holds the vertex, or it is inside of one at x.
+  bool reaches(std::size_t vertex, const Vec3& x, const Vec3& previous);
   /// Of a vertex at x [N], linearised there.
   Vec3 force_at(std::size_t vertex, const Vec3& x, const Vec3& previous);
   /// Settles the contacts of a vertex that has been moved to x, with this Hessian [N/m].

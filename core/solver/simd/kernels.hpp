@@ -128,6 +128,47 @@ struct FaceBatch {
   Real w[3][kLanes];                ///< 1/kg
 };
 
+/// kLanes packed particles that neither a link nor a bending element joins, and where their links
+/// are: slots [first_slot, end_slot), each of one link of every lane. A lane without a particle has
+/// one of the spare ones of Layout::packed.
+struct VertexGroup {
+  PackedSlot particle[kLanes];
+  std::uint32_t first_slot, end_slot;
+};
+/// One link of each lane. A lane without one has one to itself, of no length: it does nothing.
+template <class Real>
+struct SpringSlot {
+  PackedSlot other[kLanes];  ///< end of the link
+  Real rest[kLanes];         ///< m
+  Real stiffness[kLanes];    ///< N/m
+};
+/// Of an augmented Lagrangian (avbd.cpp). Both ends of a link keep its numbers and compute the same
+/// bits of them: nothing has to be carried from one to the other.
+template <class Real>
+struct AugmentedSlot : SpringSlot<Real> {
+  Real multiplier[kLanes];  ///< N
+  Real left[kLanes];        ///< m, alpha C_0
+};
+
+/// What a sweep over vertices reads, and x, which it moves. Arrays of numbers are packed.
+template <class Real>
+struct VertexSweep {
+  const VertexGroup* groups;
+  Real* x;
+  const Real* y;         ///< where they would go without links
+  const Real* previous;  ///< x_t
+  const Real* inertia;   ///< [groups][kLanes] m/h^2 [N/m]
+  const Real* bending;   ///< [groups][4][kLanes] force x, y, z [N], Hessian [N/m]; null: none
+  Real damping;          ///< k_d/h of springs
+};
+template <class Real>
+struct AugmentedStep {
+  const VertexGroup* groups;
+  AugmentedSlot<Real>* slots;
+  const Real *x, *previous;
+  Real alpha, beta, gamma, k_min, k_max;  ///< avbd.cpp
+};
+
 /// All particles: of an interleaved sheet, or, with one lane, packed ones.
 template <class Real>
 struct ParticleSpan {
@@ -235,6 +276,14 @@ struct Kernels {
   void (*narrow_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
   void (*wide_wind)(const WindStep<Real>&, const SheetFaces<Real>&, int begin, int end);
   void (*wind_on_faces)(const WindStep<Real>&, std::span<const FaceBatch<Real>>);
+  /// Moves the vertices of groups [begin, end), which are of one colour, each to its minimum.
+  void (*sweep_springs)(const VertexSweep<Real>&, const SpringSlot<Real>*, std::size_t begin,
+                        std::size_t end);
+  void (*sweep_augmented)(const VertexSweep<Real>&, const AugmentedSlot<Real>*, std::size_t begin,
+                          std::size_t end);
+  /// Multipliers and stiffnesses of groups [begin, end), at a substep's start and after a sweep.
+  void (*begin_augmented)(const AugmentedStep<Real>&, std::size_t begin, std::size_t end);
+  void (*augment)(const AugmentedStep<Real>&, std::size_t begin, std::size_t end);
   /// Pulls particles that are farther than their length from their pin to it, table after table; by
   /// Projection.
   void (*tethers[2])(const ParticleSpan<Real>&, std::span<const TetherTable<Real>>);

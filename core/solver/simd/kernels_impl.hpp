@@ -12,6 +12,7 @@
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
 #include "core/solver/simd/neighbour_search_impl.hpp"
+#include "core/solver/simd/vertex_sweep_impl.hpp"
 #include "core/solver/simd/wind_impl.hpp"
 
 namespace taut {
@@ -545,6 +546,10 @@ constexpr Kernels<Real> make_kernels() {
       .narrow_wind = wind_on_sheet<Narrow, kNarrow, Real>,
       .wide_wind = wind_on_sheet<Wide, kWide, Real>,
       .wind_on_faces = wind_on_faces<P, Real>,
+      .sweep_springs = sweep_vertices<P, SpringSlot<Real>, Real>,
+      .sweep_augmented = sweep_vertices<P, AugmentedSlot<Real>, Real>,
+      .begin_augmented = begin_augmented<P, Real>,
+      .augment = augment<P, Real>,
       .tethers = {tethers<Narrow, Wide, P, exact, Real>, tethers<Narrow, Wide, P, sqrt_free, Real>},
       .motion_boxes = motion_boxes<Narrow, Wide, P, Real>,
       .largest_motion2 = largest_motion2<Narrow, Wide, P, Real>,

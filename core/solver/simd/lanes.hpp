@@ -170,6 +170,10 @@ template <class Real, class Number>
 [[gnu::always_inline]] inline Real* particle(Real* x, Number place) {
   return x + 4 * static_cast<std::size_t>(place);
 }
+template <class Real>
+[[gnu::always_inline]] inline Real* particle(Real* x, PackedSlot slot) {
+  return x + slot.number;
+}
 
 /// T holds the x y z 0 of one particle, or of two.
 template <class T, class Real, class Number>
@@ -233,8 +237,8 @@ template <class T>
   }
 }
 /// kWidth<T> packed particles, wherever they are.
-template <class T, class Real>
-[[gnu::always_inline]] inline Vec3T<T> gather_packed(const Real* x, const std::uint32_t* place) {
+template <class T, class Real, class Number>
+[[gnu::always_inline]] inline Vec3T<T> gather_packed(const Real* x, const Number* place) {
   if constexpr (kWidth<T> == 1) {
     x = particle(x, *place);
     return {x[0], x[1], x[2]};
@@ -242,6 +246,19 @@ template <class T, class Real>
     T p[4];
     four_times([&](auto l) { p[l] = load_particles<T>(x, place + l); });
     return transposed(p);
+  }
+}
+/// The way back.
+template <class T, class Real, class Number>
+[[gnu::always_inline]] inline void scatter_packed(Real* x, const Number* place,
+                                                  const Vec3T<T>& to) {
+  if constexpr (kWidth<T> == 1) {
+    x = particle(x, *place);
+    x[0] = to.x, x[1] = to.y, x[2] = to.z;
+  } else {
+    T p[4];
+    transpose(to, p);
+    four_times([&](auto l) { store_particles(x, place + l, p[l]); });
   }
 }
 /// kWidth<T> particles, one after the other: packed, or of one vector of an interleaved sheet.

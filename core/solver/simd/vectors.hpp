@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
 
@@ -98,6 +99,12 @@ struct Vec4T {
   [[gnu::always_inline]] friend Vec4T greater(const Vec4T& a, const Vec4T& b) {
     return {a.v < b.v ? b.v : a.v};
   }
+};
+
+/// Which number the x of a packed particle is: four times its place, with nothing to compute where
+/// much is gathered.
+struct PackedSlot {
+  std::uint32_t number;
 };
 
 /// Where the particle at a slot is (layout/particles.hpp); packed: `stride` is 1.
