@@ -18,7 +18,6 @@ class ContactForce final : public Metric {
        .unit = kForce,
        .help = "size of the sum of all forces of colliders on the cloth, by its momentum, of its "
                "mean over the last second: the weight, where the cloth lies still",
-       .in_series = true,
        .title = "force of all colliders on the cloth"},
       {"contact.force.peak", kForce, "the largest over the run", false, Window::run,
        "largest force of all colliders on the cloth"},
@@ -40,10 +39,10 @@ class ContactForce final : public Metric {
     const Vec3 way = center - center_;
     center_ = center;
     if (m.step >= 2) {
-      force_ = total_ * ((way - keep_ * way_) / (dt_ * dt_) - gravity_);
-      peak_.add(m.step, false, force_.norm());
+      const Vec3 force = total_ * ((way - keep_ * way_) / (dt_ * dt_) - gravity_);
+      peak_.add(m.step, false, force.norm());
       if (end_.contains(m.step)) {
-        sum_ += force_;
+        sum_ += force;
         ++count_;
       }
     }
@@ -52,8 +51,8 @@ class ContactForce final : public Metric {
   std::vector<double> finish() override {
     return {count_ > 0 ? (sum_ / count_).norm() : Summary::kNone, peak_.peak()};
   }
-  std::vector<double> now(const Snapshot& m) const override {
-    return {m.step >= 2 ? force_.norm() : Summary::kNone, Summary::kNone};
+  std::vector<double> now(const Snapshot&) const override {
+    return {Summary::kNone, Summary::kNone};
   }
 
  private:
@@ -62,7 +61,7 @@ class ContactForce final : public Metric {
   Vec3 gravity_;
   double keep_, dt_;
   LastSecond end_;
-  Vec3 center_ = Vec3::Zero(), way_ = Vec3::Zero(), force_ = Vec3::Zero(), sum_ = Vec3::Zero();
+  Vec3 center_ = Vec3::Zero(), way_ = Vec3::Zero(), sum_ = Vec3::Zero();
   int count_ = 0;
   Summary peak_;
 };
