@@ -181,8 +181,13 @@ TAUT_TRUTH(steps_in_contact, 7, 9,
       for (const std::string solver : {"implicit:iterations=200", "pd:iterations=6000",
                                        "admm:iterations=6000", "vbd:iterations=6000"}) {
         if (!can_run(findings, solver, s)) continue;
-        findings.below(solver, what, "m", max_distance(Simulation(s, solver, 1).state().x, exact.x),
-                       1e-8);
+        const double away = max_distance(Simulation(s, solver, 1).state().x, exact.x);
+        if (solver.starts_with("implicit") && friction > 0)
+          findings.deviates(solver, what, "m", away, 0, 5e-6, 5e-6,
+                            "its iterations may end with the friction of single vertices, near to "
+                            "slipping, a few per cent within Coulomb's cone");
+        else
+          findings.below(solver, what, "m", away, 1e-8);
       }
     }
 }

@@ -79,7 +79,7 @@ ReferencePath followed(double dt, const std::function<Vec3(double)>& way_at) {
 TEST(Path, ALineIsJudgedAtTheReferencesTimesWhateverTheTimeStep) {
   for (const double dt : {1.0 / 64, 0.03, 0.07, 0.19, 0.3}) {
     for (const double faster : {0.5, 1.0, 1.5}) {
-      const ReferencePath path = followed(dt, [&](double t) { return faster * way(t); });
+      const ReferencePath path = followed(dt, [&](double t) { return Vec3(faster * way(t)); });
       EXPECT_NEAR(path.share(), faster, 1e-12) << dt;
       EXPECT_NEAR(path.error(), std::abs(faster - 1), 1e-12) << dt;
       EXPECT_EQ(path.horizon(), 2) << dt;
