@@ -30,6 +30,7 @@
 
 #include "core/model/bending.hpp"
 #include "core/solver/contact/contacts.hpp"
+#include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 

@@ -214,10 +214,10 @@ class VertexBlocks {
     m.force = m.force + Vec3T<Real>{static_cast<Real>(held.x()), static_cast<Real>(held.y()),
                                     static_cast<Real>(held.z())};
     const Vec3T<Real> way = m.minimum(v.inertia[g * kLanes + static_cast<std::size_t>(lane)]);
-    Eigen::Matrix3d hessian;
+    Eigen::Matrix<Real, 3, 3> hessian;
     hessian << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
-    Vec3 to = x + Vec3(way.x, way.y, way.z);
-    contacts_->settle_vertex(i, hessian, previous, to);
+    Vec3 to = x + Eigen::Matrix<Real, 3, 1>(way.x, way.y, way.z).template cast<double>();
+    contacts_->settle_vertex(i, hessian.template cast<double>(), previous, to);
     p.x.set(i, to.cast<Real>());
   }
 

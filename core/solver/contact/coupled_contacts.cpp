@@ -14,7 +14,12 @@ using Eigen::MatrixXd;
 
 /// Rounds at most; sweeps after them, and where they led nowhere.
 constexpr int kRounds = 4, kSweeps = 2, kSweepsAlone = 30;
-constexpr double kEnough = 1e-14;  ///< of coordinates, of gaps and slips
+constexpr double kEnough = 1e-12;  ///< of coordinates, of gaps and slips
+/// Beyond so many contacts a round, whose cost grows with their cube, is dearer than many
+/// iterations of the links: then sweeps alone, a few an iteration, go on from the forces of the
+/// last.
+constexpr std::size_t kRoundsPay = 160;
+constexpr int kSweepsOfMany = 2;
 
 MatrixXd part(const MatrixXd& matrix, const std::vector<Index>& rows,
               const std::vector<Index>& columns) {
@@ -43,7 +48,8 @@ CoupledContacts::Rows CoupledContacts::resolve(
     std::vector<ContactForce> forces;
     Rows x, change;
   } best;
-  for (int round = 0; round <= kRounds; ++round) {
+  const int rounds = at.size() <= kRoundsPay ? kRounds : 0;
+  for (int round = 0; round <= rounds; ++round) {
     double away = 0;
     bool same = round > 0;
     for (std::size_t c = 0; c < at.size(); ++c) {
@@ -57,13 +63,13 @@ CoupledContacts::Rows CoupledContacts::resolve(
       for (std::size_t c = 0; c < at.size(); ++c) best.forces.push_back(force(c));
     }
     if (away <= enough) return change;
-    if (same || round == kRounds) break;
+    if (same || round == rounds) break;
     solve(trials, x, change);
   }
   for (std::size_t c = 0; c < at.size(); ++c) force(c) = best.forces[c];
   x = best.x;
   change = best.change;
-  const int sweeps = best.round > 0 ? kSweeps : kSweepsAlone;
+  const int sweeps = rounds == 0 ? kSweepsOfMany : best.round > 0 ? kSweeps : kSweepsAlone;
   for (int n = 0; n < sweeps; ++n) sweep(x, change);
   return change;
 }
