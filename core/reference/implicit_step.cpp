@@ -158,6 +158,13 @@ struct ImplicitStep::Multiplied {
     Vec3 rub = Vec3::Zero();
   };
   std::vector<Touch> touches = {};
+  /// Of vertex i at collider k, [i][k]: the surface's tangent plane where it is nearest, fixed
+  /// while G is minimised, for with planes that turn its gradient is not that of an energy.
+  struct TangentPlane {
+    Vec3 normal = Vec3::Zero();
+    double offset = 0;  ///< m, of the scene's thickness above the surface
+  };
+  std::vector<TangentPlane> planes = {};
   double hardness = 0;  ///< N/m, of contact
 
   Multiplied(const ImplicitStep& s, double rigid) : step(s), multiplier(s.links_.size(), 0) {
@@ -226,9 +233,9 @@ struct ImplicitStep::Multiplied {
   Held held(std::size_t i, std::size_t k, const Vec3& x) const {
     const Obstacle& obstacle = step.colliders_[k];
     const Touch& touch = touches[i * step.colliders_.size() + k];
-    const Surface at = surface(obstacle.shape, x);
+    const TangentPlane& at = planes[i * step.colliders_.size() + k];
     Held out;
-    out.gap = at.distance - step.thickness_;
+    out.gap = at.normal.dot(x) - at.offset;
     out.push = touch.push - hardness * out.gap;
     if (out.push <= 0) return {.gap = out.gap};
     const Eigen::Matrix3d along = at.normal * at.normal.transpose(),
@@ -261,10 +268,25 @@ struct ImplicitStep::Multiplied {
       for (std::size_t k = 0; column[i] >= 0 && k < step.colliders_.size(); ++k)
         visit(i, k, held(i, k, x[i]));
   }
-  /// The forces become what acts at x; how far that is from contact's conditions [m].
+  /// The tangent planes at x.
+  void lay_planes(const Points& x) {
+    planes.clear();
+    for (const Vec3& at : x)
+      for (const Obstacle& obstacle : step.colliders_) {
+        const Surface s = surface(obstacle.shape, at);
+        planes.push_back({s.normal, s.normal.dot(at) - s.distance + step.thickness_});
+      }
+  }
+  /// The planes and the forces become those at x; how far that is from contact's conditions [m].
   double update_contact(const Points& x) {
     double left = 0;
+    std::vector<Vec3> on_old_planes;
+    each_held(
+        x, [&](std::size_t, std::size_t, const Held& now) { on_old_planes.push_back(now.force); });
+    lay_planes(x);
+    auto old = on_old_planes.begin();
     each_held(x, [&](std::size_t i, std::size_t k, const Held& now) {
+      left = std::max(left, (now.force - *old++).norm() / hardness);
       Touch& touch = touches[i * step.colliders_.size() + k];
       const double bound = step.colliders_[k].friction * now.push;
       if (now.push > 0) left = std::max({left, std::abs(now.gap), now.slip});
@@ -363,9 +385,15 @@ struct ImplicitStep::Multiplied {
   }
 };
 
-double ImplicitStep::energy(const Points& x) const { return Multiplied(*this, 0).energy(x); }
+double ImplicitStep::energy(const Points& x) const {
+  Multiplied at(*this, 0);
+  at.lay_planes(x);
+  return at.energy(x);
+}
 double ImplicitStep::residual(const Points& x) const {
-  return Multiplied(*this, 0).gradient(x).norm();
+  Multiplied at(*this, 0);
+  at.lay_planes(x);
+  return at.gradient(x).norm();
 }
 
 double ImplicitStep::stretch(const Points& x) const {
@@ -396,6 +424,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   double hardness = kHardness * heaviest;
   Multiplied problem(*this, hardness);
   x = problem.related(std::move(x));
+  problem.lay_planes(x);
   Minimum found;
   double before = 1e300;
   const int rounds = in_contact() ? 400 : rigid_ ? 60 : 1;

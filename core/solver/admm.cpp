@@ -100,8 +100,10 @@ class AdmmPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  return {
-      .layout = Layout::packed(s.w.size()), .pass = std::make_unique<AdmmPass>(s), .bends = true};
+  return {.layout = Layout::packed(s.w.size()),
+          .pass = std::make_unique<AdmmPass>(s),
+          .bends = true,
+          .contacts = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

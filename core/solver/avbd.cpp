@@ -99,7 +99,7 @@ template <class Real>
 loop::Links<Real> links(const loop::Setup& s) {
   auto pass = std::make_unique<AugmentedPass<Real>>(s);
   Layout layout = pass->layout();
-  return {.layout = std::move(layout), .pass = std::move(pass), .bends = true};
+  return {.layout = std::move(layout), .pass = std::move(pass), .bends = true, .contacts = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

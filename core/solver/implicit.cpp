@@ -19,7 +19,9 @@
 //
 //     push' = max(0, push - k gap),   rub' = rub - k slip, no longer than mu push
 //
-// act, k n n^T + k (I - n n^T) join the Hessian where they hold and stick, and become the forces.
+// act, k n n^T + k (I - n n^T) join the Hessian where they hold and stick. They become the forces
+// once the gradient that is left is less than a share of their change: sooner, and contacts would
+// take turns at sticking and slipping without end.
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -48,9 +50,9 @@ using Eigen::Matrix3d;
 constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
 /// Beyond so many vertices that move, conjugate gradients take less time than a factor.
 constexpr std::size_t kFactorPays = 20000;
-/// Of the stiffness of all else at a vertex, that of its contact: ten times stiffer, and sticking
-/// and slipping take turns for as many more iterations; a third, and forces settle later.
-constexpr double kContactStiffness = 1;
+/// Of the stiffness of all else at a vertex, that of its contact; and of a change of the forces of
+/// contact, the gradient that is left before they take it.
+constexpr double kContactStiffness = 3, kSettled = 0.3;
 
 constexpr ParamSpec kOwn[] = {
     loop::iterations("50", "Newton iterations, at most; they end at 1e-9 of the forces of inertia"),
@@ -323,6 +325,7 @@ class NewtonPass final : public Pass<double> {
     if (g.norm() <= (first ? enough_at_first_ : enough_) ||
         !(first ? first_iteration(x, p, g, h) : iterate(x, g, h))) {
       // the minimum for these forces of contact; the end if theirs is no other one
+      left_ = 0;
       if (!contacts_ || !update_contacts(p, h)) ended_at_ = std::move(x);
       return;
     }
@@ -383,6 +386,7 @@ class NewtonPass final : public Pass<double> {
   /// Moves x along the direction, by halves of it until the energy falls; false: it does not.
   bool take(std::vector<Vec3>& x, const Vector& direction, const Vector& g, double h) {
     if (!line_search_) {
+      left_ = 0;
       x = moved(x, direction, 1);
       return true;
     }
@@ -397,7 +401,8 @@ class NewtonPass final : public Pass<double> {
       // near the minimum, differences of the energy are rounding: the gradient decides
       const bool rounds = now <= energy_before * (1 + 1e-12) && g_now.norm() < g.norm();
       if (!falls && !rounds) continue;
-      clamped_ = clamped_ && (step < 1 || g_now.norm() < 0.25 * g.norm());
+      left_ = g_now.norm();
+      clamped_ = clamped_ && (step < 1 || left_ < 0.25 * g.norm());
       x = std::move(trial);
       return true;
     }
@@ -433,26 +438,35 @@ class NewtonPass final : public Pass<double> {
     return out;
   }
 
-  /// The forces become what acts at p.x; what has newly come inside is held from now on, at first
-  /// by what its own inertia asks for. Whether a force changed by more than rounding.
+  /// The forces become what acts at p.x, if the gradient that is left is less; what has
+  /// newly come inside is held from now on, at first by what its own inertia asks for. Whether a
+  /// force changes by more than rounding.
   bool update_contacts(const Particles<double>& p, double h) {
     contacts_->find(p, touching_);
-    double change = 0;
+    acting_.clear();
+    double change2 = 0;
     for (const TouchingVertex& at : touching_) {
       ContactForce& held = contacts_->force(at.vertex, at.collider);
-      const Vec3 before = at.total(held), x = p.x[at.vertex];
+      const Vec3 x = p.x[at.vertex];
       const double gap = at.gap(x);
+      ContactForce now = held;
       if (!held.holds()) {
-        held = {std::max(0.0, -gap) / (p.w[at.vertex] * h * h), Vec3::Zero()};
+        held.push = now.push = std::max(0.0, -gap) / (p.w[at.vertex] * h * h);
+        change2 += now.push * now.push;
       } else {
         const double k = contact_stiffness_[at.vertex];
-        held.push = std::max(0.0, held.push - k * gap);
-        held.rub -= k * at.slip(x);
-        const double length = held.rub.norm(), most = at.friction * held.push;
-        if (length > most) held.rub *= most / length;
+        now.push = std::max(0.0, held.push - k * gap);
+        now.rub -= k * at.slip(x);
+        const double length = now.rub.norm(), most = at.friction * now.push;
+        if (length > most) now.rub *= most / length;
+        change2 += (at.total(now) - at.total(held)).squaredNorm();
       }
-      change = std::max(change, (at.total(held) - before).norm());
+      acting_.push_back(now);
     }
+    const double change = std::sqrt(change2);
+    if (left_ <= kSettled * change)
+      for (std::size_t c = 0; c < acting_.size(); ++c)
+        contacts_->force(touching_[c].vertex, touching_[c].collider) = acting_[c];
     return change > enough_;
   }
 
@@ -568,6 +582,8 @@ class NewtonPass final : public Pass<double> {
   std::vector<double> stiffness_;          ///< N/m, of all links and bending at each vertex
   std::unique_ptr<Contacts> contacts_;     ///< null: none
   std::vector<TouchingVertex> touching_;   ///< of this iteration
+  std::vector<ContactForce> acting_;       ///< [touching]
+  double left_ = 0;                        ///< N, the gradient after the last Newton step
   std::vector<double> contact_stiffness_;  ///< [n] N/m, k; empty: no contact
   bool clamped_ = true, first_ = true;
   double enough_ = 0, enough_at_first_ = 0;  ///< N, of |g| in this substep
@@ -576,8 +592,10 @@ class NewtonPass final : public Pass<double> {
 };
 
 loop::Links<double> links(const loop::Setup& s) {
-  return {
-      .layout = Layout::packed(s.w.size()), .pass = std::make_unique<NewtonPass>(s), .bends = true};
+  return {.layout = Layout::packed(s.w.size()),
+          .pass = std::make_unique<NewtonPass>(s),
+          .bends = true,
+          .contacts = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

@@ -37,9 +37,10 @@ Simd simd_of(const Params& params) {
   return widest();
 }
 
-ContactSettings contact_settings(const Params& params) {
+ContactSettings contact_settings(const Params& params, bool solved) {
   return {.response = params.one_of("contact", kResponses),
           .faces = params.is("faces", "on"),
+          .solved = solved,
           .self = params.one_of("self", kSelfCollision),
           .simd = simd_of(params)};
 }
@@ -119,7 +120,8 @@ class Loop final : public Solver {
     if (links.pass) constraints_.push_back(std::move(links.pass));
     if (scene.bending && !links.bends) constraints_.push_back(make_bending_pass<Real>(scene, w));
     pins_ = Pins(scene, *p_.layout);
-    contact_ = make_contact<Real>(scene, *p_.layout, contact_settings(params), pool_);
+    contact_ =
+        make_contact<Real>(scene, *p_.layout, contact_settings(params, links.contacts), pool_);
   }
 
   /// The published TimeStep(), substeps times with dt / substeps.

@@ -41,7 +41,8 @@
 ///     a pin is where it has to be at t + h.
 ///  3. begin(): y and x_t are there to be kept; multipliers are set to zero, or kept.
 ///  4. `iterations` times: apply() moves p.x once towards the links' lengths, then contact with
-///     friction puts out what is inside colliders. apply() finds p.x as contact left it.
+///     friction puts out what is inside colliders. apply() finds p.x as contact left it. With
+///     Links::contacts it does so once, after the last iteration.
 ///     In between the loop projects the scene's bending, unless Links::bends (make_bending_pass).
 ///  5. end(): after the last iteration. To move p.x without a change of velocity, move p.previous
 ///     by as much.
@@ -69,6 +70,7 @@ struct Links {
   std::unique_ptr<Pass<Real>> pass = nullptr;       ///< null: no link can move
   bool accelerates = false;                         ///< `pass` does, and p.a is there
   bool bends = false;                               ///< `pass` takes the scene's bending
+  bool contacts = false;                            ///< `pass` has Contacts
   std::vector<std::unique_ptr<Pass<Real>>> coarse;  ///< accelerators of `pass`
   Projection tethers = Projection::exact;
 };

@@ -151,7 +151,8 @@ loop::Links<double> links(const loop::Setup& s) {
   return {.layout = Layout::packed(s.w.size()),
           .pass = with_chebyshev<double>(std::make_unique<ProjectivePass>(s),
                                          s.params.real("chebyshev"), s.w.size(), s.pool),
-          .bends = true};
+          .bends = true,
+          .contacts = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

@@ -66,7 +66,8 @@ loop::Links<Real> links(const loop::Setup& s) {
   return {
       .layout = std::move(layout),
       .pass = with_chebyshev<Real>(std::move(pass), s.params.real("chebyshev"), s.w.size(), s.pool),
-      .bends = true};
+      .bends = true,
+      .contacts = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

@@ -196,12 +196,13 @@ void add_response(const Collider& collider, const Scene& scene, const Layout& la
     return std::make_unique<CollidePass<Real>>(collider, scene, layout, continuous, settings.simd,
                                                pool);
   };
+  auto& swept = settings.solved ? passes.after : passes.sweep;
   switch (settings.response) {
     case Response::continuous:
-      passes.sweep.push_back(project(true));
+      swept.push_back(project(true));
       break;
     case Response::discrete:
-      passes.sweep.push_back(project(false));
+      swept.push_back(project(false));
       break;
     case Response::before:
       passes.before.push_back(project(false));

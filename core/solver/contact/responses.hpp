@@ -23,7 +23,8 @@ enum class SelfCollisionMethod { grid, octree, off };
 
 struct ContactSettings {
   Response response = Response::continuous;
-  bool faces = false;  ///< faces are kept out, too, not only vertices
+  bool faces = false;   ///< faces are kept out, too, not only vertices
+  bool solved = false;  ///< what the links' solver does in every sweep (Contacts) ends with once
   SelfCollisionMethod self = SelfCollisionMethod::grid;
   Simd simd = Simd::scalar;
 };

@@ -91,7 +91,7 @@ struct Converged {
 };
 
 TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
-  const std::vector<Converged> solvers{{"implicit", 1, 400},
+  const std::vector<Converged> solvers{{"implicit", 1, 100},
                                        {"pd", 10, 20000},
                                        {"vbd", 10, 20000},
                                        {"admm:links=elastic", 10, 20000}};
