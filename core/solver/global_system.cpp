@@ -33,6 +33,7 @@ struct GlobalSystem::Factor {
   void select_rows(const std::vector<int>& wanted) {
     if (wanted == rows) return;
     rows = wanted;
+    coupled.compliance_changed();
     const auto n = static_cast<Eigen::Index>(rows.size());
     compliance.resize(n, n);
     for (Eigen::Index c = 0; c < n; ++c) {
@@ -95,6 +96,7 @@ void GlobalSystem::begin(const Particles<double>& p, double t, double h) {
   if (contacts_) {
     contacts_->begin(t, h);
     contacts_->predict_new(p, h);
+    factor_->coupled.begin();
   }
   if (bending_.empty()) return;
   auto& bends = factor_->bends;

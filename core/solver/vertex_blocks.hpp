@@ -75,7 +75,7 @@ class VertexBlocks {
     if (!contacts_) return;
     if (before_.empty()) before_ = p.x;
     contacts_->begin(t, h);
-    contacts_->predict(p, y_, h);
+    contacts_->predict(p, h);
   }
 
   /// damping: k_d [s] of the springs.

@@ -83,10 +83,7 @@ Contacts::Contacts(const Scene& scene, bool continuous)
 }
 Contacts::~Contacts() = default;
 
-void Contacts::restart() {
-  forces_.assign(forces_.size(), {});
-  y_.clear();
-}
+void Contacts::restart() { forces_.assign(forces_.size(), {}); }
 
 void Contacts::begin(double t, double h) {
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
@@ -119,25 +116,15 @@ void Contacts::find(const Particles<double>& p, std::vector<TouchingVertex>& all
   }
 }
 
-bool Contacts::holds(std::size_t vertex) const {
-  const auto first = forces_.begin() + static_cast<std::ptrdiff_t>(vertex * surfaces_.size());
-  return std::any_of(first, first + static_cast<std::ptrdiff_t>(surfaces_.size()),
-                     [](const ContactForce& f) { return f.holds(); });
-}
-
 template <class Real>
-void Contacts::predict(Particles<Real>& p, const Points<Real>& y, double h) {
-  const bool first = y_.empty();
-  y_.resize(p.size());
+void Contacts::predict(Particles<Real>& p, double h) {
   TouchingVertex at;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vec3 before = std::exchange(y_[i], y[i].template cast<double>());
     if (p.w[i] == 0) continue;
     const Vec3 previous = p.previous[i].template cast<double>();
     const IsotropicCompliance free{static_cast<double>(p.w[i]) * h * h};
     bool touching = false;
-    Vec3 x = y_[i];
-    if (!first && holds(i)) x += previous - before;
+    Vec3 x = p.x[i].template cast<double>();
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
       if (!touches(i, k, x, previous, at)) continue;
       touching = true;
@@ -146,8 +133,8 @@ void Contacts::predict(Particles<Real>& p, const Points<Real>& y, double h) {
     if (touching) p.x.set(i, x.cast<Real>());
   }
 }
-template void Contacts::predict(Particles<float>&, const Points<float>&, double);
-template void Contacts::predict(Particles<double>&, const Points<double>&, double);
+template void Contacts::predict(Particles<float>&, double);
+template void Contacts::predict(Particles<double>&, double);
 
 void Contacts::predict_new(const Particles<double>& p, double h) {
   TouchingVertex at;

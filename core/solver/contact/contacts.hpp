@@ -115,11 +115,11 @@ class Contacts {
   /// All that touch, of vertices that move.
   void find(const Particles<double>& p, std::vector<TouchingVertex>&);
 
-  /// Where sweeps start. What begins to touch moves from y [m] out of the collider and against its
-  /// slip as if it had no link, which is all there is to a sheet that lands flat; what was held
-  /// ends as far from y as in the last substep, which is all there is to one that rests or slides.
+  /// Where sweeps start: what touches at p.x moves out of the collider and against its slip as if
+  /// it had no link, which is all there is to a sheet that lands flat. Forces that hold it already
+  /// stay as they are where there is no gap and no slip.
   template <class Real>
-  void predict(Particles<Real>& p, const Points<Real>& y, double h);
+  void predict(Particles<Real>& p, double h);
   /// The forces of what newly touches as if it had no link; p.x is y, and stays.
   void predict_new(const Particles<double>& p, double h);
 
@@ -131,15 +131,11 @@ class Contacts {
   void settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian, const Vec3& previous,
                      Vec3& x);
 
-  std::size_t bytes() const {
-    return forces_.size() * sizeof(ContactForce) + y_.size() * sizeof(Vec3);
-  }
+  std::size_t bytes() const { return forces_.size() * sizeof(ContactForce); }
 
  private:
   std::vector<std::unique_ptr<Surface>> surfaces_;
-  bool holds(std::size_t vertex) const;  ///< any collider does
-  std::vector<ContactForce> forces_;     ///< [vertex][collider]
-  std::vector<Vec3> y_;                  ///< m, of the last predict(); empty: there was none
+  std::vector<ContactForce> forces_;  ///< [vertex][collider]
 };
 
 /// Null where there is no collider or the response is another one than to put out in every sweep.

@@ -1,9 +1,8 @@
 #include "core/solver/contact/coupled_contacts.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace taut {
 
@@ -15,10 +14,12 @@ using Eigen::MatrixXd;
 /// Rounds at most; sweeps after them, and where they led nowhere.
 constexpr int kRounds = 4, kSweeps = 2, kSweepsAlone = 30;
 constexpr double kEnough = 1e-12;  ///< of coordinates, of gaps and slips
-/// Beyond so many contacts a round, whose cost grows with their cube, is dearer than many
-/// iterations of the links: then sweeps alone, a few an iteration, go on from the forces of the
-/// last.
-constexpr std::size_t kRoundsPay = 160;
+/// Beyond kMany contacts a matrix, whose factor costs their cube, is dearer than many iterations of
+/// the links: kFactors are made in a substep, and rounds that need another one are left out.
+/// Beyond kTooMany there are sweeps alone, from the forces of the last iteration on; where a cloth
+/// lies on so many it does not come to rest altogether (results/benchmarks/contact-rests.md).
+constexpr std::size_t kMany = 160, kTooMany = 700;
+constexpr int kFactors = 16;
 constexpr int kSweepsOfMany = 2;
 
 MatrixXd part(const MatrixXd& matrix, const std::vector<Index>& rows,
@@ -48,7 +49,8 @@ CoupledContacts::Rows CoupledContacts::resolve(
     std::vector<ContactForce> forces;
     Rows x, change;
   } best;
-  const int rounds = at.size() <= kRoundsPay ? kRounds : 0;
+  const bool many = at.size() > kMany;
+  const int rounds = at.size() <= kTooMany ? kRounds : 0;
   for (int round = 0; round <= rounds; ++round) {
     double away = 0;
     bool same = round > 0;
@@ -64,12 +66,16 @@ CoupledContacts::Rows CoupledContacts::resolve(
     }
     if (away <= enough) return change;
     if (same || round == rounds) break;
+    if (const Sets sets = sets_of(trials); !factored_ || sets != factored_->sets) {
+      if (many && factored_in_substep_++ >= kFactors) break;
+      factor(sets);
+    }
     solve(trials, x, change);
   }
   for (std::size_t c = 0; c < at.size(); ++c) force(c) = best.forces[c];
   x = best.x;
   change = best.change;
-  const int sweeps = rounds == 0 ? kSweepsOfMany : best.round > 0 ? kSweeps : kSweepsAlone;
+  const int sweeps = many ? kSweepsOfMany : best.round > 0 ? kSweeps : kSweepsAlone;
   for (int n = 0; n < sweeps; ++n) sweep(x, change);
   return change;
 }
@@ -94,57 +100,73 @@ CoupledContacts::Trial CoupledContacts::trial(std::size_t c, const Rows& x) cons
   return out;
 }
 
-/// With G of the sticking S and the sliding L, whose forces are d f, and u what is without them:
-///
-///     G_SS F_S + G_SL d f = target_S - u_S,        n . (G_LS F_S + G_LL d f) = offset_L - n . u_L
-void CoupledContacts::solve(const std::vector<Trial>& trials, Rows& x, Rows& change) {
+CoupledContacts::Sets CoupledContacts::sets_of(const std::vector<Trial>& trials) const {
+  Sets sets;
+  for (std::size_t c = 0; c < trials.size(); ++c) {
+    if (trials[c].state == State::sticking) sets.sticking.push_back(place_[c]);
+    if (trials[c].state != State::sliding) continue;
+    sets.sliding.push_back(place_[c]);
+    sets.normals.push_back(at_[c].normal);
+    sets.directions.push_back(trials[c].direction);
+  }
+  return sets;
+}
+
+// With G of the sticking S and the sliding L, whose forces are d f, and u what is without them:
+//
+//     G_SS F_S + G_SL d f = target_S - u_S,        n . (G_LS F_S + G_LL d f) = offset_L - n . u_L
+
+void CoupledContacts::factor(const Sets& sets) {
   const MatrixXd& g = *compliance_;
+  MatrixXd g_ss = part(g, sets.sticking, sets.sticking), g_ll = part(g, sets.sliding, sets.sliding);
+  const MatrixXd g_sl = part(g, sets.sticking, sets.sliding);
+  // A vertex that two colliders hold has two forces, which its place does not tell apart.
+  constexpr double kApart = 1e-9;
+  g_ss.diagonal() *= 1 + kApart;
+  Eigen::LLT<MatrixXd> stuck(g_ss);
+  MatrixXd across = stuck.solve(g_sl);
+  g_ll -= g_sl.transpose() * across;
+  for (Index k = 0; k < g_ll.rows(); ++k) {
+    for (Index m = 0; m < g_ll.cols(); ++m)
+      g_ll(k, m) *= sets.normals[static_cast<std::size_t>(k)].dot(
+          sets.directions[static_cast<std::size_t>(m)]);
+    g_ll(k, k) *= 1 + kApart;
+  }
+  factored_ = {sets, std::move(stuck), std::move(across), Eigen::PartialPivLU<MatrixXd>(g_ll)};
+}
+
+/// With the factors of these trials' sets.
+void CoupledContacts::solve(const std::vector<Trial>& trials, Rows& x, Rows& change) {
+  const auto& [sets, stuck, across, slide] = *factored_;
   std::vector<std::size_t> sticking, sliding;
-  std::vector<Index> s, l;
   Rows total = Rows::Zero(x.rows(), 3);
   for (std::size_t c = 0; c < at_.size(); ++c) {
     ContactForce& force = (*force_)(c);
     total.row(place_[c]) -= at_[c].total(force).transpose();
     if (trials[c].state == State::open) force = {};
-    if (trials[c].state == State::sticking) {
-      sticking.push_back(c);
-      s.push_back(place_[c]);
-    }
-    if (trials[c].state == State::sliding) {
-      sliding.push_back(c);
-      l.push_back(place_[c]);
-    }
+    if (trials[c].state == State::sticking) sticking.push_back(c);
+    if (trials[c].state == State::sliding) sliding.push_back(c);
   }
-  const Rows free = x + g * total;
-  // A vertex that two colliders hold has two forces, which its place does not tell apart.
-  constexpr double kApart = 1e-9;
-  Rows wanted(s.size(), 3);
+  const Rows free = x + *compliance_ * total;
+  Rows wanted(sticking.size(), 3);
   for (Index k = 0; k < wanted.rows(); ++k) {
     const TouchingVertex& at = at_[sticking[static_cast<std::size_t>(k)]];
     const Vec3 target = at.from - at.gap(at.from) * at.normal;
-    wanted.row(k) = target.transpose() - free.row(s[static_cast<std::size_t>(k)]);
+    wanted.row(k) = target.transpose() - free.row(sets.sticking[static_cast<std::size_t>(k)]);
   }
-  MatrixXd g_ss = part(g, s, s), g_ll = part(g, l, l);
-  const MatrixXd g_sl = part(g, s, l);
-  g_ss.diagonal() *= 1 + kApart;
-  const Eigen::LLT<MatrixXd> stuck(g_ss);
-  const MatrixXd across = stuck.solve(g_sl);  // G_SS^-1 G_SL
-  g_ll -= g_sl.transpose() * across;
   const Rows pulled = across.transpose() * wanted;
-  Eigen::VectorXd right(l.size());
+  Eigen::VectorXd right(sliding.size());
   for (Index k = 0; k < right.size(); ++k) {
-    const TouchingVertex& at = at_[sliding[static_cast<std::size_t>(k)]];
-    right[k] = -at.gap((free.row(l[static_cast<std::size_t>(k)]) + pulled.row(k)).transpose());
-    for (Index m = 0; m < right.size(); ++m)
-      g_ll(k, m) *= at.normal.dot(trials[sliding[static_cast<std::size_t>(m)]].direction);
-    g_ll(k, k) *= 1 + kApart;
+    const Index place = sets.sliding[static_cast<std::size_t>(k)];
+    right[k] = -at_[sliding[static_cast<std::size_t>(k)]].gap(
+        (free.row(place) + pulled.row(k)).transpose());
   }
-  const Eigen::VectorXd push = g_ll.partialPivLu().solve(right);
-  Rows slides(l.size(), 3);
+  const Eigen::VectorXd push = slide.solve(right);
+  Rows slides(sliding.size(), 3);
   for (Index k = 0; k < push.size(); ++k) {
     const std::size_t c = sliding[static_cast<std::size_t>(k)];
     ContactForce& force = (*force_)(c);
-    force.push = std::max(0.0, push[k]);
+    force.push = push[k];
     force.rub = force.push * (trials[c].direction - at_[c].normal);
     slides.row(k) = at_[c].total(force).transpose();
   }
@@ -153,14 +175,12 @@ void CoupledContacts::solve(const std::vector<Trial>& trials, Rows& x, Rows& cha
     const std::size_t c = sticking[static_cast<std::size_t>(k)];
     const Vec3 f = holds.row(k).transpose();
     ContactForce& force = (*force_)(c);
-    force = {std::max(0.0, at_[c].normal.dot(f)), at_[c].across(f)};
-    const double length = force.rub.norm(), most = at_[c].friction * force.push;
-    if (length > most) force.rub *= most / length;
+    force = {at_[c].normal.dot(f), at_[c].across(f)};
   }
   for (std::size_t c = 0; c < at_.size(); ++c)
     total.row(place_[c]) += at_[c].total((*force_)(c)).transpose();
   change += total;
-  x += g * total;
+  x += *compliance_ * total;
 }
 
 void CoupledContacts::sweep(Rows& x, Rows& change) {

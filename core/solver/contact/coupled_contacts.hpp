@@ -1,7 +1,10 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +25,9 @@ class CoupledContacts {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
+  void begin() { factored_in_substep_ = 0; }        ///< a substep
+  void compliance_changed() { factored_.reset(); }  ///< it is another matrix from now on
+
   /// Of the contacts `at`, contact c of vertex `place[c]` of G, with the force force(c). Changes
   /// the forces and moves x [places] m; returns the sums of the changes [places] N.
   Rows resolve(const Eigen::MatrixXd& compliance, std::span<const TouchingVertex> at,
@@ -36,9 +42,25 @@ class CoupledContacts {
     double away = 0;                ///< m, from the conditions of contact
   };
   Trial trial(std::size_t contact, const Rows& x) const;
+  /// The places of those that stick and slide, and what their matrices rest on.
+  struct Sets {
+    std::vector<Eigen::Index> sticking, sliding;
+    std::vector<Vec3> normals, directions;  ///< of those that slide
+    bool operator==(const Sets&) const = default;
+  };
+  Sets sets_of(const std::vector<Trial>&) const;
+  void factor(const Sets&);
   void solve(const std::vector<Trial>&, Rows& x, Rows& change);
   void sweep(Rows& x, Rows& change);
 
+  struct Factored {
+    Sets sets;
+    Eigen::LLT<Eigen::MatrixXd> sticking;  ///< G_SS
+    Eigen::MatrixXd across;                ///< G_SS^-1 G_SL
+    Eigen::PartialPivLU<Eigen::MatrixXd> sliding;
+  };
+  std::optional<Factored> factored_;
+  int factored_in_substep_ = 0;
   const Eigen::MatrixXd* compliance_ = nullptr;
   std::span<const TouchingVertex> at_;
   std::span<const Eigen::Index> place_;
