@@ -259,8 +259,13 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {
-    {"precision", "float|double"}, {"reorder", "off|on"}, {"faces", "on|off"}};
+/// As Jakobsen's omega, order and what keeps cloth outside.
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
+                                                        {"reorder", "off|on"},
+                                                        {"faces", "on|off"},
+                                                        {"stiffness", "1.2|1.4|1.6"},
+                                                        {"order", "contacts-first|links-first"},
+                                                        {"hardness", "0.1|0.4|1"}};
 
 constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", "on", "off", true}};
 
@@ -275,17 +280,19 @@ LinearModel linear_model(const Scene& scene, const Params& params) {
 }  // namespace
 }  // namespace taut::solver::bullet_soft_body
 
-TAUT_SOLVER(bullet) = {.name = "bullet",
-                       .summary = "Bullet's btSoftBody, Positions solver",
-                       .source = "Bullet Physics 3.24, btSoftRigidDynamicsWorld",
-                       .params = taut::solver::bullet_soft_body::kParams,
-                       .make = taut::solver::bullet_soft_body::make,
-                       .unsupported = taut::solver::bullet_soft_body::unsupported,
-                       .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
-                       .program = taut::bullet_ref::program,
-                       .accuracy = {.substeps = "substeps",
-                                    .sweeps = "iterations",
-                                    .alternatives = taut::solver::bullet_soft_body::kAlternatives,
-                                    .labelled = "substeps|iterations|stiffness|order|precision"},
-                       .optional_effects = taut::solver::bullet_soft_body::kOptionalEffects,
-                       .linear_model = taut::solver::bullet_soft_body::linear_model};
+TAUT_SOLVER(bullet) = {
+    .name = "bullet",
+    .summary = "Bullet's btSoftBody, Positions solver",
+    .source = "Bullet Physics 3.24, btSoftRigidDynamicsWorld",
+    .params = taut::solver::bullet_soft_body::kParams,
+    .make = taut::solver::bullet_soft_body::make,
+    .unsupported = taut::solver::bullet_soft_body::unsupported,
+    .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
+    .program = taut::bullet_ref::program,
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .alternatives = taut::solver::bullet_soft_body::kAlternatives,
+                 .labelled = "substeps|iterations|stiffness|order|hardness|precision",
+                 .accelerators = "stiffness"},
+    .optional_effects = taut::solver::bullet_soft_body::kOptionalEffects,
+    .linear_model = taut::solver::bullet_soft_body::linear_model};

@@ -31,6 +31,7 @@ constexpr ParamSpec kOwn[] = {
                     "k, the weight of rigid links; of springs it is their stiffness times "
                     "penalty-ratio"),
     ParamSpec::real("penalty-ratio", "", "1", 1e-6, 1e6, "k / K of springs"),
+    kGlobalPrecision,
     ParamSpec::choice("multipliers", "reset", "reset|keep", "at the beginning of a substep"),
 };
 constexpr auto kParams = loop::with_common(kOwn);
@@ -39,43 +40,49 @@ bool is_rigid(const Scene& scene, const Params& params) {
   return params.is("links", "rigid") && !takes_stiffness(scene, params);
 }
 
-class AdmmPass final : public Pass<double> {
+template <class Real>
+class AdmmPass final : public Pass<Real> {
  public:
   explicit AdmmPass(const loop::Setup& s)
       : keep_(s.params.is("multipliers", "keep")),
+        forces_(kernels<Real>(s.simd).multiplier_forces),
         system_(s, weights(s, ratios_)),
-        u_(system_.springs().size(), Vec3::Zero()),
-        wanted_(u_.size()) {}
+        slots_(system_.template make_slots<MultiplierSlot<Real>>(
+            [&](MultiplierSlot<Real>& slot, std::size_t lane, std::size_t link) {
+              slot.share[lane] = static_cast<Real>(1 / (1 + ratios_[link]));
+            })) {
+    forget();
+  }
+
+  const Layout& layout() const { return system_.layout(); }
 
   void restart() override {
     system_.restart();
-    u_.assign(u_.size(), Vec3::Zero());
+    forget();
   }
 
-  void begin(Particles<double>& p, double t, double h) override {
+  void begin(Particles<Real>& p, double t, double h) override {
     system_.begin(p, t, h);
-    if (!keep_) u_.assign(u_.size(), Vec3::Zero());
+    if (!keep_) forget();
   }
 
-  void apply(Particles<double>& p, double, double) override {
-    for (std::size_t j = 0; j < u_.size(); ++j) {
-      const auto& [a, b, rest, k] = system_.springs()[j];
-      const Vec3 sum = p.x[b] - p.x[a] + u_[j];
-      const double length = sum.norm();
-      // (K r + k |p|)/(K + k) with the ratio k/K, 0 of rigid links
-      const double to = (rest + ratios_[j] * length) / (1 + ratios_[j]);
-      const Vec3 z = length > 0 ? Vec3(to / length * sum) : Vec3(Vec3::Zero());
-      u_[j] = sum - z;
-      wanted_[j] = z - u_[j];
-    }
-    system_.solve(wanted_, p);
+  void apply(Particles<Real>& p, double, double) override {
+    system_.solve(p, [this](const ForceSweep<Real>& sweep, std::size_t begin, std::size_t end) {
+      forces_(sweep, slots_.data(), begin, end);
+    });
   }
 
   std::vector<PassCost> cost() const override {
-    return system_.cost("links", u_.size() * (2 * sizeof(Vec3) + sizeof(double)));
+    return system_.cost("links",
+                        slots_.size() * sizeof slots_[0] + ratios_.size() * sizeof(double));
   }
 
  private:
+  void forget() {
+    for (MultiplierSlot<Real>& slot : slots_)
+      for (auto& coordinates : slot.multiplier) std::ranges::fill(coordinates, Real(0));
+  }
+
   /// The links with k in the place of K, and k/K of each.
   static std::vector<Spring> weights(const loop::Setup& s, std::vector<double>& ratios) {
     constexpr double kHard = std::numeric_limits<double>::infinity();
@@ -93,35 +100,35 @@ class AdmmPass final : public Pass<double> {
   }
 
   bool keep_;
+  void (*forces_)(const ForceSweep<Real>&, MultiplierSlot<Real>*, std::size_t, std::size_t);
   std::vector<double> ratios_;
-  GlobalSystem system_;
-  std::vector<Vec3> u_;       ///< m, scaled multipliers
-  std::vector<Vec3> wanted_;  ///< m, z - u
+  GlobalSystem<Real> system_;
+  std::vector<MultiplierSlot<Real>> slots_;
 };
 
-loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()),
-          .pass = std::make_unique<AdmmPass>(s),
-          .bends = true,
-          .contacts = true};
+template <class Real>
+loop::Links<Real> links(const loop::Setup& s) {
+  auto pass = std::make_unique<AdmmPass<Real>>(s);
+  Layout layout = pass->layout();
+  return {.layout = std::move(layout), .pass = std::move(pass), .bends = true, .contacts = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
-  return loop::make<double>(scene, params, links);
+  return loop::make(scene, params, links<float>, links<double>);
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const ResolvedSettings own{
       {"links", is_rigid(scene, params) ? "rigid" : describe_springs(scene, params)},
       {"links solved",
-       "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
+       "all at once by a sparse LDLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};
   return loop::resolved_settings(scene, params, own, "constant terms of the factored system",
                                  loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"penalty", "30|100|300"},
-                                                        {"multipliers", "reset|keep"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {
+    {"penalty", "30|100|300"}, {"multipliers", "reset|keep"}, {"precision", "double|float"}};
 
 }  // namespace
 }  // namespace taut::solver::admm
@@ -138,4 +145,4 @@ TAUT_SOLVER(admm) = {
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .alternatives = taut::solver::admm::kAlternatives,
-                 .labelled = "substeps|iterations|penalty|multipliers"}};
+                 .labelled = "substeps|iterations|penalty|multipliers|precision"}};

@@ -1,7 +1,9 @@
 #include "core/solver/global_system.hpp"
 
-#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/solver/contact/coupled_contacts.hpp"
 
@@ -10,183 +12,255 @@ namespace taut {
 namespace {
 
 using Rows = CoupledContacts::Rows;
+
+/// The unknowns, which are the vertices that move; -1: a pin.
+std::vector<int> unknown_of_vertices(std::span<const double> w) {
+  std::vector<int> unknown(w.size(), -1);
+  int next = 0;
+  for (std::size_t i = 0; i < w.size(); ++i)
+    if (w[i] > 0) unknown[i] = next++;
+  return unknown;
+}
+
+PanelFactor make_factor(std::span<const double> w, const std::vector<Spring>& springs,
+                        const std::vector<BendingElement>& bending, Simd simd) {
+  const std::vector<int> unknown = unknown_of_vertices(w);
+  std::vector<PanelFactor::Pair> pairs;
+  const auto add = [&](std::size_t a, std::size_t b) {
+    if (unknown[a] >= 0 && unknown[b] >= 0) pairs.push_back({unknown[a], unknown[b]});
+  };
+  for (const Spring& s : springs) add(s.a, s.b);
+  for (const BendingElement& e : bending)
+    for (std::size_t i = 0; i < e.size; ++i)
+      for (std::size_t j = 0; j < i; ++j) add(to_index(e.vertex[i]), to_index(e.vertex[j]));
+  const auto moving =
+      static_cast<std::size_t>(std::ranges::count_if(w, [](double m) { return m > 0; }));
+  return PanelFactor(moving, pairs, 1, simd);
+}
+
+/// Vertices in the order of elimination.
+std::vector<int> vertices_in_order(const PanelFactor& factor, std::span<const double> w) {
+  std::vector<int> moving, order;
+  for (std::size_t i = 0; i < w.size(); ++i)
+    if (w[i] > 0) moving.push_back(static_cast<int>(i));
+  for (const int unknown : factor.order()) order.push_back(moving[to_index(unknown)]);
+  return order;
+}
+
 }  // namespace
 
-struct GlobalSystem::Factor {
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> llt;
-  Rows bends;  ///< N, of bending at y; empty: none
-  Rows held;   ///< N, forces of contact in the last solution; empty: no contact
-
-  /// Column r of the inverse [m/N].
-  const Eigen::VectorXd& inverse_column(int r) {
-    Eigen::VectorXd& column = inverse[to_index(r)];
-    if (column.size() == 0)
-      column = llt.solve(Eigen::VectorXd::Unit(static_cast<Eigen::Index>(inverse.size()), r));
-    return column;
-  }
-  std::vector<Eigen::VectorXd> inverse;  ///< [rows] empty: not needed yet
-
+template <class Real>
+struct GlobalSystem<Real>::Contact {
+  std::unique_ptr<Contacts> contacts;
+  std::vector<TouchingVertex> touching;  ///< of this iteration
+  Rows held;                             ///< N, forces in the last solution
   CoupledContacts coupled;
+  std::vector<Eigen::VectorXd> inverse;  ///< [rows] m/N, columns; empty: not needed yet
   /// What a force at each of these rows moves the others by [m/N].
   Eigen::MatrixXd compliance;
   std::vector<int> rows;
-  void select_rows(const std::vector<int>& wanted) {
+
+  void forget(std::size_t n) {
+    inverse.assign(n, {});
+    rows.clear();
+  }
+
+  /// Solves for the columns of the inverse that are missing, four at a time.
+  void find_columns(const PanelFactor& factor, const std::vector<int>& wanted) {
+    std::vector<int> missing;
+    for (const int r : wanted)
+      if (inverse[to_index(r)].size() == 0) missing.push_back(r);
+    const std::size_t n = inverse.size();
+    std::vector<double, CacheLineAllocator<double>> four;
+    for (std::size_t first = 0; first < missing.size(); first += 4) {
+      const std::size_t count = std::min<std::size_t>(4, missing.size() - first);
+      four.assign(4 * n, 0.0);
+      for (std::size_t k = 0; k < count; ++k) four[4 * to_index(missing[first + k]) + k] = 1;
+      factor.solve_four(four.data());
+      for (std::size_t k = 0; k < count; ++k) {
+        Eigen::VectorXd& column = inverse[to_index(missing[first + k])];
+        column.resize(static_cast<Eigen::Index>(n));
+        for (std::size_t i = 0; i < n; ++i) column[static_cast<Eigen::Index>(i)] = four[4 * i + k];
+      }
+    }
+  }
+
+  void select_rows(const PanelFactor& factor, const std::vector<int>& wanted) {
     if (wanted == rows) return;
     rows = wanted;
+    find_columns(factor, rows);
     coupled.compliance_changed();
     const auto n = static_cast<Eigen::Index>(rows.size());
     compliance.resize(n, n);
     for (Eigen::Index c = 0; c < n; ++c) {
-      const Eigen::VectorXd& column = inverse_column(rows[static_cast<std::size_t>(c)]);
+      const Eigen::VectorXd& column = inverse[to_index(rows[static_cast<std::size_t>(c)])];
       for (Eigen::Index r = 0; r < n; ++r)
         compliance(r, c) = column[rows[static_cast<std::size_t>(r)]];
     }
   }
 };
 
-GlobalSystem::GlobalSystem(const loop::Setup& s, std::vector<Spring> springs)
+template <class Real>
+GlobalSystem<Real>::GlobalSystem(const loop::Setup& s, std::vector<Spring> springs)
     : springs_(std::move(springs)),
       bending_(make_bending(s.scene)),
+      ends_(ends_of(springs_, s.w.size())),
+      factor_(make_factor(s.w, springs_, bending_, s.simd)),
+      groups_(ends_, vertices_in_order(factor_, s.w), s.w),
       row_(s.w.size(), -1),
-      contacts_(make_contacts(s.scene, s.params)),
-      factor_(std::make_unique<Factor>()) {
-  for (std::size_t i = 0; i < s.w.size(); ++i)
-    if (s.w[i] > 0) {
-      row_[i] = static_cast<int>(mass_.size());
-      mass_.push_back(1 / s.w[i]);
-    }
+      pool_(s.pool) {
+  const std::vector<int> order = vertices_in_order(factor_, s.w);
+  for (const int v : order) {
+    row_[to_index(v)] = static_cast<int>(mass_.size());
+    mass_.push_back(1 / s.w[to_index(v)]);
+  }
+  const auto layout = std::make_shared<const Layout>(groups_.layout());
+  y_ = Points<Real>(layout);
+  rows_ = Points<double>(layout);
+  if (auto contacts = make_contacts(s.scene, s.params)) {
+    contact_ = std::make_unique<Contact>();
+    contact_->contacts = std::move(contacts);
+  }
   factor(s.scene.dt / s.params.integer("substeps"));
 }
-GlobalSystem::~GlobalSystem() = default;
+template <class Real>
+GlobalSystem<Real>::~GlobalSystem() = default;
 
-void GlobalSystem::restart() {
-  if (contacts_) contacts_->restart();
+template <class Real>
+void GlobalSystem<Real>::restart() {
+  if (contact_) contact_->contacts->restart();
 }
 
-void GlobalSystem::factor(double h) {
+template <class Real>
+void GlobalSystem<Real>::factor(double h) {
   factored_for_ = h;
-  if (mass_.empty()) return;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int r = 0; r < static_cast<int>(mass_.size()); ++r)
-    entries.emplace_back(r, r, mass_[to_index(r)] / (h * h));
+  inertia_.assign(groups_.size() * kLanes, Real(0));
+  factor_.clear();
+  for (std::size_t r = 0; r < mass_.size(); ++r) {
+    inertia_[r] = static_cast<Real>(mass_[r] / (h * h));  // groups are full but for the last
+    *factor_.at(r, r) = mass_[r] / (h * h);
+  }
+  const auto add = [&](int row, int column, double k) {
+    if (row >= column && column >= 0) *factor_.at(to_index(row), to_index(column)) += k;
+  };
   for (const auto& [a, b, rest, k] : springs_) {
-    for (const int r : {row_[a], row_[b]})
-      if (r >= 0) entries.emplace_back(r, r, k);
-    if (row_[a] >= 0 && row_[b] >= 0)
-      entries.emplace_back(std::max(row_[a], row_[b]), std::min(row_[a], row_[b]), -k);
+    add(row_[a], row_[a], k);
+    add(row_[b], row_[b], k);
+    add(std::max(row_[a], row_[b]), std::min(row_[a], row_[b]), -k);
   }
   for (const BendingElement& e : bending_)
     for (std::size_t i = 0; i < e.size; ++i)
-      for (std::size_t j = 0; j < e.size; ++j) {
-        const int row = row_[to_index(e.vertex[i])], column = row_[to_index(e.vertex[j])];
-        if (row >= column && column >= 0)
-          entries.emplace_back(row, column, e.stiffness * e.weight[i] * e.weight[j]);
-      }
-  const auto n = static_cast<Eigen::Index>(mass_.size());
-  Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  factor_->llt.compute(matrix);
-  factor_->inverse.assign(mass_.size(), {});
-  factor_->rows.clear();
+      for (std::size_t j = 0; j < e.size; ++j)
+        add(row_[to_index(e.vertex[i])], row_[to_index(e.vertex[j])],
+            e.stiffness * e.weight[i] * e.weight[j]);
+  positive_ = factor_.factor();
+  if (contact_) contact_->forget(mass_.size());
 }
 
-void GlobalSystem::begin(const Particles<double>& p, double t, double h) {
+template <class Real>
+void GlobalSystem<Real>::begin(const Particles<Real>& p, double t, double h) {
   if (h != factored_for_) factor(h);
-  y_ = positions(p);
-  if (contacts_) {
-    contacts_->begin(t, h);
-    contacts_->predict_new(p, h);
-    factor_->coupled.begin();
-  }
-  if (bending_.empty()) return;
-  auto& bends = factor_->bends;
-  bends.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
-  for (const BendingElement& e : bending_) {
-    const Vec3 pull = -e.stiffness * e.value([&](std::size_t v) { return y_[v]; });
-    for (std::size_t i = 0; i < e.size; ++i)
-      if (const int r = row_[to_index(e.vertex[i])]; r >= 0) bends.row(r) += e.weight[i] * pull;
-  }
+  y_ = p.x;
+  if (!contact_) return;
+  contact_->contacts->begin(t, h);
+  contact_->contacts->predict_new(p, h);
+  contact_->coupled.begin();
 }
 
-void GlobalSystem::solve(std::span<const Vec3> q, Particles<double>& p) {
+/// rows_ holds the forces of inertia and links; bending and contact join them.
+template <class Real>
+void GlobalSystem<Real>::solve_rows(Particles<Real>& p) {
   if (mass_.empty()) return;
-  Rows right = factor_->bends;
-  if (bending_.empty()) right.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
-  for (std::size_t j = 0; j < springs_.size(); ++j) {
-    const auto& [a, b, rest, k] = springs_[j];
-    const Vec3 pull = k * (q[j] - (y_[b] - y_[a]));
-    if (row_[a] >= 0) right.row(row_[a]) -= pull;
-    if (row_[b] >= 0) right.row(row_[b]) += pull;
+  for (const BendingElement& e : bending_) {
+    const Vec3 pull =
+        -e.stiffness * e.value([&](std::size_t v) { return p.x[v]; }).template cast<double>();
+    for (std::size_t i = 0; i < e.size; ++i) rows_.add(to_index(e.vertex[i]), e.weight[i] * pull);
   }
-  if (contacts_) {
-    contacts_->find(p, touching_);
-    factor_->held.setZero(right.rows(), 3);
-    for (const TouchingVertex& at : touching_)
-      factor_->held.row(row_[at.vertex]) += at.total(contacts_->force(at.vertex, at.collider));
-    right += factor_->held;
+  if (contact_) {
+    Contacts& contacts = *contact_->contacts;
+    contacts.find(p, contact_->touching);
+    contact_->held.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
+    for (const TouchingVertex& at : contact_->touching) {
+      const Vec3 force = at.total(contacts.force(at.vertex, at.collider));
+      contact_->held.row(row_[at.vertex]) += force;
+      rows_.add(at.vertex, force);
+    }
   }
-  if (factor_->llt.info() == Eigen::Success)
-    right = factor_->llt.solve(right).eval();
-  else
-    right.setConstant(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < row_.size(); ++i)
-    if (row_[i] >= 0) p.x.set(i, y_[i] + right.row(row_[i]).transpose());
-  if (contacts_ && right.allFinite()) resolve_contacts(p);
+  if (!positive_) {
+    rows_.fill(std::numeric_limits<double>::quiet_NaN());
+    move(p);
+    return;
+  }
+  factor_.solve_four(rows_.data());
+  move(p);
+  const std::span<const double> all(rows_.data(), 4 * mass_.size());
+  if (contact_ && std::ranges::all_of(all, [](double x) { return std::isfinite(x); }))
+    resolve_contacts(p);
+}
+
+/// By rows_.
+template <class Real>
+void GlobalSystem<Real>::move(Particles<Real>& p) {
+  Real* const x = p.x.data();
+  const double* const by = rows_.data();
+  for (std::size_t i = 0; i < 4 * mass_.size(); ++i) x[i] += static_cast<Real>(by[i]);
 }
 
 /// p.x is the solution with the forces as they were.
-void GlobalSystem::resolve_contacts(Particles<double>& p) {
-  contacts_->find(p, touching_);
-  if (touching_.empty()) return;
+template <class Real>
+void GlobalSystem<Real>::resolve_contacts(Particles<Real>& p) {
+  Contacts& contacts = *contact_->contacts;
+  std::vector<TouchingVertex>& touching = contact_->touching;
+  contacts.find(p, touching);
+  if (touching.empty()) return;
   std::vector<int> rows;  // of vertices; several contacts of one lie beside each other
-  for (const TouchingVertex& at : touching_)
+  for (const TouchingVertex& at : touching)
     if (rows.empty() || rows.back() != row_[at.vertex]) rows.push_back(row_[at.vertex]);
-  factor_->select_rows(rows);
-  const Eigen::MatrixXd& compliance = factor_->compliance;
+  contact_->select_rows(factor_, rows);
+  const Eigen::MatrixXd& compliance = contact_->compliance;
   Rows x(compliance.rows(), 3), change(compliance.rows(), 3);
   std::vector<Eigen::Index> places;  // of each contact
   Eigen::Index place = -1;
-  for (const TouchingVertex& at : touching_) {
+  for (const TouchingVertex& at : touching) {
     const int row = row_[at.vertex];
     if (place < 0 || rows[static_cast<std::size_t>(place)] != row) {
       ++place;
-      x.row(place) = p.x[at.vertex].transpose();
-      change.row(place) = -factor_->held.row(row);  // normals have turned since
+      x.row(place) = p.x[at.vertex].template cast<double>().transpose();
+      change.row(place) = -contact_->held.row(row);  // normals have turned since
     }
-    change.row(place) += at.total(contacts_->force(at.vertex, at.collider));
+    change.row(place) += at.total(contacts.force(at.vertex, at.collider));
     places.push_back(place);
   }
   x += compliance * change;
-  change += factor_->coupled.resolve(
-      compliance, touching_, places,
+  change += contact_->coupled.resolve(
+      compliance, touching, places,
       [&](std::size_t c) -> ContactForce& {
-        return contacts_->force(touching_[c].vertex, touching_[c].collider);
+        return contacts.force(touching[c].vertex, touching[c].collider);
       },
       x);
   if (change.isZero(0)) return;
-  Rows right = Rows::Zero(static_cast<Eigen::Index>(mass_.size()), 3);
+  rows_.fill(0);
   for (std::size_t c = 0; c < rows.size(); ++c)
-    right.row(rows[c]) = change.row(static_cast<Eigen::Index>(c));
-  right = factor_->llt.solve(right).eval();
-  for (std::size_t i = 0; i < row_.size(); ++i)
-    if (row_[i] >= 0) p.x.add(i, right.row(row_[i]).transpose());
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      rows_.data()[4 * to_index(rows[c]) + static_cast<std::size_t>(axis)] =
+          change(static_cast<Eigen::Index>(c), axis);
+  factor_.solve_four(rows_.data());
+  move(p);
 }
 
-std::size_t GlobalSystem::factor_entries() const {
-  if (mass_.empty()) return 0;
-  return static_cast<std::size_t>(factor_->llt.matrixL().nestedExpression().nonZeros());
+template <class Real>
+std::vector<PassCost> GlobalSystem<Real>::cost(std::string_view local, std::size_t bytes) const {
+  return {{.pass = std::string(local),
+           .items = springs_.size(),
+           .bytes = springs_.size() * sizeof(Spring) + bytes},
+          {.pass = "global system, entries of its factor",
+           .items = factor_.entries(),
+           .bytes = factor_.bytes() + groups_.bytes() + y_.bytes() + rows_.bytes() +
+                    inertia_.size() * sizeof(Real) + mass_.size() * sizeof(double) +
+                    row_.size() * sizeof(int) + bending_.size() * sizeof(BendingElement)}};
 }
 
-std::vector<PassCost> GlobalSystem::cost(std::string_view local, std::size_t bytes) const {
-  return {
-      {.pass = std::string(local),
-       .items = springs_.size(),
-       .bytes = springs_.size() * sizeof(Spring) + bytes},
-      {.pass = "global system, entries of its factor",
-       .items = factor_entries(),
-       .bytes = factor_entries() * (sizeof(double) + sizeof(int)) +
-                mass_.size() * ((bending_.empty() ? 7 : 10) * sizeof(double) + 3 * sizeof(int)) +
-                bending_.size() * sizeof(BendingElement)}};
-}
+template class GlobalSystem<float>;
+template class GlobalSystem<double>;
 
 }  // namespace taut

@@ -23,7 +23,7 @@
 // once the gradient that is left is less than a share of their change: sooner, and contacts would
 // take turns at sticking and slipping without end.
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,6 +34,7 @@
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
+#include "core/solver/panel_factor.hpp"
 #include "core/solver/springs.hpp"
 
 namespace taut::solver::implicit {
@@ -41,7 +42,6 @@ namespace taut::solver::implicit {
 namespace {
 
 using Vector = Eigen::VectorXd;
-using Matrix = Eigen::SparseMatrix<double>;
 using Eigen::Matrix3d;
 
 /// Iterations end where |g| [N] is below this share of |M/h^2 (y - x_t)|, all that drives the step,
@@ -86,11 +86,11 @@ struct SpringHessian {
 class Hessian {
  public:
   Hessian(const std::vector<Spring>& springs, const std::vector<BendingElement>& bending,
-          std::span<const double> w, bool factored)
+          std::span<const double> w, bool factored, Simd simd)
       : springs_(springs), bending_(bending), column_(w.size(), kPinned), blocks_(springs.size()) {
     for (std::size_t i = 0; i < w.size(); ++i)
       if (w[i] > 0) column_[i] = 3 * static_cast<int>(mass_.size()), mass_.push_back(1 / w[i]);
-    if (factored) analyse();
+    if (factored) analyse(simd);
   }
 
   int size() const { return 3 * static_cast<int>(mass_.size()); }
@@ -110,9 +110,14 @@ class Hessian {
   bool solve(double h, const Vector& right, Vector& p) {
     if (!factored()) return conjugate_gradients(h, right, p);
     fill(h);
-    ldlt_.factorize(matrix_);
-    if (ldlt_.info() != Eigen::Success || !(ldlt_.vectorD().minCoeff() > 0)) return false;
-    p = ldlt_.solve(right);
+    if (!factor_.factor()) return false;
+    for (std::size_t k = 0; k < mass_.size(); ++k)
+      in_order_.segment<3>(3 * static_cast<Eigen::Index>(k)) =
+          right.segment<3>(3 * factor_.order()[k]);
+    factor_.solve_one(in_order_.data());
+    p.resize(right.size());
+    for (std::size_t k = 0; k < mass_.size(); ++k)
+      p.segment<3>(3 * factor_.order()[k]) = in_order_.segment<3>(3 * static_cast<Eigen::Index>(k));
     return true;
   }
 
@@ -144,45 +149,46 @@ class Hessian {
     return out;
   }
 
-  std::size_t factor_entries() const {
-    return factored() ? static_cast<std::size_t>(ldlt_.matrixL().nestedExpression().nonZeros()) : 0;
-  }
+  std::size_t factor_entries() const { return factor_.entries(); }
   std::size_t bytes() const {
-    constexpr std::size_t kEntry = sizeof(double) + sizeof(int);
-    return factor_entries() * kEntry + static_cast<std::size_t>(matrix_.nonZeros()) * kEntry +
-           bent_.size() * sizeof bent_[0] + blocks_.size() * sizeof blocks_[0] +
-           diagonal_.size() * sizeof diagonal_[0] + beside_.size() * sizeof beside_[0];
+    return factor_.bytes() + bent_.size() * sizeof bent_[0] + blocks_.size() * sizeof blocks_[0] +
+           (diagonal_.size() + beside_.size()) * sizeof diagonal_[0] +
+           static_cast<std::size_t>(in_order_.size()) * sizeof(double);
   }
 
  private:
-  void analyse() {
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](int row, int column) {
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c)
-          if (row + r >= column + c) entries.emplace_back(row + r, column + c, 1.0);
+  /// Of 3 x 3 numbers in the matrix; null: an end is pinned.
+  struct Block {
+    double* first = nullptr;
+    std::size_t stride = 0;
+    double& operator()(int r, int c) const { return first[to_index(r) * stride + to_index(c)]; }
+  };
+
+  void analyse(Simd simd) {
+    std::vector<PanelFactor::Pair> pairs;
+    const auto join = [&](std::size_t a, std::size_t b) {
+      if (a != b && column_[a] >= 0 && column_[b] >= 0)
+        pairs.push_back({column_[a] / 3, column_[b] / 3});
     };
-    for (int i = 0; i < size(); i += 3) add(i, i);
-    for (const Spring& s : springs_)
-      if (const auto [low, high] = std::minmax(column_[s.a], column_[s.b]); low >= 0)
-        add(high, low);
-    each_bending([&](int row, int column, double) { entries.emplace_back(row, column, 1.0); });
-    matrix_.resize(size(), size());
-    matrix_.setFromTriplets(entries.begin(), entries.end());
-    const auto place = [&](int row, int column) { return &matrix_.coeffRef(row, column); };
-    for (int i = 0; i < size(); ++i) diagonal_.push_back(place(i, i));
-    for (const Spring& s : springs_) {
-      const auto [low, high] = std::minmax(column_[s.a], column_[s.b]);
-      for (int c = 0; c < 3; ++c) beside_.push_back(low < 0 ? nullptr : place(high, low + c));
-    }
-    if (!bending_.empty()) {
-      std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
-      each_bending([&](int row, int column, double k) { *place(row, column) += k; });
-      bent_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
-    }
-    fill(1);
-    ldlt_.analyzePattern(matrix_);
-    ldlt_.factorize(matrix_);  // allocates: set-up, not the first step
+    for (const Spring& s : springs_) join(s.a, s.b);
+    for (const BendingElement& e : bending_)
+      for (std::size_t i = 0; i < e.size; ++i)
+        for (std::size_t j = 0; j < i; ++j) join(to_index(e.vertex[i]), to_index(e.vertex[j]));
+    factor_ = PanelFactor(mass_.size(), pairs, 3, simd);
+    in_order_.resize(size());
+    std::vector<std::size_t> rank(mass_.size());
+    for (std::size_t k = 0; k < rank.size(); ++k) rank[to_index(factor_.order()[k])] = k;
+    const auto place = [&](int a, int b) -> Block {
+      if (a < 0 || b < 0) return {};
+      const auto [low, high] = std::minmax({rank[to_index(a) / 3], rank[to_index(b) / 3]});
+      double* const first = factor_.at(high, low);
+      return {first, static_cast<std::size_t>(factor_.at(high, low, 1) - first)};
+    };
+    for (int i = 0; i < size(); i += 3) diagonal_.push_back(place(i, i));
+    for (const Spring& s : springs_) beside_.push_back(place(column_[s.a], column_[s.b]));
+    each_bending([&](int row, int column, double k) {
+      if (row % 3 == 0) bent_.emplace_back(place(row, column), k);
+    });
   }
 
   /// add(row, column, k [N/m]) for every entry in the lower triangle of the bending elements, whose
@@ -198,25 +204,24 @@ class Hessian {
         }
   }
 
-  /// Entries below each other in a column lie one after the other.
   void add_diagonal(int column, const Matrix3d& block) {
-    for (int c = 0; c < 3; ++c)
-      for (int r = c; r < 3; ++r) diagonal_[to_index(column + c)][r - c] += block(r, c);
+    const Block& at = diagonal_[to_index(column) / 3];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c <= r; ++c) at(r, c) += block(r, c);
   }
   void fill(double h) {
-    if (bent_.empty())
-      std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
-    else
-      std::ranges::copy(bent_, matrix_.valuePtr());
+    factor_.clear();
+    for (const auto& [at, k] : bent_)
+      for (int c = 0; c < 3; ++c) at(c, c) += k;
     for (std::size_t i = 0; i < mass_.size(); ++i)
-      add_diagonal(3 * static_cast<int>(i), mass_[i] / (h * h) * Matrix3d::Identity());
+      for (int c = 0; c < 3; ++c) diagonal_[i](c, c) += mass_[i] / (h * h);
     for (std::size_t j = 0; j < springs_.size(); ++j) {
       const Matrix3d block = blocks_[j].matrix();
       for (const std::size_t v : {springs_[j].a, springs_[j].b})
         if (column_[v] >= 0) add_diagonal(column_[v], block);
-      if (beside_[3 * j])
-        for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r) beside_[3 * j + to_index(c)][r] -= block(r, c);
+      if (const Block& at = beside_[j]; at.first)
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) at(r, c) -= block(r, c);
     }
     for (const auto& [column, block] : contacts_) add_diagonal(column, block);
   }
@@ -269,15 +274,15 @@ class Hessian {
 
   const std::vector<Spring>& springs_;
   const std::vector<BendingElement>& bending_;
-  std::vector<double> bent_;  ///< [non-zeros] N/m, the matrix of bending alone; empty: none
   std::vector<int> column_;
   std::vector<double> mass_;  ///< kg, of those that move
   std::vector<SpringHessian> blocks_;
   std::vector<std::pair<int, Matrix3d>> contacts_;
-  Matrix matrix_;                  ///< lower triangle; empty: conjugate gradients
-  std::vector<double*> diagonal_;  ///< [columns] into the matrix
-  std::vector<double*> beside_;    ///< [springs * 3] columns of blocks; null: an end is pinned
-  Eigen::SimplicialLDLT<Matrix> ldlt_;
+  PanelFactor factor_;                          ///< empty: conjugate gradients
+  std::vector<Block> diagonal_;                 ///< [those that move]
+  std::vector<Block> beside_;                   ///< [springs]
+  std::vector<std::pair<Block, double>> bent_;  ///< [N/m] of bending, times unity
+  Vector in_order_;                             ///< in the order of elimination
 };
 
 class NewtonPass final : public Pass<double> {
@@ -288,7 +293,8 @@ class NewtonPass final : public Pass<double> {
         line_search_(s.params.is("line-search", "on")),
         hessian_(springs_, bending_, s.w,
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
-                                       s.w, [](double w) { return w > 0; }))))),
+                                       s.w, [](double w) { return w > 0; })))),
+                 s.simd),
         stiffness_(s.w.size()),
         contacts_(make_contacts(s.scene, s.params)),
         contact_stiffness_(contacts_ ? s.w.size() : 0) {

@@ -43,34 +43,45 @@ class Springs final : public Pass<Real> {
   using V = typename Points<Real>::Point;
 
   explicit Springs(const loop::Setup& setup)
-      : drag_(static_cast<Real>(setup.params.real("drag"))),
+      : accelerate_(kernels<Real>(setup.simd).accelerate),
+        drag_(static_cast<Real>(setup.params.real("drag"))),
         central_(setup.params.is("drag-at", "central")),
         explicit_(setup.params.is("integrator", "explicit-euler")),
         damping_(setup.scene.damping),
         bending_(make_bending(setup.scene)),
-        moved_(central_ || explicit_ ? setup.w.size() : 0) {
+        moved_(central_ || explicit_ ? setup.w.size() : 0),
+        pool_(setup.pool) {
     const auto k = stiffnesses(setup.scene, setup.params);
+    const std::vector<Spring> springs = make_springs(setup.scene, setup.w, k);
     for (const Link& l : setup.scene.links)
-      if (const double of_link = k[static_cast<std::size_t>(l.family)]; of_link > 0)
-        if (moves(l, setup.w)) springs_.push_back({l, static_cast<Real>(of_link)});
+      if (const auto family = static_cast<std::size_t>(l.family); k[family] > 0)
+        if (moves(l, setup.w)) ++count_[family];
+    const Adjacency ends = ends_of(springs, setup.w.size());
+    std::vector<int> moving;
+    for (std::size_t i = 0; i < setup.w.size(); ++i)
+      if (setup.w[i] > 0) moving.push_back(static_cast<int>(i));
+    groups_ = VertexGroups(ends, moving, setup.w);
+    slots_ = slots_of_springs<SpringSlot<Real>>(groups_, ends, springs, kNothingElse);
+    w_.assign(groups_.size() * kLanes, Real(0));
+    for (std::size_t i = 0; i < moving.size(); ++i)
+      w_[i] = static_cast<Real>(setup.w[to_index(moving[i])]);
   }
+
+  const Layout& layout() const { return groups_.layout(); }
 
   /// F = -k x of every spring and F = -c v of every particle; a = F/m.
   void accelerate(Particles<Real>& p, double, double h) override {
-    const Real c = central_ ? Real(0) : drag_ / static_cast<Real>(h);
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      const V moved = p.x[i] - p.previous[i];
-      if (!moved_.empty()) moved_[i] = moved;
-      if (c != 0) p.a.add(i, -p.w[i] * c * moved);
-    }
-    for (const auto& [l, k] : springs_) {
-      const std::size_t a = to_index(l.a), b = to_index(l.b);
-      const V delta = p.x[b] - p.x[a];
-      const Real length = delta.norm();
-      if (length == 0) continue;  // no direction to pull in
-      const V pull = k * (length - static_cast<Real>(l.rest)) / length * delta;
-      p.a.add(a, p.w[a] * pull), p.a.add(b, -p.w[b] * pull);
-    }
+    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = p.x[i] - p.previous[i];
+    const AccelerationSweep<Real> sweep{.groups = groups_.data(),
+                                        .x = p.x.data(),
+                                        .previous = p.previous.data(),
+                                        .w = w_.data(),
+                                        .a = p.a.data(),
+                                        .drag = central_ ? Real(0) : drag_ / static_cast<Real>(h)};
+    pool_.run(
+        groups_.size(),
+        [&](std::size_t begin, std::size_t end) { accelerate_(sweep, slots_.data(), begin, end); },
+        groups_.size() * kLanes >= ThreadPool::kWorthSharing / 4);
     for (const BendingElement& e : bending_) {
       const V pull =
           static_cast<Real>(-e.stiffness) * e.value([&](std::size_t v) { return p.x[v]; });
@@ -99,41 +110,38 @@ class Springs final : public Pass<Real> {
 
   std::vector<PassCost> cost() const override {
     std::vector<PassCost> costs;
-    for (const Family family : kFamilies) {
-      const auto n = static_cast<std::size_t>(std::ranges::count(
-          springs_, family, [](const Spring& spring) { return spring.link.family; }));
-      if (n > 0)
-        costs.push_back({.pass = std::string(to_string(family)) + " springs",
-                         .items = n,
-                         .bytes = n * sizeof(Spring)});
-    }
+    for (const Family family : kFamilies)
+      if (const std::size_t n = count_[static_cast<std::size_t>(family)]; n > 0)
+        costs.push_back({.pass = std::string(to_string(family)) + " springs", .items = n});
     if (!bending_.empty())
       costs.push_back({.pass = "bending forces",
                        .items = bending_.size(),
                        .bytes = bending_.size() * sizeof(BendingElement)});
-    if (!costs.empty()) costs.front().bytes += moved_.size() * sizeof(V);
+    if (!costs.empty())
+      costs.front().bytes += slots_.size() * sizeof slots_[0] + groups_.bytes() +
+                             w_.size() * sizeof w_[0] + moved_.size() * sizeof moved_[0];
     return costs;
   }
 
  private:
-  struct Spring {
-    Link link;
-    Real stiffness;  ///< N/m
-  };
+  void (*accelerate_)(const AccelerationSweep<Real>&, SpringSlot<Real>*, std::size_t, std::size_t);
   Real drag_;
   bool central_, explicit_;
   double damping_;
   std::vector<BendingElement> bending_;
-  std::vector<Spring> springs_;
+  std::array<std::size_t, kFamilies.size()> count_{};  ///< springs
+  VertexGroups groups_;
+  std::vector<SpringSlot<Real>> slots_;
+  std::vector<Real> w_;   ///< [groups][kLanes] 1/kg
   std::vector<V> moved_;  ///< h v before the step; empty: not needed
+  ThreadPool& pool_;
 };
 
 template <class Real>
 loop::Links<Real> make_links(const loop::Setup& setup) {
-  return {.layout = Layout::packed(setup.w.size()),
-          .pass = std::make_unique<Springs<Real>>(setup),
-          .accelerates = true,
-          .bends = true};
+  auto pass = std::make_unique<Springs<Real>>(setup);
+  Layout layout = pass->layout();
+  return {.layout = std::move(layout), .pass = std::move(pass), .accelerates = true, .bends = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

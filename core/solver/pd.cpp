@@ -5,6 +5,9 @@
 //
 //     (M/h^2 + sum K (e_b - e_a)(e_b - e_a)^T) x = M/h^2 y + sum K (e_b - e_a) q^T
 //
+// Written as the way from the x before, the right-hand side is minus the gradient of the energy of
+// implicit Euler there, and K (d - q) the force of a spring: no q is kept.
+//
 // Its fixed point is implicit Euler's step (implicit.cpp). Motion across stretched links of strain
 // e contracts by s lambda (1 - e)/(1 + s lambda) per iteration, s = h^2 K/m, which tends to 1: the
 // stiffer the links, the more iterations until the cloth moves at all, and a strain near zero does
@@ -27,6 +30,7 @@ constexpr ParamSpec kOwn[] = {
     kStiffness[1],
     kStiffness[2],
     kMaterial,
+    kGlobalPrecision,
     kChebyshev,
     ParamSpec::integer("anderson", "0", 0, 20,
                        "earlier iterations that Anderson acceleration combines; 0: none"),
@@ -75,16 +79,20 @@ class Anderson {
   std::vector<Eigen::VectorXd> residuals_, images_;  ///< of the last iterations
 };
 
-class ProjectivePass final : public Pass<double> {
+template <class Real>
+class ProjectivePass final : public Pass<Real> {
  public:
   explicit ProjectivePass(const loop::Setup& s)
-      : system_(s, make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
-        wanted_(system_.springs().size()),
+      : forces_(kernels<Real>(s.simd).spring_forces),
+        system_(s, make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
+        slots_(system_.template make_slots<SpringSlot<Real>>(kNothingElse)),
         anderson_(to_index(s.params.integer("anderson")), s.w.size()) {}
+
+  const Layout& layout() const { return system_.layout(); }
 
   void restart() override { system_.restart(); }
 
-  void begin(Particles<double>& p, double t, double h) override {
+  void begin(Particles<Real>& p, double t, double h) override {
     anderson_.begin();
     if (anderson_.on()) {
       y_ = positions(p);
@@ -93,46 +101,45 @@ class ProjectivePass final : public Pass<double> {
     system_.begin(p, t, h);
   }
 
-  void apply(Particles<double>& p, double, double h) override {
+  void apply(Particles<Real>& p, double, double h) override {
     if (!anderson_.on()) return solve(p);
     fall_back(p, h);
     const std::vector<Vec3> from = positions(p);
     solve(p);
     last_image_ = positions(p);
-    const std::vector<Vec3> next = anderson_.next(from, last_image_);
-    for (std::size_t i = 0; i < p.size(); ++i)
-      if (p.w[i] > 0) p.x.set(i, next[i]);
+    move_to(p, anderson_.next(from, last_image_));
   }
 
   std::vector<PassCost> cost() const override {
-    return system_.cost("directions of links", wanted_.size() * sizeof(Vec3) + anderson_.bytes());
+    return system_.cost("forces of links", slots_.size() * sizeof slots_[0] + anderson_.bytes());
   }
 
  private:
-  void solve(Particles<double>& p) {
-    for (std::size_t j = 0; j < wanted_.size(); ++j) {
-      const auto& [a, b, rest, k] = system_.springs()[j];
-      const Vec3 d = p.x[b] - p.x[a];
-      const double length = d.norm();
-      wanted_[j] = length > 0 ? Vec3(rest / length * d) : Vec3(Vec3::Zero());
-    }
-    system_.solve(wanted_, p);
+  /// k (d - q) of a link is the force of a spring.
+  void solve(Particles<Real>& p) {
+    system_.solve(p, [this](const ForceSweep<Real>& sweep, std::size_t begin, std::size_t end) {
+      forces_(sweep, slots_.data(), begin, end);
+    });
+  }
+
+  static void move_to(Particles<Real>& p, const std::vector<Vec3>& x) {
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (p.w[i] > 0) p.x.set(i, x[i].template cast<Real>());
   }
 
   /// To the last solution of the global system if the combination raised the energy.
-  void fall_back(Particles<double>& p, double h) {
-    double now = 0;
-    for (std::size_t i = 0; i < p.size(); ++i)
-      if (p.w[i] > 0) now += (p.x[i] - y_[i]).squaredNorm() / (2 * h * h * p.w[i]);
+  void fall_back(Particles<Real>& p, double h) {
+    const std::vector<Vec3> x = positions(p);
+    double now = bending_energy(system_.bending(), x);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (p.w[i] > 0)
+        now += (x[i] - y_[i]).squaredNorm() / (2 * h * h * static_cast<double>(p.w[i]));
     for (const auto& [a, b, rest, k] : system_.springs()) {
-      const double c = (p.x[b] - p.x[a]).norm() - rest;
+      const double c = (x[b] - x[a]).norm() - rest;
       now += k / 2 * c * c;
     }
-    for (const BendingElement& e : system_.bending())
-      now += e.stiffness / 2 * e.value([&](std::size_t v) { return p.x[v]; }).squaredNorm();
     if (now > energy_) {
-      for (std::size_t i = 0; i < p.size(); ++i)
-        if (p.w[i] > 0) p.x.set(i, last_image_[i]);
+      move_to(p, last_image_);
       anderson_.begin();
       energy_ = std::numeric_limits<double>::infinity();
     } else {
@@ -140,23 +147,27 @@ class ProjectivePass final : public Pass<double> {
     }
   }
 
-  GlobalSystem system_;
-  std::vector<Vec3> wanted_;  ///< m, q of each link
+  void (*forces_)(const ForceSweep<Real>&, SpringSlot<Real>*, std::size_t, std::size_t);
+  GlobalSystem<Real> system_;
+  std::vector<SpringSlot<Real>> slots_;
   Anderson anderson_;
   std::vector<Vec3> y_, last_image_;  ///< m; with Anderson acceleration
   double energy_ = 0;                 ///< J, of the last iterate
 };
 
-loop::Links<double> links(const loop::Setup& s) {
-  return {.layout = Layout::packed(s.w.size()),
-          .pass = with_chebyshev<double>(std::make_unique<ProjectivePass>(s),
-                                         s.params.real("chebyshev"), s.w.size(), s.pool),
-          .bends = true,
-          .contacts = true};
+template <class Real>
+loop::Links<Real> links(const loop::Setup& s) {
+  auto pass = std::make_unique<ProjectivePass<Real>>(s);
+  Layout layout = pass->layout();
+  return {
+      .layout = std::move(layout),
+      .pass = with_chebyshev<Real>(std::move(pass), s.params.real("chebyshev"), s.w.size(), s.pool),
+      .bends = true,
+      .contacts = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
-  return loop::make<double>(scene, params, links);
+  return loop::make(scene, params, links<float>, links<double>);
 }
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
@@ -170,23 +181,26 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const ResolvedSettings own{
       {"links", describe_springs(scene, params)},
       {"links solved",
-       "all at once by a sparse LLT, factored as set-up; other pins or links factor again"},
+       "all at once by a sparse LDLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};
   return loop::resolved_settings(scene, params, own, "constant terms of the factored system",
                                  loop::kSolvedFriction);
 }
 
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "double|float"}};
+
 }  // namespace
 }  // namespace taut::solver::pd
 
-TAUT_SOLVER(pd) = {
-    .name = "pd",
-    .title = "Projective Dynamics",
-    .summary = "Projective Dynamics of springs on one factored system",
-    .source = "Liu et al. 2013; Bouaziz et al. 2014; Wang 2015; Peng et al. 2018",
-    .params = taut::solver::pd::kParams,
-    .make = taut::solver::pd::make,
-    .unsupported = taut::solver::pd::unsupported,
-    .resolved_settings = taut::solver::pd::resolved_settings,
-    .accuracy = {
-        .substeps = "substeps", .sweeps = "iterations", .labelled = "substeps|iterations"}};
+TAUT_SOLVER(pd) = {.name = "pd",
+                   .title = "Projective Dynamics",
+                   .summary = "Projective Dynamics of springs on one factored system",
+                   .source = "Liu et al. 2013; Bouaziz et al. 2014; Wang 2015; Peng et al. 2018",
+                   .params = taut::solver::pd::kParams,
+                   .make = taut::solver::pd::make,
+                   .unsupported = taut::solver::pd::unsupported,
+                   .resolved_settings = taut::solver::pd::resolved_settings,
+                   .accuracy = {.substeps = "substeps",
+                                .sweeps = "iterations",
+                                .alternatives = taut::solver::pd::kAlternatives,
+                                .labelled = "substeps|iterations|precision"}};

@@ -5,13 +5,16 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "core/model/adjacency.hpp"
 #include "core/model/index.hpp"
 #include "core/model/scene.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/solver/layout/order.hpp"
+#include "core/solver/layout/vertex_groups.hpp"
 #include "core/solver/loop.hpp"
 
 namespace taut {
@@ -51,6 +54,27 @@ inline std::vector<Spring> make_springs(const Scene& scene, std::span<const doub
       springs.push_back({to_index(l.a), to_index(l.b), l.rest, k});
   return springs;
 }
+
+/// The other ends of each vertex' springs.
+inline Adjacency ends_of(const std::vector<Spring>& springs, std::size_t vertices) {
+  std::vector<Link> links;
+  for (const Spring& s : springs)
+    links.push_back({static_cast<int>(s.a), static_cast<int>(s.b), s.rest, Family::structural});
+  return Adjacency(links, static_cast<int>(vertices));
+}
+
+/// Slots of the springs, their rest and stiffness filled in; set(slot, lane, spring) does the rest.
+template <class Slot, class Set>
+std::vector<Slot> slots_of_springs(const VertexGroups& groups, const Adjacency& ends,
+                                   const std::vector<Spring>& springs, const Set& set) {
+  return groups.make_slots<Slot>(ends, [&](Slot& slot, std::size_t lane, std::size_t spring) {
+    using Real = std::remove_reference_t<decltype(slot.rest[0])>;
+    slot.rest[lane] = static_cast<Real>(springs[spring].rest);
+    slot.stiffness[lane] = static_cast<Real>(springs[spring].stiffness);
+    set(slot, lane, spring);
+  });
+}
+inline constexpr auto kNothingElse = [](const auto&...) {};
 
 /// What the loop would get wrong, and links that are rigid in the scene where others have a
 /// stiffness: of solvers that take every K as a number (SolverEntry::unsupported).

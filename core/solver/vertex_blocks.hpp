@@ -119,7 +119,7 @@ class VertexBlocks {
       : sweep_(kernel),
         bending_(make_bending(s.scene)),
         groups_(ends, bending_, s.w, s.params.is("order", "coloured")),
-        slots_(make_slots(groups_, springs, ends)),
+        slots_(slots_of_springs<Slot>(groups_, ends, springs, kNothingElse)),
         start_(s.scene, s.params.is("start", "adaptive")),
         contacts_(make_contacts(s.scene, s.params)),
         bent_(bending_.empty() ? 0 : s.w.size()),
@@ -128,20 +128,6 @@ class VertexBlocks {
       for (std::size_t i = 0; i < bending_[k].size; ++i)
         bent_[to_index(bending_[k].vertex[i])].push_back({k, i});
     set_bending_stiffness();
-  }
-
-  static Adjacency ends_of(const std::vector<Spring>& springs, std::size_t vertices) {
-    std::vector<Link> links;
-    for (const Spring& s : springs)
-      links.push_back({static_cast<int>(s.a), static_cast<int>(s.b), s.rest, Family::structural});
-    return Adjacency(links, static_cast<int>(vertices));
-  }
-  static std::vector<Slot> make_slots(const VertexGroups& groups,
-                                      const std::vector<Spring>& springs, const Adjacency& ends) {
-    return groups.make_slots<Slot>(ends, [&](Slot& slot, std::size_t lane, std::size_t link) {
-      slot.rest[lane] = static_cast<Real>(springs[link].rest);
-      slot.stiffness[lane] = static_cast<Real>(springs[link].stiffness);
-    });
   }
 
   /// Calls f(vertex, group, lane) for those of groups [begin, end).

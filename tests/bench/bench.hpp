@@ -23,6 +23,7 @@ inline double time_of(Solver& solver, const State& start, int steps, double dt,
 }
 
 void register_projections();
+void register_iterations();
 void register_contact();
 void register_threads();
 

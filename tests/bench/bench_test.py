@@ -12,16 +12,18 @@ bound = rows["projection/0/in registers float"]["projection"]
 for name, row in rows.items():
     assert not row.get("error_occurred"), (name, row)
     kind = name.split("/")[0]
-    counters = {"projection": ["projection"], "contact": ["sweep", "in_sweep", "in_step", "touching"], "threads": ["two_threads"]}[kind]
+    counters = {"projection": ["projection"], "iteration": ["iteration", "sweeps"], "contact": ["sweep", "in_sweep", "in_step", "touching"], "threads": ["two_threads"]}[kind]
     for counter in counters:
         assert math.isfinite(row[counter]), (name, counter)
     if kind == "projection" and "threads" not in name:
         assert bound / 2 < row["projection"] < 1e-5, (name, row["projection"], "s; faster than the arithmetic alone, or slower than any machine")
+    if kind == "iteration" and not any(cheap in name for cheap in ("jakobsen", "xpbd")):
+        assert 1 < row["sweeps"] < 1e5, (name, row["sweeps"], "sweeps of Jakobsen's in float")
     if name.startswith("contact/64/plane"):
         assert row["touching"] > 0.9, (name, row["touching"])
     elif kind == "contact" and "crumple" not in name:
         assert 0.02 < row["touching"] < 0.9, (name, row["touching"])
-expected = {"projection": 14, "contact": 26}
+expected = {"projection": 14, "iteration": 16, "contact": 26}
 for kind, least in expected.items():
     found = sum(name.startswith(kind) for name in rows)
     assert found >= least, f"{found} benchmarks of {kind}; there were {least}"

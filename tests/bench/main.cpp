@@ -4,6 +4,7 @@
 
 int main(int argc, char** argv) {
   taut::bench::register_projections();
+  taut::bench::register_iterations();
   taut::bench::register_contact();
   taut::bench::register_threads();
   benchmark::Initialize(&argc, argv);

@@ -224,5 +224,43 @@ TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMassAndVbdOnlyIfItHasConverged) {
   EXPECT_NEAR(fall("vbd:iterations=4000"), 1, 1e-3);
 }
 
+/// The factor and what it solves are in double; in float are places and what links pull with.
+TEST(GlobalSystems, FloatFollowsDouble) {
+  const Scene scene = crumpled(hanging_sheet(12, 10), 0.01);
+  for (const std::string solver : {"pd:iterations=20", "admm:iterations=20"}) {
+    const State in_double = simulate(scene, solver, 16);
+    const State in_float = simulate(scene, solver + ",precision=float", 16);
+    const double way = largest_distance(in_double.x, scene.start.x);
+    EXPECT_GT(way, 0.01) << solver;
+    EXPECT_LT(largest_distance(in_float.x, in_double.x), 3e-4 * way) << solver;
+    EXPECT_GT(largest_distance(in_float.x, in_double.x), 0) << solver;
+  }
+}
+
+/// Springs so stiff that a factor in float would say nothing of the masses: the cloth falls still.
+TEST(GlobalSystems, InFloatStiffLinksDoNotHoldUpAFall) {
+  Scene scene = hanging_sheet(9, 8);
+  scene.pins.clear();
+  for (const char* solver : {"pd:iterations=10,structural=1e8,shear=1e8,precision=float",
+                             "admm:iterations=10,penalty=1e8,precision=float"}) {
+    const State end = simulate(scene, solver, 16);
+    double fall = 0;
+    for (std::size_t i = 0; i < end.v.size(); ++i)
+      fall += end.v[i].y() / static_cast<double>(end.v.size());
+    EXPECT_NEAR(fall, scene.gravity.y() * 16 * scene.dt, 1e-3) << solver;
+  }
+}
+
+/// A link without a length pulls nowhere.
+TEST(GlobalSystems, ALinkOfNoLengthHasNoDirection) {
+  Scene scene = hanging_sheet(6, 5);
+  scene.start.x[14] = scene.start.x[15];
+  for (const char* solver : {"pd:iterations=1", "admm:iterations=1", "mass-spring:substeps=1"})
+    for (const char* precision : {",precision=float", ",precision=double"}) {
+      const State state = simulate(scene, std::string(solver) + precision, 2);
+      for (const Vec3& x : state.x) EXPECT_TRUE(x.allFinite()) << solver << precision;
+    }
+}
+
 }  // namespace
 }  // namespace taut::global_test

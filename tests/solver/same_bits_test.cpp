@@ -186,6 +186,41 @@ TEST(SameBits, OfVertexSweepsForEveryInstructionSet) {
         }
 }
 
+TEST(SameBits, OfForcesAndGlobalSystemsForEveryInstructionSet) {
+  for (const Scene& plain : scenes())
+    for (const bool everything : {false, true})
+      for (const char* solver :
+           {"pd:iterations=3,chebyshev=0.5", "pd:iterations=3,anderson=2",
+            "admm:iterations=3,multipliers=keep", "admm:iterations=2,links=elastic,substeps=2",
+            "mass-spring:substeps=3,drag=0.01", "mass-spring:substeps=3,drag=0.01,drag-at=central",
+            "implicit:iterations=3"})
+        for (const char* precision : {",precision=float", ",precision=double"}) {
+          const bool no_choice = std::string_view(solver).starts_with("implicit");
+          if (no_choice && std::string_view(precision).ends_with("float")) continue;
+          const Scene scene = everything ? with_everything(plain) : plain;
+          const std::string method = solver + std::string(no_choice ? "" : precision);
+          const State want = simulate(scene, method + ",simd=scalar", 3);
+          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+            if (available(simd)) {
+              const std::string with = method + ",simd=" + std::string(to_string(simd));
+              EXPECT_TRUE(same_bits(simulate(scene, with, 3), want)) << with << everything;
+            }
+        }
+}
+
+TEST(SameBits, OfForcesThatThreadsShare) {
+  const Scene plain = crumpled(hanging_sheet(60, 50), 0.002);
+  for (const bool everything : {false, true})
+    for (const char* solver : {"pd:iterations=2", "admm:iterations=2", "mass-spring:substeps=4"})
+      for (const char* precision : {",precision=float", ",precision=double"}) {
+        const Scene scene = everything ? with_everything(plain) : plain;
+        const std::string method = std::string(solver) + precision;
+        const State want = simulate(scene, method, 2);
+        for (const char* threads : {",threads=2", ",threads=3"})
+          EXPECT_TRUE(same_bits(simulate(scene, method + threads, 2), want)) << method << threads;
+      }
+}
+
 TEST(SameBits, OfVertexSweepsThatThreadsShare) {
   const Scene plain = crumpled(hanging_sheet(160, 150), 0.002);  // large colours, with bending too
   for (const bool everything : {false, true})

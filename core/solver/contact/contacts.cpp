@@ -105,16 +105,20 @@ bool Contacts::touches(std::size_t vertex, std::size_t collider, const Vec3& x,
   return true;
 }
 
-void Contacts::find(const Particles<double>& p, std::vector<TouchingVertex>& all) {
+template <class Real>
+void Contacts::find(const Particles<Real>& p, std::vector<TouchingVertex>& all) {
   all.clear();
   TouchingVertex at;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.w[i] == 0) continue;
-    const Vec3 x = p.x[i], previous = p.previous[i];
+    const Vec3 x = p.x[i].template cast<double>();
+    const Vec3 previous = p.previous[i].template cast<double>();
     for (std::size_t k = 0; k < surfaces_.size(); ++k)
       if (touches(i, k, x, previous, at)) all.push_back(at);
   }
 }
+template void Contacts::find(const Particles<float>&, std::vector<TouchingVertex>&);
+template void Contacts::find(const Particles<double>&, std::vector<TouchingVertex>&);
 
 template <class Real>
 void Contacts::predict(Particles<Real>& p, double h) {
@@ -136,15 +140,19 @@ void Contacts::predict(Particles<Real>& p, double h) {
 template void Contacts::predict(Particles<float>&, double);
 template void Contacts::predict(Particles<double>&, double);
 
-void Contacts::predict_new(const Particles<double>& p, double h) {
+template <class Real>
+void Contacts::predict_new(const Particles<Real>& p, double h) {
   TouchingVertex at;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    Vec3 x = p.x[i];
+    Vec3 x = p.x[i].template cast<double>();
+    const Vec3 previous = p.previous[i].template cast<double>();
+    const IsotropicCompliance free{static_cast<double>(p.w[i]) * h * h};
     for (std::size_t k = 0; p.w[i] > 0 && k < surfaces_.size(); ++k)
-      if (!force(i, k).holds() && touches(i, k, x, p.previous[i], at))
-        settle(at, IsotropicCompliance{p.w[i] * h * h}, force(i, k), x);
+      if (!force(i, k).holds() && touches(i, k, x, previous, at)) settle(at, free, force(i, k), x);
   }
 }
+template void Contacts::predict_new(const Particles<float>&, double);
+template void Contacts::predict_new(const Particles<double>&, double);
 
 bool Contacts::reaches(std::size_t vertex, const Vec3& x, const Vec3& previous) {
   TouchingVertex at;

@@ -113,7 +113,8 @@ class Contacts {
     return forces_[vertex * surfaces_.size() + collider];
   }
   /// All that touch, of vertices that move.
-  void find(const Particles<double>& p, std::vector<TouchingVertex>&);
+  template <class Real>
+  void find(const Particles<Real>& p, std::vector<TouchingVertex>&);
 
   /// Where sweeps start: what touches at p.x moves out of the collider and against its slip as if
   /// it had no link, which is all there is to a sheet that lands flat. Forces that hold it already
@@ -121,7 +122,8 @@ class Contacts {
   template <class Real>
   void predict(Particles<Real>& p, double h);
   /// The forces of what newly touches as if it had no link; p.x is y, and stays.
-  void predict_new(const Particles<double>& p, double h);
+  template <class Real>
+  void predict_new(const Particles<Real>& p, double h);
 
   /// Whether any collider holds the vertex, or it is inside of one at x.
   bool reaches(std::size_t vertex, const Vec3& x, const Vec3& previous);

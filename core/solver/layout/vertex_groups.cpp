@@ -62,6 +62,18 @@ VertexGroups::VertexGroups(const Adjacency& ends, std::span<const BendingElement
                            std::span<const double> w, bool coloured) {
   const Colours colours = coloured ? colour_vertices(ends, bending, w) : one_by_one(w);
   layout_ = coloured ? side_by_side(colours, w) : Layout::packed(w.size());
+  add_colours(colours, ends);
+}
+
+VertexGroups::VertexGroups(const Adjacency& ends, std::vector<int> order,
+                           std::span<const double> w) {
+  const Colours all{std::move(order)};
+  layout_ = side_by_side(all, w);
+  add_colours(all, ends);
+}
+
+void VertexGroups::add_colours(const std::vector<std::vector<int>>& colours,
+                               const Adjacency& ends) {
   colour_.push_back(0);
   for (const std::span<const int> colour : colours) {
     for (std::size_t next = 0; next < colour.size(); next += kLanes)

@@ -17,10 +17,13 @@ namespace taut {
 /// kLanes, whatever the machine's lanes. The particles of a group lie side by side.
 class VertexGroups {
  public:
+  VertexGroups() = default;
   /// w: inverse masses [1/kg], 0: pinned. Not coloured: each vertex is a colour, in the given
   /// order.
   VertexGroups(const Adjacency&, std::span<const BendingElement>, std::span<const double> w,
                bool coloured);
+  /// One colour of all that move, in this order, for sweeps that move none of them.
+  VertexGroups(const Adjacency&, std::vector<int> order, std::span<const double> w);
 
   const Layout& layout() const { return layout_; }
   std::size_t colours() const { return colour_.size() - 1; }
@@ -60,6 +63,7 @@ class VertexGroups {
   PackedSlot spare(std::size_t lane) const {
     return {static_cast<std::uint32_t>(4 * (layout_.size() + lane))};
   }
+  void add_colours(const std::vector<std::vector<int>>& colours, const Adjacency&);
   void add_group(std::span<const int> vertices, const Adjacency&);
   std::vector<int> vertex_;  ///< [groups][kLanes]
   std::size_t vertices_ = 0;

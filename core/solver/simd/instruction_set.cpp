@@ -18,10 +18,14 @@ using LanesOf = std::conditional_t<width == 1, Real, Lanes<Real, std::max(width,
 
 template <class Real>
 constexpr Kernels<Real> make() {
-  constexpr int wide = kSimd == Simd::scalar ? 1 : kRegister / static_cast<int>(sizeof(Real));
+  constexpr auto lanes = [](std::size_t number) {
+    return kSimd == Simd::scalar ? 1 : kRegister / static_cast<int>(number);
+  };
+  constexpr int wide = lanes(sizeof(Real));
   constexpr int narrow = std::min(wide, 8);
   constexpr int packed = narrow < 4 ? 1 : narrow;  // whole particles
-  return make_kernels<Real, LanesOf<Real, narrow>, LanesOf<Real, wide>, LanesOf<Real, packed>>();
+  return make_kernels<Real, LanesOf<Real, narrow>, LanesOf<Real, wide>, LanesOf<Real, packed>,
+                      LanesOf<double, lanes(sizeof(double))>>();
 }
 
 }  // namespace

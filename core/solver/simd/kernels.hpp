@@ -150,6 +150,14 @@ struct AugmentedSlot : SpringSlot<Real> {
   Real left[kLanes];        ///< m, alpha C_0
 };
 
+/// Of alternating directions (admm.cpp). Both ends of a link keep its multiplier, each as it sees
+/// it.
+template <class Real>
+struct MultiplierSlot : SpringSlot<Real> {
+  Real multiplier[3][kLanes];  ///< m, u
+  Real share[kLanes];          ///< 1/(1 + k/K)
+};
+
 /// What a sweep over vertices reads, and x, which it moves. Arrays of numbers are packed.
 template <class Real>
 struct VertexSweep {
@@ -167,6 +175,38 @@ struct AugmentedStep {
   AugmentedSlot<Real>* slots;
   const Real *x, *previous;
   Real alpha, beta, gamma, k_min, k_max;  ///< avbd.cpp
+};
+
+/// What forces on vertices are computed from. Arrays of numbers are packed.
+template <class Real>
+struct ForceSweep {
+  const VertexGroup* groups;
+  const Real *x, *y;    ///< m; y: where they would go without links
+  const Real* inertia;  ///< [groups][kLanes] m/h^2 [N/m]
+  double* rows;         ///< N, become the forces
+};
+template <class Real>
+struct AccelerationSweep {
+  const VertexGroup* groups;
+  const Real *x, *previous;
+  const Real* w;  ///< [groups][kLanes] 1/kg
+  Real* a;        ///< accelerations are added
+  Real drag;      ///< N/m, of the way since the step before
+};
+
+/// Columns of a sparse factor that are stored as a dense matrix (panel_factor.hpp).
+struct FactorPanel {
+  std::uint32_t first, columns;   ///< unknowns
+  std::uint32_t first_row, rows;  ///< where the numbers of the rows below begin, and how many
+  std::size_t first_value;
+};
+/// Columns of single numbers of a panel at most.
+inline constexpr std::uint32_t kWidestPanel = 4;
+struct PanelSolve {
+  const FactorPanel* panels;
+  std::size_t count;
+  const std::uint32_t* row;
+  const double* values;
 };
 
 /// All particles: of an interleaved sheet, or, with one lane, packed ones.
@@ -284,6 +324,21 @@ struct Kernels {
   /// Multipliers and stiffnesses of groups [begin, end), at a substep's start and after a sweep.
   void (*begin_augmented)(const AugmentedStep<Real>&, std::size_t begin, std::size_t end);
   void (*augment)(const AugmentedStep<Real>&, std::size_t begin, std::size_t end);
+  /// Of groups [begin, end): rows = links + inertia (y - x).
+  void (*spring_forces)(const ForceSweep<Real>&, SpringSlot<Real>*, std::size_t begin,
+                        std::size_t end);
+  void (*multiplier_forces)(const ForceSweep<Real>&, MultiplierSlot<Real>*, std::size_t begin,
+                            std::size_t end);
+  /// Of groups [begin, end).
+  void (*accelerate)(const AccelerationSweep<Real>&, SpringSlot<Real>*, std::size_t begin,
+                     std::size_t end);
+  /// A panel of `columns`, with so many rows below, becomes its factor, and `update` [side][side],
+  /// its lower triangle, loses what that takes from the rows below; false: a pivot is not positive.
+  /// scratch: [2][columns][side]; side: a multiple of 8.
+  bool (*eliminate)(double* panel, std::size_t columns, std::size_t rows, double* update,
+                    std::size_t side, double* scratch);
+  /// [unknowns][4] right-hand sides become solutions.
+  void (*solve_panels)(const PanelSolve&, double* rows);
   /// Pulls particles that are farther than their length from their pin to it, table after table; by
   /// Projection.
   void (*tethers[2])(const ParticleSpan<Real>&, std::span<const TetherTable<Real>>);

@@ -11,7 +11,9 @@
 #include "core/solver/simd/distance.hpp"
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
+#include "core/solver/simd/link_forces_impl.hpp"
 #include "core/solver/simd/neighbour_search_impl.hpp"
+#include "core/solver/simd/panels_impl.hpp"
 #include "core/solver/simd/vertex_sweep_impl.hpp"
 #include "core/solver/simd/wind_impl.hpp"
 
@@ -517,8 +519,8 @@ Real in_registers(Real rest, int rounds, int& projections) {
 }
 
 /// Narrow and Wide compute on interleaved sheets of 8 and 16 lanes, P on packed particles, and all
-/// of them where they collide.
-template <class Real, class Narrow, class Wide, class P>
+/// of them where they collide; Double on matrices.
+template <class Real, class Narrow, class Wide, class P, class Double>
 constexpr Kernels<Real> make_kernels() {
   constexpr Projection exact = Projection::exact, sqrt_free = Projection::sqrt_free;
   return {
@@ -550,6 +552,11 @@ constexpr Kernels<Real> make_kernels() {
       .sweep_augmented = sweep_vertices<P, AugmentedSlot<Real>, Real>,
       .begin_augmented = begin_augmented<P, Real>,
       .augment = augment<P, Real>,
+      .spring_forces = forces<P, SpringSlot<Real>, Real>,
+      .multiplier_forces = forces<P, MultiplierSlot<Real>, Real>,
+      .accelerate = accelerate<P, Real>,
+      .eliminate = eliminate<Double>,
+      .solve_panels = solve_panels<Double>,
       .tethers = {tethers<Narrow, Wide, P, exact, Real>, tethers<Narrow, Wide, P, sqrt_free, Real>},
       .motion_boxes = motion_boxes<Narrow, Wide, P, Real>,
       .largest_motion2 = largest_motion2<Narrow, Wide, P, Real>,

@@ -90,6 +90,14 @@ struct Converged {
   int few, many;  ///< iterations
 };
 
+/// The same scene, its start moved by what is lost in rounding.
+Scene a_rounding_error_apart(Scene scene, int n) {
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i)
+    scene.start.x[i].y() += 1e-13 * std::sin(static_cast<double>(i) * n);
+  return scene;
+}
+
+/// Implicit's from eight starts: what rounding chooses has to end there, too.
 TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
   const std::vector<Converged> solvers{{"implicit", 1, 100},
                                        {"pd", 10, 20000},
@@ -97,14 +105,17 @@ TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
                                        {"admm:links=elastic", 10, 20000}};
   for (const Scene& scene : scenes())
     for (const Converged& one : solvers) {
-      const auto after = [&](int iterations) {
+      const auto after = [&](int iterations, int start = 0) {
         const std::string text =
             with(one.solver, kSprings + ",iterations=" + std::to_string(iterations));
-        return violation(scene, after_one_step(scene, text).x);
+        const Scene from = a_rounding_error_apart(scene, start);
+        return violation(from, after_one_step(from, text).x);
       };
       const std::string where = one.solver + " on a " + name_of(scene) + ", friction " +
                                 std::to_string(scene.colliders[0].friction);
-      EXPECT_LT(after(one.many), 1e-8) << where;
+      const int starts = one.solver == "implicit" ? 8 : 1;
+      for (int n = 0; n < starts; ++n)
+        EXPECT_LT(after(one.many, n), 1e-8) << where << ", start " << n;
       if (!std::holds_alternative<Plane>(scene.colliders[0].shape))  // there it is right at once
       {
         EXPECT_GT(after(one.few), 1e-6) << where;
