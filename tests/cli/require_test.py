@@ -121,7 +121,7 @@ class Require(CommandLine):
         process = self.start("require", "./made.toml", "jakobsen")
         for _ in range(600):
             time.sleep(0.05)
-            if len(self.keys()) >= 3:
+            if self.keys():  # it has most of its cases before it
                 break
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
