@@ -115,11 +115,13 @@ class Store {
 
   Database* reading() const;  ///< nullptr: there is no file yet
   Database& writing();
+  /// Says that something in the file does not match its digest, or why it is damaged.
+  void say_damaged(const std::string& what,
+                   const std::string& why = "it does not match its digest") const;
 
  private:
   struct State;
   void say_earlier_results() const;
-  void say_damaged(const std::string& key, const std::string& why) const;
   std::vector<std::string> unsound_keys() const;  ///< of cases that count as none
   std::optional<Record> sound_record(Database&, const std::string& key, std::string& why) const;
   void insert(Database&, const Record&, const CaseFiles&);

@@ -159,13 +159,17 @@ class Damage(CommandLine):
         said = self.taut("cluster", "merge", "one", "merged", "--out", "x", "--quiet", expect=None)
         self.assertNotEqual((said.returncode, said.err), (2, ""), "it says why it exits with 2")
 
-    def test_series_and_answers_have_digests(self):
+    def test_series_answers_and_benches_have_digests(self):
         study = self.study(rest='[[plot]]\nkind = "series"\ny = "stretch.rms"\n')
         self.taut("run", study)
         self.taut("converge", "./small.toml", "--solver", "jakobsen", "--record")
         self.sql(["UPDATE series SET columns = replace(columns, '0.1', '0.2')"], ["UPDATE answers SET answer = replace(answer, '1', '2')"])
         self.assertIn("damaged series", self.taut("plot", study, expect=None).err)
         self.assertIn("does not match its digest", self.taut("report", study, "--json").err)
+        self.taut("bench", study, "--rounds", 2, "--seconds", 0.001)
+        self.assertNotIn("damaged bench", self.taut("report", study, "--json").err)
+        self.sql(["UPDATE samples SET cpu = 2 * cpu WHERE round = 1"])
+        self.assertIn("damaged bench of small in study", self.taut("report", study, "--json").err)
 
     def test_a_foreign_file_with_a_view_without_end_is_refused(self):
         study = self.study()
