@@ -243,4 +243,10 @@ TAUT_VERB(bench) = {
         "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
         "jakobsen:iterations=1,substeps=16 --solver "
         "bullet:iterations=1,substeps=16\n  taut bench effects\n  taut bench scaling",
+    .answer =
+        "machine host build; "
+        "scenes: scene control verdict; "
+        "recommended: scene target solver setting error cost times answer; "
+        "cases: scene case solver cost cpu wall peak_bytes error status times verdict remark; "
+        "samples: scene case round cpu wall",
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};

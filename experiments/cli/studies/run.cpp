@@ -242,4 +242,8 @@ TAUT_VERB(run) = {.name = "run",
                       "taut run\n  taut run iterations --preset quick -j 2\n"
                       "  taut run default-setting --table stretch.rms --table stretch.max\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
+                  .answer =
+                      "results store cases ran stored; "
+                      "statuses: status cases; "
+                      "*: setting *",
                   .bind = taut::bind_verb<taut::verb::run::add_options, taut::verb::run::run>};

@@ -246,4 +246,11 @@ TAUT_VERB(verify) = {
         "  taut verify --assertions\n"
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
         "did; 4 nothing was held to anything",
+    .answer =
+        "truths: verdict place name numbers nearest section section_title statement source "
+        "seconds; "
+        "findings: verdict truth subject quantity unit measured expected tolerance uncertainty "
+        "why; "
+        "assertions: source section verdict assertion figure; "
+        "broken: truth number",
     .bind = taut::bind_verb<taut::verb::verify::add_options, taut::verb::verify::run>};
