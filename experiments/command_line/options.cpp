@@ -140,6 +140,24 @@ void add_baselines(CLI::App& app, std::string& folder) {
   app.add_option("--baselines", folder, "Folder of the baselines (default: " + folder + ")");
 }
 
+BaselineOptions baseline_options() {
+  BaselineOptions options;
+  options.run = run_missing;
+  options.say = [](const std::string& news) { progress() << news << '\n'; };
+  options.title = [](const std::string& value) {
+    const ValueSpec* spec = find_value(value).second;
+    return spec && spec->role != Role::none ? report::quantity(value).title : "";
+  };
+  return options;
+}
+
+void add_baseline_options(CLI::App& app, BaselineOptions& options) {
+  options = baseline_options();
+  add_baselines(app, options.baselines);
+  add_results(app, options.out);
+  add_jobs(app, options.jobs);
+}
+
 void add_format(CLI::App& app, Format& format, const char* details) {
   auto* json = app.add_flag("--json", format.json, "Print it as JSON: numbers in SI, every table");
   auto* csv = app.add_flag("--csv", format.csv,

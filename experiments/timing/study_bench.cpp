@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <tuple>
 #include <utility>
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/question.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/results/database.hpp"
 #include "experiments/system/distinct.hpp"
@@ -188,6 +190,32 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>& reco
   SceneBench result{scene, bench.control, {}};
   for (std::size_t i = 0; i < records.size(); ++i)
     result.cases.push_back({records[i], std::move(bench.timings[i])});
+  return result;
+}
+
+namespace {
+
+/// Grouped by scene and its settings, in order of appearance; without what a solver refuses.
+std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
+    const std::vector<Record>& records) {
+  std::set<Question> asked;
+  for (const Record& record : records) asked.insert(question_of(record));
+  std::vector<std::pair<std::string, std::vector<Record>>> groups;
+  for (const Record& record : records) {
+    if (record.status.kind == Status::Kind::unsupported) continue;
+    group_of(groups, title_among(question_of(record), asked)).push_back(record);
+  }
+  return groups;
+}
+
+}  // namespace
+
+StudyBench bench_study(
+    const std::string& name, const std::vector<Record>& records,
+    const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of) {
+  StudyBench result = StudyBench::here(name);
+  for (const auto& [scene, own] : by_scene(records))
+    result.scenes.push_back(bench_scene(scene, own, options_of(scene, own.size())));
   return result;
 }
 

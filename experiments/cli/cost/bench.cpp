@@ -1,13 +1,8 @@
 #include <cstdlib>
-#include <set>
-#include <thread>
 
-#include "experiments/case/question.hpp"
-#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/distinct.hpp"
 #include "experiments/timing/recommendation.hpp"
 
 namespace taut::verb::bench {
@@ -24,18 +19,6 @@ struct Options {
   bool worker = false;
   Format format;
 };
-
-/// The physics of every case, from the store or run now.
-std::vector<Record> physics(const StudyCases& study, const Options& options) {
-  Store store(options.out);
-  store.prepare();
-  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  if (run_missing({study}, store, "taut bench", {.jobs = jobs}).interrupted) throw Interrupted();
-  std::vector<Record> records;
-  for (const Case& one : study.cases)
-    if (auto record = store.find(one)) records.push_back(std::move(*record));
-  return records;
-}
 
 /// "clearly cheaper", "likely dearer", "no difference", ...
 std::string verdict(const Interval& ratio, const Interval& control, double tolerance) {
@@ -137,38 +120,22 @@ Answer answer_of(const StudyBench& bench, const Options& options, bool of_study)
   return answer;
 }
 
-/// Cases grouped by scene and its settings, in order of appearance. The time step is one of the
-/// settings of a solver: a cost is that of a simulated second.
-std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
-    const std::vector<Record>& records) {
-  std::set<Question> asked;
-  for (const Record& record : records) asked.insert(question_of(record));
-  std::vector<std::pair<std::string, std::vector<Record>>> groups;
-  for (const Record& record : records) {
-    if (record.status.kind == Status::Kind::unsupported) continue;
-    group_of(groups, title_among(question_of(record), asked)).push_back(record);
-  }
-  return groups;
-}
-
-StudyBench bench(const std::string& name, const std::vector<Case>& cases, const Options& options) {
-  StudyBench result = StudyBench::here(name);
-  for (const auto& [scene, records] :
-       by_scene(physics({options.solvers.empty() ? name : "", cases}, options))) {
-    progress() << scene << ": timing " << records.size() << " cases\n";
-    result.scenes.push_back(bench_scene(scene, records,
-                                        {.rounds = options.rounds,
-                                         .seconds = options.seconds,
-                                         .progress = Countdown("timing round")}));
-  }
-  return result;
+StudyBench bench(const StudyCases& study, const std::string& name, const Options& options) {
+  Store store(options.out);
+  return bench_study(name, run_and_collect(study, store, "taut bench"),
+                     [&](const std::string& scene, std::size_t cases) {
+                       progress() << scene << ": timing " << cases << " cases\n";
+                       return TimingOptions{.rounds = options.rounds,
+                                            .seconds = options.seconds,
+                                            .progress = Countdown("timing round")};
+                     });
 }
 
 StudyBench timed(const std::string& name, const Options& options) {
   if (std::ranges::count(shipped("scenes"), name) > std::ranges::count(shipped("studies"), name))
     throw InputError("'" + name + "' is a scene; --solver says what to time on it");
   const Study study = load_study(name, options.preset);
-  StudyBench result = bench(study.name, taut::cases_of(study), options);
+  StudyBench result = bench({study.name, taut::cases_of(study)}, study.name, options);
   Store store(options.out);
   keep(store, result);
   return result;
@@ -180,7 +147,7 @@ StudyBench compared(const std::string& scene, const Options& options) {
   CaseMaker maker;
   for (const std::string& solver : options.solvers)
     cases.push_back(maker.make({scene, options.settings, parse_solver(solver).canonical()}));
-  return bench(scene, cases, options);
+  return bench({"", cases}, scene, options);
 }
 
 /// Cores that a case keeps busy.
@@ -224,14 +191,6 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 }  // namespace
-
-void time_study(const std::string& study, const std::string& preset, double seconds,
-                const std::string& results) {
-  require_one_quiet_host();
-  Options options;
-  options.preset = preset, options.seconds = seconds, options.out = results;
-  timed(study, options);
-}
 
 }  // namespace taut::verb::bench
 
