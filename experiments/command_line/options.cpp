@@ -131,7 +131,7 @@ void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {
   app.add_option("--metric", metric, "What the error is (default: " + metric + ")")
       ->check(metric_value());
   app.add_option("--tolerance", tolerance,
-                 "Smaller relative differences are none (default: " + as_typed(tolerance) + ")")
+                 "Smaller relative differences do not count (default: " + as_typed(tolerance) + ")")
       ->check(above_zero());
 }
 

@@ -84,11 +84,11 @@ Record record_in(const Database::Rows& row) {
     if (!column.column.empty())
       with_member(r, column, [&](auto& member) { read(row, at++, member); });
   if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)
-    throw InputError("its sizes are none");
+    throw InputError("its time step or its sizes cannot be");
   return r;
 }
 
-/// The same; nothing, and why, where it is none.
+/// The same; nothing, and why, if a text is not what it has to be.
 std::optional<Record> record_of_row(const Database::Rows& row, std::string& why) {
   try {
     return record_in(row);

@@ -74,7 +74,7 @@ class Require(CommandLine):
         case = json.loads(self.taut(*facts_of(found)["smallest"].split()[1:], "--json").out)
         for answer in rows_of(found, "answers")[1:]:
             least = max(answer["tolerance"], answer["noise"])
-            if answer["name"] not in case["values"]:  # crossings are none of a model without self-collision
+            if answer["name"] not in case["values"]:  # a model without self-collision has no crossings
                 continue
             self.assertLessEqual(abs(case["values"][answer["name"]] - answer["value"]), least, answer)
         full = json.loads(self.taut("case", "./made.toml", "jakobsen", "--json").out)
