@@ -29,7 +29,7 @@ std::ifstream open_file(const std::filesystem::path&);
 [[noreturn]] void fail_in(const std::filesystem::path&, const std::string& why, int line = 0,
                           int column = 0);
 
-/// The words of a line, apart by blanks; what follows `comment` is none of it.
+/// The words of a line, apart by blanks; without what follows `comment`.
 inline std::vector<std::string_view> words_of(std::string_view line, char comment = '#') {
   constexpr std::string_view kBlank = " \t\r\f\v";
   line = line.substr(0, line.find(comment));
@@ -42,7 +42,7 @@ inline std::vector<std::string_view> words_of(std::string_view line, char commen
   return words;
 }
 
-/// The number that a whole word is, "nan" and "inf" included; nothing if it is none.
+/// The number that a whole word is, "nan" and "inf" included; nothing if it is not one.
 template <class T>
 std::optional<T> whole(std::string_view word) {
   T value{};

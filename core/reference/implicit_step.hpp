@@ -43,7 +43,7 @@ class ImplicitStep {
     double stretch = 0;           ///< m, largest |C| of rigid links
     double moved = 0;             ///< m, RMS: how far the last round of multipliers still moved x
     Vec3 contact = Vec3::Zero();  ///< N, sum of the colliders' forces on the cloth
-    std::string problem;          ///< why it is none; "": it is one
+    std::string problem;          ///< why x is no minimum; "": it is one
   };
   /// Newton with line search, sparse LDLT; rigid links and contact by an augmented Lagrangian
   /// around it. Four vertices in a plane, or three on a line, all rigidly linked, stay so: such

@@ -37,7 +37,7 @@ struct Cell {
   Cell(std::string_view text) : Cell(std::string(text)) {}
   Cell(const char* text) : Cell(std::string(text)) {}
   Cell(bool yes) : value(yes), state(State::value) {}
-  Cell(double number);  ///< nothing if it is none, or not finite
+  Cell(double number);  ///< nothing if it is not finite
   template <std::integral Number>
   requires(!std::same_as<Number, bool>) Cell(Number number) : Cell(static_cast<double>(number)) {}
   Cell(const Interval&);

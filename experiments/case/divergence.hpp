@@ -64,7 +64,7 @@ class EnergyBudget {
 /// being called extreme: 10 (eleven times its length) or, where it is larger, twice that of the
 /// softest relaxation, one sweep a step (truth legitimate-strain: 2 (N - 1) g dt^2/l in a hanging
 /// chain; here by cuts, as in EnergyBudget), but at most 30: what a scene asks for beyond that, by
-/// its start, its step or its forces, belongs into no mean.
+/// its start, its step or its forces, must not enter a mean.
 double legitimate_strain(const Scene&, int substeps = 1);
 
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing

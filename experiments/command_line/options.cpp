@@ -131,13 +131,31 @@ void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {
   app.add_option("--metric", metric, "What the error is (default: " + metric + ")")
       ->check(metric_value());
   app.add_option("--tolerance", tolerance,
-                 "Smaller relative differences are none (default: " + as_typed(tolerance) + ")")
+                 "Smaller relative differences do not count (default: " + as_typed(tolerance) + ")")
       ->check(above_zero());
 }
 
 void add_baselines(CLI::App& app, std::string& folder) {
   folder = results_folder() / "baselines";
   app.add_option("--baselines", folder, "Folder of the baselines (default: " + folder + ")");
+}
+
+BaselineOptions baseline_options() {
+  BaselineOptions options;
+  options.run = run_missing;
+  options.say = [](const std::string& news) { progress() << news << '\n'; };
+  options.title = [](const std::string& value) {
+    const ValueSpec* spec = find_value(value).second;
+    return spec && spec->role != Role::none ? report::quantity(value).title : "";
+  };
+  return options;
+}
+
+void add_baseline_options(CLI::App& app, BaselineOptions& options) {
+  options = baseline_options();
+  add_baselines(app, options.baselines);
+  add_results(app, options.out);
+  add_jobs(app, options.jobs);
 }
 
 void add_format(CLI::App& app, Format& format, const char* details) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/input_error.hpp"
+#include "experiments/baseline/baseline_study.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/command_line/output.hpp"
 #include "experiments/study/isolate.hpp"
@@ -52,6 +53,12 @@ void add_judgement(CLI::App&, std::string& metric, double& tolerance);
 
 /// The folder of the baselines, as --baselines.
 void add_baselines(CLI::App&, std::string& folder);
+
+/// Runs, says and names values as verbs do.
+BaselineOptions baseline_options();
+
+/// What every verb about baselines has: --baselines, --out, -j, and baseline_options().
+void add_baseline_options(CLI::App&, BaselineOptions&);
 
 /// --json, --csv and --markdown of an answer; --all if it has `details` that people rarely want.
 void add_format(CLI::App&, Format&, const char* details = nullptr);

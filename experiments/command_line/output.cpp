@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <sstream>
+#include <thread>
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
@@ -15,6 +16,7 @@
 #include "experiments/system/clock.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
+#include "experiments/system/signals.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
@@ -168,6 +170,17 @@ CampaignProgress run_missing(const std::vector<StudyCases>& studies, Store& stor
   const CampaignProgress campaign = run_cases(cases, store, options);
   display.finish(campaign);
   return campaign;
+}
+
+std::vector<Record> run_and_collect(const StudyCases& study, Store& store,
+                                    const std::string& command) {
+  store.prepare();
+  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (run_missing({study}, store, command, {.jobs = jobs}).interrupted) throw Interrupted();
+  std::vector<Record> records;
+  for (const Case& one : study.cases)
+    if (auto record = store.find(one)) records.push_back(std::move(*record));
+  return records;
 }
 
 int exit_code(const CampaignProgress& campaign, const Store& store) {

@@ -55,6 +55,9 @@ class Progress {
 CampaignProgress run_missing(const std::vector<StudyCases>&, Store&, const std::string& command,
                              CampaignOptions);
 
+/// The same on all cores, and what is then stored of each case. Throws InputError, Interrupted.
+std::vector<Record> run_and_collect(const StudyCases&, Store&, const std::string& command);
+
 /// The exit code of a campaign; says where the results are that differ from those stored.
 int exit_code(const CampaignProgress&, const Store&);
 

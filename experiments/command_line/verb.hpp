@@ -42,6 +42,9 @@ struct VerbEntry {
   VerbGroup group = VerbGroup::studies;
   std::string_view summary;  ///< one line
   std::string_view example;  ///< one or more full command lines, shown below --help
+  /// What --json has, by name: its facts, then each table with its columns, "cases ran; probes:
+  /// value status". "*": names that depend on what was asked for. "": no answer (answer.hpp).
+  std::string_view answer;
   /// Adds options to the verb's parser and returns what to do once they are parsed. It may throw
   /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr. nullptr: it has
   /// verbs and does nothing by itself.

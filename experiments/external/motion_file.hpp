@@ -12,7 +12,7 @@
 
 namespace taut::external {
 
-/// What is said of a file; what is not is derived.
+/// User-supplied options; missing ones are inferred.
 struct MotionOptions {
   std::filesystem::path file;  ///< positions (core/io/positions)
   double fps = 0;              ///< frames in a second; 0: one a step of the scene

@@ -13,7 +13,7 @@ constexpr int kFewest = 4;  ///< vertices along a side that a coarser grid keeps
 
 using Effects = std::vector<Effect>;
 
-/// One without a reduction is none.
+/// Skips effects that cannot be reduced.
 void add(Effects& effects, const std::string& name, std::vector<Reduction> reductions) {
   if (!reductions.empty()) effects.push_back({name, std::move(reductions)});
 }

@@ -122,7 +122,7 @@ class Search {
     }
   }
 
-  /// The noise of each answer; the shape of a chaotic scene is none that could be kept.
+  /// The noise of each answer; the shape of a chaotic scene cannot be kept.
   void choose_answers() {
     for (const KeptAnswer& answer : found_.answers) {
       double most = 0, reordered = 0;
@@ -156,7 +156,7 @@ class Search {
     }
   }
 
-  /// The case of the full model with these reductions; why it is none otherwise.
+  /// The case of the full model with these reductions, or why there is no such case.
   ModelTrial draft(const std::vector<const Reduction*>& reductions, const std::string& name,
                    const std::string& change, const std::string& comment = "") {
     ModelTrial trial{.change = change, .spec = {}, .why = "", .moved = {}, .cost = {}};

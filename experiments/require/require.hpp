@@ -90,7 +90,7 @@ struct Perturbations {
 /// Scenes that are made for it are written to `folder`. Throws InputError if they cannot be.
 Perturbations perturbations(const Case&, const std::filesystem::path& folder);
 
-/// How far an answer is from one that there is not.
+/// Distance to a missing answer.
 inline constexpr double kNoAnswer = std::numeric_limits<double>::infinity();
 
 /// The name of the answer that is no metric: where the cloth is at the end, as the largest distance
@@ -143,9 +143,9 @@ double value_of(const KeptAnswer&, const Observation&);
 
 /// How far the answer is from that of the full model [unit of the answer]; infinite if the other
 /// case did not run to its end or has no such value. Shapes of different grids are compared at the
-/// vertices of the coarser one, between those of the finer one bilinearly. A value that the other
-/// case lacks because what it speaks of was taken out of its scene is measured on its motion, and
-/// compared with the full model's, measured alike.
+/// vertices of the coarser one, between those of the finer one bilinearly. If the reduced scene no
+/// longer produces the value, it is measured on the reduced motion, and the full model's value the
+/// same way.
 double distance(const KeptAnswer&, const Observation& full, const Observation& other);
 
 /// Until when [s] two runs of one scene are within `tolerance` [m] of each other; nothing: to the

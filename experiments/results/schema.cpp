@@ -94,7 +94,8 @@ CREATE TABLE benches (
   in_turns INTEGER NOT NULL,
   control_low REAL,
   control REAL,
-  control_high REAL);
+  control_high REAL,
+  digest TEXT NOT NULL);
 
 CREATE TABLE timings (
   timing_id INTEGER PRIMARY KEY,

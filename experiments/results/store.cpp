@@ -84,11 +84,11 @@ Record record_in(const Database::Rows& row) {
     if (!column.column.empty())
       with_member(r, column, [&](auto& member) { read(row, at++, member); });
   if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)
-    throw InputError("its sizes are none");
+    throw InputError("its time step or its sizes cannot be");
   return r;
 }
 
-/// The same; nothing, and why, where it is none.
+/// The same; nothing, and why, if a text is not what it has to be.
 std::optional<Record> record_of_row(const Database::Rows& row, std::string& why) {
   try {
     return record_in(row);
@@ -238,12 +238,12 @@ std::optional<Record> Store::find(const std::string& key) const {
   if (!database) return {};
   std::string why;
   std::optional<Record> record = sound_record(*database, key, why);
-  if (!why.empty()) say_damaged(key, why);
+  if (!why.empty()) say_damaged("case " + key, why);
   return record;
 }
 
-void Store::say_damaged(const std::string& key, const std::string& why) const {
-  notice_(file().string() + ": damaged case " + key + " (" + why + "), counts as none");
+void Store::say_damaged(const std::string& what, const std::string& why) const {
+  notice_(file().string() + ": damaged " + what + " (" + why + "), counts as none");
 }
 
 std::optional<Record> Store::find(const Case& one) const {
@@ -260,7 +260,7 @@ Series Store::series(const std::string& key) const {
   if (!row.next()) return {};
   if (sha256(row.text(0)) == row.text(1))
     return series_from_json(row.text(0), file().string() + ": series of " + key);
-  notice_(file().string() + ": damaged series of " + key + ", counts as none");
+  say_damaged("series of " + key);
   return {};
 }
 
@@ -271,7 +271,7 @@ bool Store::has_frames(const std::string& key) const {
       "SELECT motion, frames.digest FROM frames JOIN cases USING (case_id) WHERE key = ?", key);
   if (!row.next()) return false;
   if (sha256(row.text(0)) == row.text(1)) return true;
-  notice_(file().string() + ": damaged motion of " + key + ", counts as none");
+  say_damaged("motion of " + key);
   return false;
 }
 
@@ -398,7 +398,7 @@ std::vector<Store::Entry> Store::entries() const {
     if (why.empty())
       all.push_back({key, record->id, result, is_result});
     else
-      say_damaged(key, why);
+      say_damaged("case " + key, why);
   }
   return all;
 }

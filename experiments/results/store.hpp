@@ -45,8 +45,8 @@ class Store {
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path file() const { return root_ / "results.db"; }
 
-  /// The stored record; nothing if there is none. One that does not match its digest is said, and
-  /// counts as none. Throws InputError if the file is damaged or cannot be read.
+  /// The stored record; nothing if there is none. A record whose digest does not match is reported
+  /// and treated as missing. Throws InputError if the file is damaged or cannot be read.
   std::optional<Record> find(const std::string& key) const;
   /// The same, under the names by which this case is called.
   std::optional<Record> find(const Case&) const;
@@ -82,13 +82,13 @@ class Store {
     std::string result;  ///< result_digest, computed
     bool is_result = false;
   };
-  /// Sorted by key. What does not match its digest is said, and counts as none.
+  /// Sorted by key. Records whose digest does not match are reported and left out.
   std::vector<Entry> entries() const;
   std::vector<std::string> keys() const;  ///< as they were stored
   /// SHA-256 over the keys and results of all cases that are results: two stores that know the same
   /// have the same.
   std::string digest() const;
-  /// Keys of which this store was given another result, too; one for each such result.
+  /// Keys that were committed with conflicting results, once for each conflict.
   std::vector<std::string> conflicts() const;
 
   /// Notes who runs what: command, host and time, and every case that is planned, of all shards, in
@@ -115,11 +115,13 @@ class Store {
 
   Database* reading() const;  ///< nullptr: there is no file yet
   Database& writing();
+  /// Says that something in the file does not match its digest, or why it is damaged.
+  void say_damaged(const std::string& what,
+                   const std::string& why = "it does not match its digest") const;
 
  private:
   struct State;
   void say_earlier_results() const;
-  void say_damaged(const std::string& key, const std::string& why) const;
   std::vector<std::string> unsound_keys() const;  ///< of cases that count as none
   std::optional<Record> sound_record(Database&, const std::string& key, std::string& why) const;
   void insert(Database&, const Record&, const CaseFiles&);

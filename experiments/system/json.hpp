@@ -26,7 +26,7 @@ std::string to_text(const Json&, int indent = -1);
 /// Throws Json::exception.
 Json parse_json(std::string_view);
 
-/// A number, or null if it is none.
+/// A number; null if it is not finite.
 Json json_number(double);
 /// Appends a field unless it is null or empty.
 void add_if(Json& object, const char* name, Json value);

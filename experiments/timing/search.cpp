@@ -12,9 +12,10 @@ namespace taut {
 
 namespace {
 
-constexpr double kDearer = 1.3;   ///< a quick cost this much above its own best is not worth a run
-constexpr double kHopeless = 30;  ///< nor is one this much above the best of all
-constexpr double kNotPolished = 10;  ///< above the best of all: found, but not polished
+constexpr double kSkipAboveOwnBest =
+    1.3;  ///< a quick cost this much above its own best is not worth a run
+constexpr double kAbandonAboveBest = 30;  ///< nor is one this much above the best of all
+constexpr double kRefineBelowBest = 10;   ///< above the best of all: found, but not polished
 
 /// Values of the second parameter, each tried with its own number of substeps.
 struct Columns {
@@ -143,7 +144,9 @@ class SettingSearch {
 
   /// Quick costs above this are not worth a run. A solver is held to its own best, so that the
   /// runner-up is as well chosen as the winner.
-  double bar() const { return std::min(kDearer * least(tried_), kHopeless * least(known_)); }
+  double bar() const {
+    return std::min(kSkipAboveOwnBest * least(tried_), kAbandonAboveBest * least(known_));
+  }
 
   /// The fewest substeps, a power of two times `from`, that reach the error; where the walk ended
   /// if none does for a cost worth paying.
@@ -226,7 +229,7 @@ class SettingSearch {
   /// Whether this solver is near enough to the best of the others to be polished.
   bool worth_more() const {
     if (!best_) return false;
-    return target_.budget || tried_[*best_].cost.mid <= kNotPolished * least(known_);
+    return target_.budget || tried_[*best_].cost.mid <= kRefineBelowBest * least(known_);
   }
 
   void alternatives() {

@@ -30,7 +30,7 @@ inline Interval interval_of_exponent(const PowerLaw& law) {
   return {law.exponent - 2 * law.error, law.exponent, law.exponent + 2 * law.error};
 }
 
-/// Relative differences below this are none.
+/// Relative differences below this do not count.
 inline constexpr double kTolerance = 0.05;
 
 /// How far the ratio of a code to itself lies from 1, as a share: 0.03 for 0.98 to 1.03.

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <tuple>
 #include <utility>
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/question.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/results/database.hpp"
 #include "experiments/system/distinct.hpp"
@@ -21,45 +23,78 @@ namespace taut {
 
 namespace {
 
+/// What the digest of a scene's bench is made of: all that the file holds of it.
+class DigestedBench {
+ public:
+  DigestedBench(const StudyBench& study, const SceneBench& scene) {
+    for (const std::string& text : {study.study, study.host, study.build, scene.scene}) add(text);
+    add(scene.in_turns ? "in turns" : "");
+    for (double ratio : {scene.control.low, scene.control.mid, scene.control.high}) add(ratio);
+  }
+  void add(const std::string& key, const Timing& timing) {
+    for (const std::string& text :
+         {key, timing.failure, timing.remark, std::to_string(timing.peak_bytes)})
+      add(text);
+    for (double seconds : timing.samples) add(seconds);
+    for (double seconds : timing.wall) add(seconds);
+  }
+  std::string digest() const { return sha256(all_); }
+
+ private:
+  void add(std::string_view text) { all_.append(text).append(1, '\0'); }
+  void add(double number) {  // NULL in the file is no number
+    if (!std::isnan(number)) all_.append(reinterpret_cast<const char*>(&number), sizeof number);
+    add("");
+  }
+  std::string all_;
+};
+
 /// The samples of one timing.
-Timing timing_in(Database& database, const Database::Rows& row, const std::string& key) {
+Timing timing_in(Database& database, const Database::Rows& row) {
   Timing timing{.peak_bytes = static_cast<std::size_t>(row.integer(2)),
                 .failure = row.text(3),
                 .remark = row.text(4)};
   Database::Rows sample = database.rows(
       "SELECT cpu, wall FROM samples WHERE timing_id = ? ORDER BY round", row.integer(0));
   while (sample.next()) {
-    timing.samples.push_back(sample.number(0)), timing.wall.push_back(sample.number(1));
-    if (!(timing.samples.back() > 0 && timing.wall.back() > 0))
-      throw InputError(database.file().string() + ": case " + key +
-                       ": expected times greater than 0");
+    timing.samples.push_back(sample.number(0));
+    timing.wall.push_back(sample.number(1));
   }
   return timing;
 }
 
-/// A scene of a bench, without cases that are no longer stored.
-SceneBench scene_in(const Store& store, const Database::Rows& row) {
+/// A scene of a bench, without cases that are no longer stored; without any, and said, if it does
+/// not match its digest.
+SceneBench scene_in(const Store& store, const StudyBench& study, const Database::Rows& row) {
   SceneBench scene{
       row.text(5), {row.number(7), row.number(8), row.number(9)}, {}, row.integer(6) != 0};
   Database::Rows timed = store.reading()->rows(
       "SELECT timing_id, key, peak_bytes, failure, remark FROM timings WHERE bench_id = ? ORDER BY "
       "timing_id",
       row.integer(0));
+  DigestedBench digested(study, scene);
   while (timed.next()) {
     const std::string key = timed.text(1);
-    Timing timing = timing_in(*store.reading(), timed, key);
+    Timing timing = timing_in(*store.reading(), timed);
+    digested.add(key, timing);
     if (auto record = store.find(key))
       scene.cases.push_back({std::move(*record), std::move(timing)});
   }
+  if (digested.digest() == row.text(10)) return scene;
+  store.say_damaged("bench of " + scene.scene + " in " + study.study);
+  scene.cases.clear();
   return scene;
 }
 
 void insert(Database& database, const StudyBench& study, const SceneBench& scene) {
+  DigestedBench digested(study, scene);
+  for (const auto& [record, timing] : scene.cases) digested.add(record.key, timing);
   database.run(
       "INSERT INTO benches (study, host, build, machine, made, scene, in_turns, control_low, "
-      "control, control_high) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      "control, control_high, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
       study.study, study.host, study.build, study.machine, utc_stamp(), scene.scene,
-      static_cast<int>(scene.in_turns), scene.control.low, scene.control.mid, scene.control.high);
+      static_cast<int>(scene.in_turns), scene.control.low, scene.control.mid, scene.control.high,
+      digested.digest());
   const std::int64_t bench = database.number_of("SELECT last_insert_rowid()");
   for (const auto& [record, timing] : scene.cases) {
     database.run(
@@ -158,6 +193,32 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>& reco
   return result;
 }
 
+namespace {
+
+/// Grouped by scene and its settings, in order of appearance; without what a solver refuses.
+std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
+    const std::vector<Record>& records) {
+  std::set<Question> asked;
+  for (const Record& record : records) asked.insert(question_of(record));
+  std::vector<std::pair<std::string, std::vector<Record>>> groups;
+  for (const Record& record : records) {
+    if (record.status.kind == Status::Kind::unsupported) continue;
+    group_of(groups, title_among(question_of(record), asked)).push_back(record);
+  }
+  return groups;
+}
+
+}  // namespace
+
+StudyBench bench_study(
+    const std::string& name, const std::vector<Record>& records,
+    const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of) {
+  StudyBench result = StudyBench::here(name);
+  for (const auto& [scene, own] : by_scene(records))
+    result.scenes.push_back(bench_scene(scene, own, options_of(scene, own.size())));
+  return result;
+}
+
 std::vector<std::string> solvers_of(const SceneBench& bench) {
   return distinct(bench.cases, [](const BenchedCase& c) { return c.record.solver; });
 }
@@ -196,7 +257,7 @@ std::vector<StudyBench> stored_benches(const Store& store, const std::string& st
   const StudyBench mine = StudyBench::here(study);
   Database::Rows row = database->rows(
       "SELECT bench_id, study, machine, host, build, scene, in_turns, control_low, control, "
-      "control_high FROM benches WHERE ?1 IN ('', study) "
+      "control_high, digest FROM benches WHERE ?1 IN ('', study) "
       "ORDER BY study, host <> ?2 OR build <> ?3, host <> ?2, host, build, bench_id",
       study, mine.host, mine.build);
   while (row.next()) {
@@ -204,8 +265,8 @@ std::vector<StudyBench> stored_benches(const Store& store, const std::string& st
     const auto is_of = [&](const StudyBench& b) {
       return std::tie(b.study, b.host, b.build) == std::tie(bench.study, bench.host, bench.build);
     };
+    SceneBench scene = scene_in(store, bench, row);
     if (all.empty() || !is_of(all.back())) all.push_back(std::move(bench));
-    SceneBench scene = scene_in(store, row);
     if (!scene.cases.empty()) all.back().scenes.push_back(std::move(scene));
   }
   std::erase_if(all, [](const StudyBench& bench) { return bench.scenes.empty(); });

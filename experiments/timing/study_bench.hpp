@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -98,6 +99,12 @@ struct StudyBench {
   std::vector<Record> records() const;
 };
 
+/// Times these cases scene by scene, settings of a scene apart; the time step is a solver's
+/// setting, for a cost is that of a simulated second. `options_of` is asked before each scene.
+StudyBench bench_study(
+    const std::string& name, const std::vector<Record>&,
+    const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of);
+
 /// Times cases of one scene whose physics are known.
 SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, const TimingOptions&);
 
@@ -109,7 +116,7 @@ std::vector<std::string> solvers_of(const SceneBench&);
 void keep(Store&, const StudyBench&);
 
 /// What is stored of a study ("": of all): of this host and build, of this host, of others by name;
-/// of cases that are stored, in scenes that have any. Throws InputError: damaged.
+/// of cases that are stored, in scenes that have any.
 std::vector<StudyBench> stored_benches(const Store&, const std::string& study);
 
 /// Throws InputError in a Slurm job that may not time: on several nodes, or not alone on its node.

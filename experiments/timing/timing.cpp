@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -18,6 +17,7 @@
 
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/run_all.hpp"
 #include "experiments/timing/interleave.hpp"
 
 namespace taut {
@@ -186,7 +186,7 @@ SampledCase start_case(const CaseToTime& timed, const TimingOptions& options) {
 }
 
 /// Its whole run, once: from what it costs follows how many steps make a sample.
-void see_run(SampledCase& one, const CaseToTime& timed, const TimingOptions& options) {
+void pilot(SampledCase& one, const CaseToTime& timed, const TimingOptions& options) {
   const int all = std::max(1, timed.steps);
   one.guard(
       [&] { one.steps = times_within(options.seconds, one.worker->pilot_run(all).cpu, all); });
@@ -198,15 +198,8 @@ std::vector<SampledCase> start_cases(const std::vector<CaseToTime>& all,
                                      const TimingOptions& options) {
   std::vector<SampledCase> cases;
   for (const CaseToTime& one : all) cases.push_back(start_case(one, options));
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < all.size(); i = next++) see_run(cases[i], all[i], options);
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (unsigned j = 1; j < std::thread::hardware_concurrency(); ++j) threads.emplace_back(work);
-    work();
-  }
+  run_all(all.size(), static_cast<int>(std::thread::hardware_concurrency()),
+          [&](std::size_t i) { pilot(cases[i], all[i], options); });
   return cases;
 }
 
@@ -226,7 +219,7 @@ class Control {
       started_ = true;
       if (of_ == cases.size()) break;
       twin_ = start_case(all_[of_], options_);
-      see_run(twin_, all_[of_], options_);
+      pilot(twin_, all_[of_], options_);
       twin_.steps = cases[of_].steps;
       skipped_ = cases[of_].timing.samples.size() / 2 * 2;  // those of the rounds that are over
     }

@@ -38,7 +38,7 @@ Tip tip(const Scene& s, const std::vector<Vec3>& x) {
   return {-out.y() / kOverhang, -out.z() / kOverhang};
 }
 
-/// Where it comes to rest: implicit Euler's steps are so long that inertia is none.
+/// Where it comes to rest: implicit Euler's steps are so long that inertia does not count.
 State at_rest(Scene s) {
   s.dt = 1, s.damping = 0;
   Simulation sim(s, "implicit:iterations=2000");

@@ -234,6 +234,12 @@ tolerance = 0.1
         process = self.taut("check", "./study.toml", "--strict-env", expect=5)
         self.assertIn("an abacus", process.err)
 
+    def test_a_baseline_that_cannot_be_written_prints_nothing(self):
+        (self.folder / "taken").write_text("")
+        refused = self.taut("baseline", "update", self.study(), "--why", "a test", "--baselines", "taken", "--json", expect=2)
+        self.assertEqual(refused.out, "")
+        self.assertIn("taken", refused.err)
+
     def test_a_damaged_baseline_is_named_by_file_and_line(self):
         self.update()
         (self.baseline / "bullet.jsonl").write_text("{\n")

@@ -224,6 +224,17 @@ class Verbs(CommandLine):
         for line in said.partition("next: ")[2].splitlines():
             self.taut(*shlex.split(line)[1:])
 
+    def test_an_axis_of_one_solver_is_drawn_and_what_is_dropped_is_said(self):
+        rest = 'axes."xpbd:structural" = [1e-5, 1e-4, 1e-3]\n[[plot]]\nkind = "convergence"\nx = "xpbd:structural"\n'
+        study = self.study(solvers=["jakobsen", "xpbd"], rest=rest)
+        self.taut("run", study)
+        self.taut("plot", study, "-o", "figures")
+        data, = (self.folder / "figures").glob("*.csv")
+        rows = [(row["curve"], row["solver"], float(row["x"])) for row in csv.DictReader(data.open())]
+        self.assertEqual(rows, [("0", "xpbd", x) for x in (1e-5, 1e-4, 1e-3)], "one curve")
+        self.study(solvers=["jakobsen", "xpbd"], rest=rest + '[[plot]]\nkind = "contact"\n')
+        self.assertIn("not drawn: ", self.taut("plot", study, "-o", "figures", expect=3).err)
+
     def test_what_only_a_preset_has_is_said(self):
         rest = 'axes.iterations = [1, 2]\n[preset.quick]\nset = ["time.duration=0.25"]\n[preset.half]\naxes.iterations = [1]\n'
         study = self.study(rest=rest + '[[plot]]\nkind = "convergence"\n')

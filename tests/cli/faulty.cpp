@@ -20,7 +20,7 @@ constexpr ParamSpec kParams[] = {
     ParamSpec::choice(
         "mode", "stable",
         "stable|crash|abort|hang|spin|memory|nan|throw|exit|print|slow|refuse|random|"
-        "exit74|exit127|chdir|fork|daemon|stop|stretch|fewer|far|forge|words|restless",
+        "exit74|exit127|chdir|fork|daemon|stop|stretch|fewer|far|forge|words|restless|held",
         "what it does at that step"),
     ParamSpec::integer("at", "5", 1, 1e6, "step at which it does it"),
     ParamSpec::integer("variant", "0", 0, 1e6, "makes cases differ"),
@@ -43,7 +43,8 @@ class Faulty final : public Solver {
 
   void step(double, double dt) override {
     if (++step_ == at_) misbehave();
-    if (mode_ == "slow" && !std::getenv("TAUT_TEST_AWAKE")) usleep(10'000);
+    if (mode_ == "slow") usleep(10'000);
+    while (mode_ == "held" && access("go-on", F_OK) != 0) usleep(1000);
     for (std::size_t i = 0; i < state_.x.size(); ++i) {
       state_.v[i] += gravity_ * dt;
       state_.x[i] += state_.v[i] * dt;

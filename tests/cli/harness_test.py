@@ -15,6 +15,8 @@ import time
 import stored
 from command_line import BINARIES, CommandLine, main
 
+# In this order, for what has sweeps is estimated to take longer. The last two wait until there is a file go-on.
+TWO_AND_HELD = ["jakobsen:precision=double", "bullet", "faulty:mode=held,variant=1", "faulty:mode=held,variant=2"]
 KILLS = int(os.environ.get("TAUT_KILLS", 12))  # 200 in the target harness_kills
 SANITIZED = "asan" in BINARIES.name  # its allocator knows no limit on address space
 
@@ -88,7 +90,7 @@ class FaultySolvers(CommandLine):
                 time.sleep(0.02)
 
     def test_ctrl_c_ends_what_left_its_session_too(self):
-        study = self.study(solvers=["faulty:mode=daemon", "faulty:mode=slow"], rest='set = ["time.duration=60"]\n')
+        study = self.study(solvers=["faulty:mode=daemon", "faulty:mode=held"])
         process = self.start("run", study, "-j", 2, program="taut-faulty")
         left = self.folder / "left-by-daemon"
         while not left.exists() or not left.read_text():
@@ -104,19 +106,19 @@ class FaultySolvers(CommandLine):
         self.assertIn("was stopped from outside; nothing is stored of it", run.err)
         self.assertEqual([r["solver"] for r in self.records()], ["jakobsen"])
         for end in (signal.SIGKILL, signal.SIGTERM):
-            study = self.study(solvers=["faulty:mode=slow", "faulty:mode=stable"], rest='set = ["time.duration=2"]\n')
+            study = self.study(solvers=["faulty:mode=held", "faulty:mode=stable"])
             process = self.start("run", study, program="taut-faulty")
             cases = []
             while not cases:
-                cases = [p for p in self.children_of(process.pid) if b"faulty:mode=slow" in b"".join(p[1])]
+                cases = [p for p in self.children_of(process.pid) if b"faulty:mode=held" in b"".join(p[1])]
                 time.sleep(0.02)
             os.kill(cases[0][0], end)
             said = process.communicate(timeout=60)[1]
             self.assertEqual(process.returncode, 3, said)
             self.assertIn("from outside; nothing is stored of it", said)
-            self.assertNotIn("slow", [r["params"].get("mode") for r in self.records()])
-        awake = {**os.environ, "TAUT_TEST_AWAKE": "1"}
-        self.assertRegex(self.taut("run", study, program="taut-faulty", env=awake).err, r"2/2 cases: .* 2 \(1 were stored already\)")
+            self.assertNotIn("held", [r["params"].get("mode") for r in self.records()])
+        (self.folder / "go-on").touch()
+        self.assertRegex(self.taut("run", study, program="taut-faulty").err, r"2/2 cases: .* 2 \(1 were stored already\)")
 
     def children_of(self, pid):
         found = []
@@ -286,7 +288,7 @@ class Store(CommandLine):
         self.assertEqual([file.name for file in (self.folder / "results/runs").glob("results.db*")], ["results.db"])
 
     def test_ctrl_c_then_resume(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=TWO_AND_HELD)
         process = self.start("run", study, "-j", 1, program="taut-faulty")
         while not self.keys():
             time.sleep(0.05)
@@ -295,28 +297,32 @@ class Store(CommandLine):
         self.assertEqual(process.returncode, 130, said)
         self.assertIn("goes on where this one stopped", said)
         self.assertLess(len(self.keys()), 4)
+        (self.folder / "go-on").touch()
         self.taut("run", study, program="taut-faulty")
         self.assertEqual(len(self.keys()), 4)
 
     def test_a_run_that_ignores_hangups_goes_on(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2]\n")
-        for ignored, code in ((True, 0), (False, 130)):
+        study = self.study(solvers=TWO_AND_HELD)
+        for ignored, code in ((False, 130), (True, 0)):
             process = self.start("run", study, "-j", 1, "--out", f"ignored-{ignored}", program="taut-faulty", preexec_fn=(
                 (lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) if ignored else None))
-            while "[1/3]" not in (line := process.stderr.readline()):
+            while "[1/4]" not in (line := process.stderr.readline()):
                 self.assertTrue(line, "it ended")
             process.send_signal(signal.SIGHUP)
+            if ignored:
+                (self.folder / "go-on").touch()
             _, said = process.communicate(timeout=30)
             self.assertEqual(process.returncode, code, said)
 
     def test_two_runs_share_a_folder(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
+        study = self.study(solvers=["faulty:mode=held"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
         scratch = self.folder / "scratch"
         scratch.mkdir()
         both = [self.start("run", study, "-j", 3, program="taut-faulty", env={**os.environ, "TMPDIR": str(scratch)})]
         while not [*scratch.glob("*/*/heartbeat")]:
             time.sleep(0.01)
         both.append(self.start("run", study, "-j", 3, program="taut-faulty"))
+        (self.folder / "go-on").touch()
         for process in both:
             _, said = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 0, said)
@@ -345,8 +351,8 @@ class Store(CommandLine):
         self.assertEqual(len(before), 4)
         for stop in (signal.SIGINT, signal.SIGTERM):
             process = self.start("bench", study, "--rounds", 1000, program="taut-faulty")
-            while "timing" not in process.stderr.readline():
-                pass
+            while "timing" not in (line := process.stderr.readline()):
+                self.assertTrue(line, "it ended")
             time.sleep(0.5)
             process.send_signal(stop)
             process.communicate(timeout=30)
@@ -354,8 +360,7 @@ class Store(CommandLine):
             self.assertEqual(timed(), before)
 
     def test_a_bench_interrupted_before_it_times_stores_nothing(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5, 6, 7]\n")
-        process = self.start("bench", study, program="taut-faulty")
+        process = self.start("bench", self.study(solvers=TWO_AND_HELD), program="taut-faulty")
         while not self.keys():
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
@@ -423,11 +428,12 @@ class Store(CommandLine):
                 aside.unlink()
 
     def test_a_file_that_vanishes_or_is_locked_is_said(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=TWO_AND_HELD)
         process = self.start("run", study, "-j", 1, program="taut-faulty")
         while not self.keys():
             time.sleep(0.02)
         (self.folder / "results/runs/results.db").unlink()
+        (self.folder / "go-on").touch()
         _, said = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 2, said)
         self.assertRegex(said.splitlines()[-1], "^results/runs/results.db: cannot (write|open): ")
@@ -485,12 +491,16 @@ class Store(CommandLine):
         self.assertEqual(stored.query(self.folder / "results/runs", "SELECT session FROM sessions UNION SELECT key FROM planned"), [])
 
     def test_a_results_folder_that_is_moved_away_loses_nothing_finished(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=TWO_AND_HELD)
+        goes_on = self.folder / "go-on"
+        goes_on.touch()
         whole = self.store_digest(self.taut("run", study, "--out", "whole", "-j", 4, program="taut-faulty"))
+        goes_on.unlink()
         process = self.start("run", study, "-j", 1, program="taut-faulty")
         while not self.keys():
             time.sleep(0.02)
         (self.folder / "results/runs").rename(self.folder / "moved")
+        goes_on.touch()
         _, said = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 2, said)
         self.assertIn("results/runs/", said.splitlines()[-1])
@@ -543,7 +553,7 @@ class Store(CommandLine):
         disk = self.folder / "network.so"  # a path in LD_PRELOAD ends at a space
         disk.symlink_to(BINARIES / "libnetwork_disk.so")
         zeus, ares = ({**os.environ, "LD_PRELOAD": str(disk), "HOST_NAME": name} for name in ("zeus", "ares"))
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3, 4, 5]\n")
+        study = self.study(solvers=TWO_AND_HELD)
         mark = self.folder / "results/runs/results.db.writer"
         process = self.start("run", study, "-j", 1, program="taut-faulty", env=zeus)
         while not self.keys():
@@ -552,26 +562,28 @@ class Store(CommandLine):
         refused = self.taut("run", study, program="taut-faulty", env=ares, expect=2)
         self.assertIn("results.db: host zeus writes it too, and between hosts the locks of NFS are not reliable", refused.err)
         self.taut("export", study, program="taut-faulty", env=ares, expect=3)  # reading is no harm
+        (self.folder / "go-on").touch()
         self.taut("run", study, program="taut-faulty", env=zeus)  # nor is a second process of the host
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0)
         self.assertFalse(mark.exists())
         mark.write_text("zeus 999999999\n")  # of a process that was killed
         self.taut("run", study, program="taut-faulty", env=ares, expect=2)
-        self.assertIn("(6 were stored already)", self.taut("run", study, program="taut-faulty", env=zeus).err)
+        self.assertIn("(4 were stored already)", self.taut("run", study, program="taut-faulty", env=zeus).err)
         self.taut("run", study, program="taut-faulty", env=ares)
         mark.write_text("zeus \n")  # cut by a full disk: of no process
         self.taut("run", study, program="taut-faulty", env=zeus)
         self.assertFalse(mark.exists())
 
     def test_a_program_that_vanishes_is_no_result(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
+        study = self.study(solvers=TWO_AND_HELD)
         mine = self.folder / "taut-faulty"
         shutil.copy(BINARIES / "taut-faulty", mine)
         process = self.start("run", study, "-j", 1, program=mine)  # an absolute path stays what it is
         while not self.keys():
             time.sleep(0.05)
         mine.unlink()
+        (self.folder / "go-on").touch()
         _, said = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 2, said)
         self.assertIn("cannot be executed", said)

@@ -74,7 +74,7 @@ class Require(CommandLine):
         case = json.loads(self.taut(*facts_of(found)["smallest"].split()[1:], "--json").out)
         for answer in rows_of(found, "answers")[1:]:
             least = max(answer["tolerance"], answer["noise"])
-            if answer["name"] not in case["values"]:  # crossings are none of a model without self-collision
+            if answer["name"] not in case["values"]:  # a model without self-collision has no crossings
                 continue
             self.assertLessEqual(abs(case["values"][answer["name"]] - answer["value"]), least, answer)
         full = json.loads(self.taut("case", "./made.toml", "jakobsen", "--json").out)
@@ -121,7 +121,7 @@ class Require(CommandLine):
         process = self.start("require", "./made.toml", "jakobsen")
         for _ in range(600):
             time.sleep(0.05)
-            if len(self.keys()) >= 3:
+            if self.keys():  # it has most of its cases before it
                 break
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)

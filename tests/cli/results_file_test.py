@@ -88,16 +88,16 @@ class ResultsFile(CommandLine):
             self.assertEqual(count, (33,))
 
     def test_others_read_it_while_it_is_written(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest="axes.variant = [0, 1, 2, 3]\n")
-        process = self.start("run", study, "-j", 1, program="taut-faulty")
-        while not self.keys():
+        process = self.start("run", self.study(solvers=["jakobsen", "bullet", "faulty:mode=held"]), "-j", 1, program="taut-faulty")
+        while not self.keys():  # what has sweeps runs first
             pass
         reader = sqlite3.connect(self.folder / "results/runs/results.db")
         self.assertGreater(reader.execute(HOW_FAR).fetchall()[0][1], 0)
         reader.close()
+        (self.folder / "go-on").touch()
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, said)
-        self.assertEqual(self.query(HOW_FAR), [("study", 0, 4)])
+        self.assertEqual(self.query(HOW_FAR), [("study", 0, 3)])
 
 
 class Damage(CommandLine):
@@ -159,13 +159,17 @@ class Damage(CommandLine):
         said = self.taut("cluster", "merge", "one", "merged", "--out", "x", "--quiet", expect=None)
         self.assertNotEqual((said.returncode, said.err), (2, ""), "it says why it exits with 2")
 
-    def test_series_and_answers_have_digests(self):
+    def test_series_answers_and_benches_have_digests(self):
         study = self.study(rest='[[plot]]\nkind = "series"\ny = "stretch.rms"\n')
         self.taut("run", study)
         self.taut("converge", "./small.toml", "--solver", "jakobsen", "--record")
         self.sql(["UPDATE series SET columns = replace(columns, '0.1', '0.2')"], ["UPDATE answers SET answer = replace(answer, '1', '2')"])
         self.assertIn("damaged series", self.taut("plot", study, expect=None).err)
         self.assertIn("does not match its digest", self.taut("report", study, "--json").err)
+        self.taut("bench", study, "--rounds", 2, "--seconds", 0.001)
+        self.assertNotIn("damaged bench", self.taut("report", study, "--json").err)
+        self.sql(["UPDATE samples SET cpu = 2 * cpu WHERE round = 1"])
+        self.assertIn("damaged bench of small in study", self.taut("report", study, "--json").err)
 
     def test_a_foreign_file_with_a_view_without_end_is_refused(self):
         study = self.study()

@@ -1,10 +1,12 @@
 """What a results file holds, as `taut case --json` prints it."""
 
 import contextlib
+import hashlib
 import json
 import pathlib
 import re
 import sqlite3
+import struct
 
 
 def query(folder, sql, *values):
@@ -23,6 +25,23 @@ def change(folder, sql, *values):
         connection.execute("PRAGMA foreign_keys = ON")
         connection.execute(sql, values)
         connection.commit()
+
+
+def seal_benches(folder):
+    """Gives every scene's bench the digest of what it holds now."""
+    for bench in query(folder, "SELECT * FROM benches"):
+        texts = [bench["study"], bench["host"], bench["build"], bench["scene"], "in turns" if bench["in_turns"] else ""]
+        parts = [text.encode() for text in texts] + [number(bench[ratio]) for ratio in ("control_low", "control", "control_high")]
+        for timing in query(folder, "SELECT * FROM timings WHERE bench_id = ? ORDER BY timing_id", bench["bench_id"]):
+            parts += [str(timing[column]).encode() for column in ("key", "failure", "remark", "peak_bytes")]
+            samples = query(folder, "SELECT * FROM samples WHERE timing_id = ? ORDER BY round", timing["timing_id"])
+            parts += [number(sample[clock]) for clock in ("cpu", "wall") for sample in samples]
+        digest = hashlib.sha256(b"".join(part + b"\0" for part in parts)).hexdigest()
+        change(folder, "UPDATE benches SET digest = ? WHERE bench_id = ?", digest, bench["bench_id"])
+
+
+def number(value):
+    return b"" if value is None else struct.pack("<d", value)
 
 
 def keys(folder):

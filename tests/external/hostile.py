@@ -29,7 +29,7 @@ def answer(told, more=b""):
     OUT.flush()
 
 
-real = True  # the scene is none of the probe's
+real = True  # the scene is not one of the probe's
 
 
 def spin(seconds):

@@ -61,7 +61,7 @@ def judge_record(record):
     if status in ('ok', 'unsettled') and (record['values'].get('stretch.peak') or 0) > LEGITIMATE:
         raise Finding(f"{status} with a strain of {record['values']['stretch.peak']}")
     if not record['dt'] > 0:
-        raise Finding('a time step that is none')
+        raise Finding('a time step that is not above 0')
 
 
 class Attempt:

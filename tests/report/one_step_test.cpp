@@ -54,9 +54,9 @@ TEST(OneStep, ItsPointsAreCasesWithTheirIterationsAndValues) {
   EXPECT_EQ(work_of(r), (Work{1, 16}));
   for (const auto& [kind, value] : {std::pair{"distance", 1e-5}, {"gap", 1e-8}, {"stretch", 1e-3}})
     EXPECT_EQ(r.value(step_value(kind)), value) << kind;
-  EXPECT_EQ(step.label("jakobsen"), "Jakobsen") << "alone of its name";
-  EXPECT_EQ(step.label("vbd:structural=800"), solver_title("vbd") + " (structural=800)");
-  EXPECT_EQ(step.label("vbd"), solver_title("vbd")) << "nothing is set";
+  EXPECT_EQ(solver_label(step, "jakobsen"), "Jakobsen") << "alone of its name";
+  EXPECT_EQ(solver_label(step, "vbd:structural=800"), solver_title("vbd") + " (structural=800)");
+  EXPECT_EQ(solver_label(step, "vbd"), solver_title("vbd")) << "nothing is set";
   Answer other = found();
   other.facts[1].cell = Cell("");
   EXPECT_EQ(OneStep(other).scene(), "hang");

@@ -114,7 +114,7 @@ TEST(Reductions, OfAWindAreItsLawAndItself) {
   EXPECT_FALSE(less("wind").scene->wind);
   EXPECT_EQ(steps_of(hang({"wind={ velocity = [1, 0, 0], law = \"literal\" }"}), "law of the wind"),
             Strings{});
-  Draft both(full.spec);  // the law of a wind that is gone is none
+  Draft both(full.spec);  // a wind that is gone has no law
   for (const Effect& effect : effects_of(full))
     if (effect.name.ends_with("wind")) effect.reductions.front().apply(both);
   EXPECT_FALSE(make_case(both.write(scratch.path(), "both")).scene->wind);

@@ -17,6 +17,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/results/schema.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/damaged_results.hpp"
 
@@ -223,6 +224,13 @@ TEST_F(StoreTest, TheSameResultWithItsMotionTakesThePlaceOfOneWithout) {
   EXPECT_EQ(store_.commit(r, {.motion = "a motion"}), Store::Commit::same);
   EXPECT_EQ(put(r), Store::Commit::same);
   EXPECT_TRUE(store_.has_frames(r.key));
+  change(store_, "UPDATE frames SET motion = x'00'");
+  EXPECT_FALSE(store_.has_frames(r.key)) << "it does not match its digest";
+  EXPECT_THROW(store_.motion(r.key), InputError);
+  ASSERT_EQ(said_.size(), 1u);
+  EXPECT_NE(said_[0].find("damaged motion of " + r.key), std::string::npos) << said_[0];
+  EXPECT_EQ(store_.commit(r, {.motion = "a motion"}), Store::Commit::stored);
+  EXPECT_TRUE(store_.has_frames(r.key));
   EXPECT_EQ(store_.digest(), digest);
 }
 
@@ -424,7 +432,9 @@ TEST_F(StoreTest, AFileOfAnotherVersionIsNeitherReadNorWritten) {
       use();
       ADD_FAILURE();
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("(version 99; this one reads 4)"), std::string::npos)
+      EXPECT_NE(std::string(error.what())
+                    .find("(version 99; this one reads " + std::to_string(kSchemaVersion) + ")"),
+                std::string::npos)
           << error.what();
     }
 }

@@ -20,7 +20,8 @@ namespace taut::ends_of_ranges_test {
 namespace {
 
 /// In double where there is a choice. The adaptive start of vertex solvers is for cloths that
-/// something holds: of what it takes away few sweeps bring back little (core/README.md).
+/// something holds: of what it takes away few sweeps bring back little
+/// (results/benchmarks/methods.md).
 std::string exact(const SolverEntry& entry, bool inertia = true) {
   std::string text(entry.name);
   for (const ParamSpec& param : entry.params) {

@@ -27,6 +27,7 @@ experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|stu
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/(study|results)/[a-z_]+.hpp
 experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|results|study|timing))/
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
+experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
@@ -34,11 +35,11 @@ experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
 experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(picture|film)|report))/
-experiments/report       | (core/model|experiments/(answer|system|metrics|case|results|study|timing|require|baseline|truths|report))/
-experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|report/chart))/|experiments/report/input
+experiments/report       | (core/model|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|truths|report))/
+experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|steps|report/chart))/|experiments/report/input
 experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|baseline|truths|report/(chart|answer|model)))/|experiments/report/input
+experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|truths|report/(chart|answer|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
@@ -63,36 +64,41 @@ FNR == 1 { space = ""; own = 0 }
   seen[name] = FILENAME
 }'
 
+# awk: "file:line:#include ..." of all files, against the rules and the owners, which are in the environment
+against='
+BEGIN {
+  rules = split(ENVIRON["rules"], rule, "\n")
+  for (i = 1; i <= rules; ++i) {
+    split(rule[i], half, " +[|] +")
+    if (half[1] != "") allowed[half[1]] = "^#include \"(" half[2] ")"
+  }
+  owners = split(ENVIRON["owners"], owner, "\n")
+}
+{
+  file = $0; sub(/:.*/, "", file)
+  line = $0; sub(/^[^:]*:/, "", line); sub(/:.*/, "", line)
+  text = $0; sub(/^[^:]*:[^:]*:/, "", text)
+  what = text; sub(/^#include /, "", what)
+  folder = file
+  while (sub(/\/[^\/]*$/, "", folder) && !(folder in allowed)) {}
+  if (folder in allowed && text ~ /^#include "/ && text !~ allowed[folder])
+    printf "%s:%s: %s may not include %s\n", file, line, folder, what
+  for (i = 1; i <= owners; ++i) {
+    if (owner[i] == "") continue
+    split(owner[i], half, " +[|] +")
+    if (text ~ "^#include [<\"](" half[1] ")" && file !~ half[2])
+      printf "%s:%s: only %s may include %s\n", file, line, half[2], what
+  }
+}'
+
 check() {
-  local root=$1 bad=0 folder allowed what who file
-  cd "$root"
-  local folders deeper
-  folders=$(cut -d' ' -f1 <<<"$rules")
-  while IFS='|' read -r folder allowed; do
-    folder=${folder// /} allowed=${allowed// /}
-    [[ -n $folder && -d $folder ]] || continue
-    deeper=$({ grep "^$folder/" <<<"$folders" || true; } | paste -sd'|')
-    while IFS=: read -r file line text; do
-      [[ -n $file && ! ( -n $deeper && $file =~ ^($deeper)/ ) ]] || continue
-      printf '%s:%s: %s may not include %s\n' "$file" "$line" "$folder" "${text#*include }"
-      bad=1
-    done < <(grep -rnE --include='*.?pp' '^#include "' "$folder" | grep -vE "#include \"($allowed)" || true)
-  done < <(sed 's/ | /|/' <<<"$rules" | sed 's/ *|/|/')
-  while IFS= read -r rule; do
-    [[ -n $rule ]] || continue
-    what=${rule%% | *} who=${rule##* | }
-    what=${what%"${what##*[! ]}"}
-    while IFS=: read -r file line text; do
-      [[ -n $file && ! $file =~ $who ]] || continue
-      printf '%s:%s: only %s may include %s\n' "$file" "$line" "$who" "${text#*include }"
-      bad=1
-    done < <(grep -rnE --include='*.?pp' "^#include [<\"]($what)" core bullet_ref experiments tests || true)
-  done <<<"$owners"
-  while IFS= read -r line; do
-    printf '%s\n' "$line"
-    bad=1
-  done < <(find core bullet_ref experiments tests -name '*.[ch]pp' -print0 | sort -z | xargs -0 awk "$twice")
-  return $bad
+  cd "$1"
+  local found
+  found=$({
+    grep -rnE --include='*.?pp' '^#include' core bullet_ref experiments tests | rules=$rules owners=$owners awk "$against"
+    find core bullet_ref experiments tests -name '*.[ch]pp' -print0 | sort -z | xargs -0 awk "$twice"
+  })
+  [[ -z $found ]] || { printf '%s\n' "$found"; return 1; }
 }
 
 self_test() {
@@ -129,6 +135,7 @@ experiments/study/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/study/cluster/planted.cpp|"experiments/study/frontier/parameter_frontier.hpp"
 experiments/study/frontier/planted.cpp|"experiments/study/cluster/cluster.hpp"
 experiments/timing/planted.cpp|"core/solver/simd/kernels.hpp"
+experiments/steps/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/timing/bench/planted.cpp|"experiments/results/store.hpp"
 experiments/render/picture/planted.cpp|"experiments/render/film/film.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"

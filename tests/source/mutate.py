@@ -52,7 +52,7 @@ EQUIVALENT = pathlib.Path(__file__).with_name("equivalent_mutants.txt")
 # Layers and their libraries; the tests of each are in the folder of tests/ with its last name.
 LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut_solver", "core/reference": "taut_reference",
           "bullet_ref": "taut_bullet64", **{f"experiments/{name}": f"taut_{name}" for name in (
-              "system", "answer", "metrics", "case", "external", "results", "study", "timing", "require", "baseline", "truths",
+              "system", "answer", "metrics", "case", "external", "results", "study", "timing", "steps", "require", "baseline", "truths",
               "report", "render")}, "experiments/cli": "taut_commands", "experiments/command_line": "taut_commands"}
 LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
 PROGRAMS = (UNIT, TAUT, "taut-f32", "taut-faulty")  # have the errors: the last two are called by the others

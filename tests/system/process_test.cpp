@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -18,6 +19,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/run_all.hpp"
 
 namespace taut::process_test {
 namespace {
@@ -355,6 +357,23 @@ TEST(Clocks, AFutureIsNeverBeforeItsStart) {
     EXPECT_LE(before, between);
     EXPECT_LE(between, now);
   }
+}
+
+TEST(RunAll, CallsEachOnceAndNoneAfterAnException) {
+  for (int jobs : {1, 3, 50}) {
+    std::array<std::atomic<int>, 20> calls{};
+    run_all(calls.size(), jobs, [&](std::size_t i) { ++calls[i]; });
+    for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
+  }
+  int calls = 0;
+  EXPECT_THROW(run_all(9, 1,
+                       [&](std::size_t i) {
+                         ++calls;
+                         if (i == 2) throw InputError("no");
+                       }),
+               InputError);
+  EXPECT_EQ(calls, 3);
+  run_all(0, 4, [](std::size_t) { ADD_FAILURE(); });
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/model/input_error.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/study_bench.hpp"
@@ -114,16 +113,9 @@ class Kept {
       for (const BenchedCase& c : scene.cases) store.commit(c.record);
     keep(store, session);
   }
-  std::string said() const {
-    try {
-      stored_benches(store, "");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
   const Scratch scratch;
-  Store store{scratch.path() / "results"};
+  std::string said;
+  Store store{scratch.path() / "results", [this](const std::string& text) { said += text; }};
 };
 
 BenchedCase stored_case(const std::string& solver, std::vector<double> samples, char key) {
@@ -189,14 +181,19 @@ TEST(StoredBenches, TakeThePlaceOfThoseOfTheirHostAndBuildAlone) {
   EXPECT_EQ(order, here.build.substr(0, 3) + " old ares zeus ") << "this host and build first";
 }
 
-TEST(StoredBenches, WhatCannotBeATimeIsRefusedWithItsCase) {
-  Kept kept({"trade", "m", {{"sheet", {1, 1, 1}, {stored_case("a", {1, 2}, 'a')}}}, "zeus", "b"});
-  for (const char* damage : {"cpu = 0", "wall = -1", "cpu = 'x'"}) {
-    change(kept.store, "UPDATE samples SET cpu = 1, wall = 1");
-    EXPECT_EQ(kept.said(), "");
-    change(kept.store, std::string("UPDATE samples SET ") + damage + " WHERE round = 1");
-    EXPECT_EQ(kept.said(), kept.store.file().string() + ": case " + std::string(64, 'a') +
-                               ": expected times greater than 0");
+TEST(StoredBenches, ThatDoNotMatchTheirDigestCountAsNone) {
+  for (const char* damage :
+       {"UPDATE samples SET cpu = 3 WHERE round = 1", "UPDATE samples SET wall = 'x'",
+        "DELETE FROM samples WHERE round = 1", "UPDATE timings SET peak_bytes = 1",
+        "UPDATE timings SET failure = 'no clock'", "UPDATE timings SET remark = 'x'",
+        "DELETE FROM timings", "UPDATE benches SET control = 2", "UPDATE benches SET host = 'ares'",
+        "UPDATE benches SET in_turns = 0", "UPDATE benches SET scene = 'ball'"}) {
+    Kept kept({"trade", "m", {{"sheet", {1, 1, 1}, {stored_case("a", {1, 2}, 'a')}}}, "zeus", "b"});
+    EXPECT_EQ(stored_benches(kept.store, "trade").size(), 1u);
+    EXPECT_EQ(kept.said, "");
+    change(kept.store, damage);
+    EXPECT_TRUE(stored_benches(kept.store, "trade").empty()) << damage;
+    EXPECT_NE(kept.said.find("damaged bench of "), std::string::npos) << damage << kept.said;
   }
 }
 

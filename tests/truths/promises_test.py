@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`taut verify` as a whole: no truth is broken, each promises what promises.tsv says, and each compares something.
 
-A promise is what a truth expects of whom, and how exactly; what was measured is none. Whoever loosens a tolerance or
+A promise is what a truth expects of whom, and how exactly; what was measured is not one. Whoever loosens a tolerance or
 leaves a solver out changes a line there: promises_test.py BUILD --write. A truth that is new has none yet.
 """
 import json

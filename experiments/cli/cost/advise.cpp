@@ -547,4 +547,13 @@ TAUT_VERB(advise) = {
         "tunnelling.count:0\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
         "Exit: 0 found; 3 found, solvers not searched; 4 not reached; 6 the best does not repeat "
         "bit for bit",
+    .answer =
+        "best error cost again control same_bits confirmed certainty command searched seconds "
+        "patience complete cheapest cheapest_cost nearest quick_cost; "
+        "solvers: solver setting error cost times peak_bytes note; "
+        "kept: value limit best; "
+        "without: effect share cost fits; "
+        "refused: setting why; "
+        "not_done: solver what; "
+        "tried: setting error quick_cost refused",
     .bind = taut::bind_verb<taut::verb::advise::add_options, taut::verb::advise::run>};

@@ -1,13 +1,9 @@
 #include <cstdlib>
-#include <set>
-#include <thread>
 
-#include "experiments/case/question.hpp"
-#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/distinct.hpp"
+#include "experiments/timing/bench_answer.hpp"
 #include "experiments/timing/recommendation.hpp"
 
 namespace taut::verb::bench {
@@ -25,150 +21,22 @@ struct Options {
   Format format;
 };
 
-/// The physics of every case, from the store or run now.
-std::vector<Record> physics(const StudyCases& study, const Options& options) {
+StudyBench bench(const StudyCases& study, const std::string& name, const Options& options) {
   Store store(options.out);
-  store.prepare();
-  const int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  if (run_missing({study}, store, "taut bench", {.jobs = jobs}).interrupted) throw Interrupted();
-  std::vector<Record> records;
-  for (const Case& one : study.cases)
-    if (auto record = store.find(one)) records.push_back(std::move(*record));
-  return records;
-}
-
-/// "clearly cheaper", "likely dearer", "no difference", ...
-std::string verdict(const Interval& ratio, const Interval& control, double tolerance) {
-  const Certainty sure = judge(ratio, control, tolerance);
-  if (sure == Certainty::too_noisy) return "too noisy to judge";
-  if (sure == Certainty::none) return "no difference";
-  return std::string(sure == Certainty::clear ? "clearly " : "likely ") +
-         (ratio.mid < 1 ? "cheaper" : "dearer");
-}
-
-/// The same code against itself.
-Table controls_of(const StudyBench& bench, double tolerance) {
-  Table table{"scenes", "", {{"scene"}, {"control", "the same code against itself"}, {"verdict"}}};
-  for (const SceneBench& scene : bench.scenes)
-    table.rows.push_back({scene.scene, scene.control,
-                          std::isnan(scene.control.mid)       ? "no case could be timed"
-                          : spread(scene.control) > tolerance ? "this machine is too noisy now"
-                                                              : "quiet enough"});
-  return table;
-}
-
-/// Who is cheapest for each error, and who is most accurate within each budget.
-Table recommended_of(const StudyBench& bench, const Options& options) {
-  std::vector<Target> targets;
-  for (const double level : options.levels) targets.push_back({level, {}});
-  for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
-  Table table = recommendations(options.metric);
-  for (const SceneBench& scene : bench.scenes)
-    for (const Target& target : targets)
-      add(table, recommend(scene, target, options.metric, options.tolerance), scene,
-          options.metric);
-  return table;
-}
-
-/// Every case, beside the first of its scene that was timed.
-Table cases_of(const StudyBench& bench, const Options& options) {
-  Table table{"cases",
-              "what was timed",
-              {{"scene"},
-               {"case"},
-               {"solver"},
-               {"cost", "CPU time a simulated s", {"s/s", "ms", 1e3}},
-               {"cpu", "CPU time a step", kMilliseconds},
-               {"wall", "wall time", kMilliseconds},
-               {"peak_bytes", "process", kMegabytes},
-               {"error", options.metric, unit_of_value(options.metric)},
-               {"status"},
-               {"times", "times the first"},
-               {"verdict"},
-               {"remark"}}};
-  for (const SceneBench& scene : bench.scenes) {
-    const auto timed = [](const BenchedCase& c) { return c.timing.failure.empty(); };
-    const auto first =
-        static_cast<std::size_t>(std::ranges::find_if(scene.cases, timed) - scene.cases.begin());
-    for (std::size_t i = 0; i < scene.cases.size(); ++i) {
-      const auto& [record, timing] = scene.cases[i];
-      Cell id(record.id), cost, cpu, wall, bytes;
-      id.key = record.key;
-      if (timing.failure.empty())
-        cost = scene.cases[i].cost(), cpu = bootstrap_median(timing.samples),
-        wall = median(timing.wall), bytes = timing.peak_bytes;
-      const auto times = i > first ? scene.ratio(i, first) : std::nullopt;
-      table.rows.push_back(
-          {scene.scene, id, record.solver, cost, cpu, wall, bytes, record.value(options.metric),
-           to_string(record.status.kind), times,
-           times ? verdict(*times, scene.control, options.tolerance) : "",
-           timing.failure.empty() ? timing.remark : "not timed: " + timing.failure});
-    }
-  }
-  return table;
-}
-
-Table samples_of(const StudyBench& bench) {
-  Table table{"samples",
-              "samples of a step",
-              {{"scene"},
-               {"case"},
-               {"round"},
-               {"cpu", "CPU time", kMilliseconds},
-               {"wall", "wall time", kMilliseconds}}};
-  for (const SceneBench& scene : bench.scenes)
-    for (const auto& [record, timing] : scene.cases)
-      for (std::size_t k = 0; k < timing.samples.size(); ++k)
-        table.rows.push_back({scene.scene, record.id, k, timing.samples[k], timing.wall[k]});
-  table.detail = true;
-  return table;
-}
-
-/// `of_study`: people see who is best for what; else the cases.
-Answer answer_of(const StudyBench& bench, const Options& options, bool of_study) {
-  Answer answer{"bench", bench.study};
-  answer.add(Column("machine").in_detail(), bench.machine);
-  answer.add(Column("host").in_detail(), bench.host);
-  answer.add(Column("build").in_detail(), bench.build);
-  answer.add(controls_of(bench, options.tolerance));
-  if (of_study) answer.add(recommended_of(bench, options));
-  answer.add(cases_of(bench, options)).detail = of_study;
-  answer.add(samples_of(bench));
-  return answer;
-}
-
-/// Cases grouped by scene and its settings, in order of appearance. The time step is one of the
-/// settings of a solver: a cost is that of a simulated second.
-std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
-    const std::vector<Record>& records) {
-  std::set<Question> asked;
-  for (const Record& record : records) asked.insert(question_of(record));
-  std::vector<std::pair<std::string, std::vector<Record>>> groups;
-  for (const Record& record : records) {
-    if (record.status.kind == Status::Kind::unsupported) continue;
-    group_of(groups, title_among(question_of(record), asked)).push_back(record);
-  }
-  return groups;
-}
-
-StudyBench bench(const std::string& name, const std::vector<Case>& cases, const Options& options) {
-  StudyBench result = StudyBench::here(name);
-  for (const auto& [scene, records] :
-       by_scene(physics({options.solvers.empty() ? name : "", cases}, options))) {
-    progress() << scene << ": timing " << records.size() << " cases\n";
-    result.scenes.push_back(bench_scene(scene, records,
-                                        {.rounds = options.rounds,
-                                         .seconds = options.seconds,
-                                         .progress = Countdown("timing round")}));
-  }
-  return result;
+  return bench_study(name, run_and_collect(study, store, "taut bench"),
+                     [&](const std::string& scene, std::size_t cases) {
+                       progress() << scene << ": timing " << cases << " cases\n";
+                       return TimingOptions{.rounds = options.rounds,
+                                            .seconds = options.seconds,
+                                            .progress = Countdown("timing round")};
+                     });
 }
 
 StudyBench timed(const std::string& name, const Options& options) {
   if (std::ranges::count(shipped("scenes"), name) > std::ranges::count(shipped("studies"), name))
     throw InputError("'" + name + "' is a scene; --solver says what to time on it");
   const Study study = load_study(name, options.preset);
-  StudyBench result = bench(study.name, taut::cases_of(study), options);
+  StudyBench result = bench({study.name, taut::cases_of(study)}, study.name, options);
   Store store(options.out);
   keep(store, result);
   return result;
@@ -180,7 +48,7 @@ StudyBench compared(const std::string& scene, const Options& options) {
   CaseMaker maker;
   for (const std::string& solver : options.solvers)
     cases.push_back(maker.make({scene, options.settings, parse_solver(solver).canonical()}));
-  return bench(scene, cases, options);
+  return bench({"", cases}, scene, options);
 }
 
 /// Cores that a case keeps busy.
@@ -200,9 +68,10 @@ int run(const Options& options) {
   require_one_quiet_host();
   if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
   for (const std::string& name : options.what)
-    print(options.solvers.empty() ? answer_of(timed(name, options), options, true)
-                                  : answer_of(compared(name, options), options, false),
-          options.format);
+    print(
+        bench_answer(options.solvers.empty() ? timed(name, options) : compared(name, options),
+                     {options.levels, options.metric, options.tolerance, options.solvers.empty()}),
+        options.format);
   return kPass;
 }
 
@@ -225,14 +94,6 @@ void add_options(CLI::App& app, Options& o) {
 
 }  // namespace
 
-void time_study(const std::string& study, const std::string& preset, double seconds,
-                const std::string& results) {
-  require_one_quiet_host();
-  Options options;
-  options.preset = preset, options.seconds = seconds, options.out = results;
-  timed(study, options);
-}
-
 }  // namespace taut::verb::bench
 
 TAUT_VERB(bench) = {
@@ -243,4 +104,10 @@ TAUT_VERB(bench) = {
         "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
         "jakobsen:iterations=1,substeps=16 --solver "
         "bullet:iterations=1,substeps=16\n  taut bench effects\n  taut bench scaling",
+    .answer =
+        "machine host build; "
+        "scenes: scene control verdict; "
+        "recommended: scene target solver setting error cost times answer; "
+        "cases: scene case solver cost cpu wall peak_bytes error status times verdict remark; "
+        "samples: scene case round cpu wall",
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};

@@ -1,176 +1,30 @@
-#include <algorithm>
-#include <optional>
-
-#include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/study/campaign.hpp"
-#include "experiments/study/frontier/frontier.hpp"
-#include "experiments/system/clock.hpp"
-#include "experiments/timing/scaling.hpp"
+#include "experiments/timing/scaling_bench.hpp"
 
 namespace taut::verb::scaling {
 
 namespace {
 
-constexpr int kMost = 1 << 16;                         ///< sweeps or substeps of a search
-constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< of a case, bytes of private memory
-
 struct Options {
   std::string study, preset, error, out;
-  double limit = 20;
-  int samples = 6;
+  double limit = ScalingOptions{}.limit;
+  int samples = ScalingOptions{}.samples;
   Format format;
 };
-
-Measured measure(const Case& one, double expected, Store& store, const Options& options) {
-  const auto start = SteadyClock::now();
-  progress() << one.id << (expected < 1 ? "" : ", about " + number_text(expected, 2) + " s")
-             << '\n';
-  BenchedCase benched{*run_stored(one, store, {options.limit * 4, kMemory}), {}};
-  Timing& timing = benched.timing;
-  const Record& record = benched.record;
-  if (record.status.kind != Status::Kind::unsupported && record.status.is_result()) try {
-      TimingWorker worker(one.spec);
-      const int all = steps_done(record);
-      const int steps = times_within(0.05, worker.pilot_run(all).cpu, all);
-      for (int i = 0; i < options.samples; ++i) {
-        const StepTime time = worker.sample(steps);
-        timing.samples.push_back(time.cpu);
-        timing.wall.push_back(time.wall);
-      }
-      timing.peak_bytes = worker.peak_bytes();
-    } catch (const std::runtime_error& error) {
-      timing.failure = error.what();
-    }
-  return {std::move(benched), seconds_since(start)};
-}
-
-/// The number that a search enlarges until the error is met: substeps of a solver that has one
-/// sweep in each, else sweeps.
-std::string searched(const SolverChoice& choice) {
-  const AccuracyParameters& of = choice.entry->accuracy;
-  const bool sweeps = !of.sweeps.empty() && choice.params.integer(of.sweeps) != 1;
-  const std::string name(sweeps ? of.sweeps : of.substeps);
-  if (name.empty()) throw InputError(choice.brief() + ": it has neither sweeps nor substeps");
-  return name;
-}
-
-/// The least value of that number, to 5 %, with which the case's error is at most `error`: doubled,
-/// then bisected. A search that has not ended after --limit has failed.
-Measured least(const Case& base, double error, Store& store, const Options& options) {
-  const auto start = SteadyClock::now(), end = in_seconds(options.limit);
-  const std::string name = searched(base.choice);
-  std::optional<Record> last;
-  const auto with_value = [&](int n) {
-    CaseSpec spec = base.spec;
-    set_parameter(spec.solver, name, std::to_string(n));
-    return make_case(spec);
-  };
-  const auto meets = [&](int n) -> std::optional<bool> {
-    const auto record = run_stored(with_value(n), store, {kLongestSeconds, kMemory}, end);
-    if (!record) return {};
-    last = record;
-    return completed(record->status) && record->value(kErrorMetric) <= error;
-  };
-  int low = 0, high = 1;
-  std::optional<bool> met;
-  while ((met = meets(high)) && !*met && high < kMost) low = high, high *= 2;
-  while (met && *met && high - low > std::max(1, high / 20)) {
-    const int middle = (low + high) / 2;
-    const auto enough = meets(middle);
-    if (!enough)
-      met = enough;
-    else
-      (*enough ? high : low) = middle;
-  }
-  if (!met || !*met) {
-    Measured failed{{last ? *last : Record{}, {}}, seconds_since(start)};
-    failed.benched.timing.failure = met ? "not reached" : "not found within --limit";
-    return failed;
-  }
-  Measured found = measure(with_value(high), 0, store, options);
-  found.seconds = seconds_since(start);
-  return found;
-}
-
-Cell exponent(const std::optional<PowerLaw>& law) {
-  return law ? Cell(interval_of_exponent(*law)) : Cell().with("too few sizes");
-}
-
-void add_tables(Answer& answer, const std::vector<ScalingLine>& lines) {
-  Table sizes{"sizes",
-              "",
-              {{"setting"},
-               {"vertices"},
-               Column("run", "as it was run"),
-               {"cpu", "CPU time a step, 95 %", kMilliseconds},
-               {"wall", "wall time", kMilliseconds},
-               {"cpu_per_vertex", "CPU time a vertex", kNanoseconds},
-               {"stretch.rms", "stretch.rms", kShare},
-               {"plan_bytes_per_vertex", "bytes a vertex", kBytes},
-               {"peak_bytes", "process", kMegabytes},
-               {"status"}}},
-      exponents{"exponents",
-                "exponents over vertices, 95 %",
-                {{"setting"}, {"cpu", "CPU time"}, {"wall", "wall time"}, {"memory"}}},
-      samples{"samples",
-              "samples of a step",
-              {{"setting"},
-               {"vertices"},
-               {"cpu", "CPU time", kMilliseconds},
-               {"wall", "wall time", kMilliseconds}}},
-      skipped{"skipped", "skipped", {{"setting"}, {"why"}}};
-  for (const ScalingLine& line : lines) {
-    for (const BenchedCase& c : line.cases) {
-      const auto n = static_cast<double>(c.record.vertices);
-      const Interval cpu = bootstrap_median(c.timing.samples);
-      sizes.rows.push_back({line.setting, c.record.vertices,
-                            parse_solver(c.record.spec.solver).brief(), cpu, median(c.timing.wall),
-                            cpu.mid / n, c.record.value("stretch.rms"), plan_bytes(c.record) / n,
-                            c.timing.peak_bytes,
-                            c.timing.failure.empty() ? std::string(to_string(c.record.status.kind))
-                                                     : c.timing.failure});
-      for (std::size_t i = 0; i < c.timing.samples.size(); ++i)
-        samples.rows.push_back(
-            {line.setting, c.record.vertices, c.timing.samples[i], c.timing.wall[i]});
-    }
-    exponents.rows.push_back(
-        {line.setting, exponent(line.cpu), exponent(line.wall), exponent(line.memory)});
-    for (const std::string& why : line.skipped) skipped.rows.push_back({line.setting, why});
-  }
-  samples.detail = true;
-  for (Table* table : {&sizes, &exponents, &skipped, &samples}) answer.add(std::move(*table));
-}
-
-/// Where `taut plot` and the report find it: a bench, but of cases that were not timed in turns.
-void keep(const Study& study, const std::vector<ScalingLine>& lines, Store& store) {
-  SceneBench scene{study.scenes.front(), {}, {}, false};
-  for (const ScalingLine& line : lines)
-    for (const BenchedCase& c : line.cases) scene.cases.push_back(c);
-  StudyBench session = StudyBench::here(study.name);
-  session.scenes = {scene};
-  taut::keep(store, session);
-}
 
 int run(const Options& options) {
   require_one_quiet_host();
   const std::string name = !options.study.empty()  ? options.study
                            : options.error.empty() ? "scaling"
                                                    : "scaling-error";
+  ScalingOptions how{.limit = options.limit, .samples = options.samples};
+  how.say = [](const std::string& text) { progress() << text << '\n'; };
+  if (!options.error.empty()) how.error = error_of(options.error);
   const Study study = load_study(name, options.preset);
-  const std::vector<Case> cases = cases_of(study);
   Store store(options.out);
   store.prepare();
-  const std::vector<ScalingLine> lines =
-      measure_scaling(cases, options.limit, [&](const Case& one, double expected) {
-        return options.error.empty() ? measure(one, expected, store, options)
-                                     : least(one, error_of(options.error), store, options);
-      });
-  Answer answer{"bench scaling", study.name};
-  keep(study, lines, store);
-  add_tables(answer, lines);
-  print(answer, options.format);
+  print(scaling_answer(study.name, bench_scaling(study, store, how)), options.format);
   return kPass;
 }
 
@@ -200,4 +54,10 @@ TAUT_VERB(scaling) = {
     .example =
         "taut bench scaling\n  taut bench scaling --error 0.5%\n  taut bench scaling --preset "
         "quick --limit 5\n  taut plot scaling --preset quick",
+    .answer =
+        "sizes: setting vertices run cpu wall cpu_per_vertex stretch.rms plan_bytes_per_vertex "
+        "peak_bytes status; "
+        "exponents: setting cpu wall memory; "
+        "skipped: setting why; "
+        "samples: setting vertices cpu wall",
     .bind = taut::bind_verb<taut::verb::scaling::add_options, taut::verb::scaling::run>};

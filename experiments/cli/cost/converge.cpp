@@ -1,29 +1,16 @@
-#include <algorithm>
-#include <cmath>
-
-#include "core/io/scene_io.hpp"
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
-#include "experiments/answer/answer.hpp"
-#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/one_step.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/results/store.hpp"
-#include "experiments/study/study.hpp"
-#include "experiments/system/data.hpp"
-#include "experiments/timing/convergence.hpp"
 
 namespace taut::verb::convergence {
 
 namespace {
 
-struct Options {
-  /// Of a state whose links hardly deviate the exact step is near; jakobsen's is far off its links.
-  std::string scene, from = "implicit:structural=1e5,shear=1e5,bend=1e5";
-  std::vector<std::string> solvers, settings;
+struct Options : StepQuestion {
   std::string kind = "distance", figures, out;
-  double at = 0.5;
-  int most = 256;
   bool record = false;
   Format format;
 };
@@ -43,23 +30,11 @@ void continue_in_one_program(const std::vector<std::string>& solvers) {
   for (const std::string& solver : solvers) continue_in_right_program(parse_solver(solver));
 }
 
-Answer ask(const Options& options) {
-  check_solvers(options.solvers);
-  const Scene scene = load_scene(find_scene(options.scene), options.settings);
-  if (scene.self_collision)
-    throw InputError("converge: self-collision is no part of the exact step; take a scene without");
-  const double at = std::round(options.at / scene.dt) * scene.dt;
-  const State state = state_at(scene, parse_solver(options.from), at);
-  return report::one_step_answer(
-      {scene.name, join(options.settings, ", "), options.from, at, scene.dt},
-      converge(scene, state, at, options.solvers, options.most));
-}
-
 std::string draw(const Answer& answer, const Options& options) {
-  const report::OneStep step(answer);
+  const OneStep step(answer);
   const report::PlotSpec spec{.kind = "convergence",
                               .x = report::kSweeps,
-                              .y = report::step_value(options.kind),
+                              .y = step_value(options.kind),
                               .title = answer.subject,
                               .file = slug("converge-" + step.scene() + "-" + options.kind)};
   return report::make_plot(spec, {{"", report::step_records(step, options.kind)}}, options.figures)
@@ -68,7 +43,8 @@ std::string draw(const Answer& answer, const Options& options) {
 
 int run(const Options& options) {
   continue_in_one_program(options.solvers);
-  Answer answer = ask(options);
+  check_solvers(options.solvers);
+  Answer answer = one_step(options);
   const bool any = !answer.table("solvers").rows.empty();
   if (options.record) {
     Store store(options.out);
@@ -93,7 +69,7 @@ void add_options(CLI::App& app, Options& o) {
   CLI::Option* const figures =
       add_output(app, o.figures, "Draw it into this folder, as SVG with its data and script");
   app.add_option("--kind", o.kind, "What is drawn: distance, gap, stretch, residual")
-      ->check(known("kind", report::step_kinds()))
+      ->check(known("kind", step_kinds()))
       ->needs(figures);
   app.add_flag("--record", o.record, "Also keep what is found for the report");
   add_results(app, o.out);
@@ -102,13 +78,6 @@ void add_options(CLI::App& app, Options& o) {
 
 }  // namespace
 
-Answer one_step(const std::string& scene, const std::vector<std::string>& solvers) {
-  const StudyScene chosen = parse_scene(scene);
-  Options options;
-  options.scene = chosen.name, options.settings = chosen.settings, options.solvers = solvers;
-  return ask(options);
-}
-
 }  // namespace taut::verb::convergence
 
 TAUT_VERB(converge) = {
@@ -116,4 +85,10 @@ TAUT_VERB(converge) = {
     .group = VerbGroup::cost,
     .summary = "Error over iterations inside one step, against the exact step",
     .example = "taut converge chain --solver jakobsen --solver admm --at 0.5 -o figures",
+    .answer =
+        "scene settings at from dt picture; "
+        "points: solver iterations residual stretch gap distance cpu; "
+        "solvers: solver structural shear bend contraction floor moved exact_residual exact; "
+        "reached: solver below iterations cpu; "
+        "unsupported: solver why",
     .bind = taut::bind_verb<taut::verb::convergence::add_options, taut::verb::convergence::run>};

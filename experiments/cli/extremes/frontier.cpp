@@ -262,4 +262,11 @@ TAUT_VERB(frontier) = {
         "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000\n"
         "  taut frontier --all jakobsen bullet\n"
         "Exit: 0 found; 1 a frontier of --all moved; 4 nothing was answered or compared",
+    .answer =
+        "of kind stable theory looked_for cases ran picture unstable growth above; "
+        "probes: value status step case; "
+        "parameters: solver parameter unit good bad symptom at_start theory law lacks from to "
+        "downwards cases beyond_scene beyond_solver; "
+        "beyond: solver parameter override; "
+        "commands: solver parameter command",
     .bind = taut::bind_verb<taut::verb::frontier::add_options, taut::verb::frontier::run>};

@@ -171,4 +171,13 @@ TAUT_VERB(require) = {
         "taut require flag\n  taut require ball jakobsen:faces=on --keep shape:2% --keep "
         "stretch.max:0.5%\n  taut require my/scene.toml bullet --json\n"
         "Exit: 0 found; 3 stopped by --patience; 6 the smallest model does not repeat bit for bit",
+    .answer =
+        "key scene solver can_go required kept chaotic horizon bytes smallest file verified "
+        "time_left control picture cases ran seconds patience complete; "
+        "answers: name shown value tolerance noise order unit; "
+        "effects: name change * time bytes verdict may_go; "
+        "not_kept: what; "
+        "not_done: what; "
+        "trials: effect change done within why bytes work_per_step steps scene solver *; "
+        "scenes: scene chaotic kept can_go required time_left",
     .bind = taut::bind_verb<taut::verb::requiring::add_options, taut::verb::requiring::run>};

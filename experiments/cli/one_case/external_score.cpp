@@ -3,9 +3,10 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
-#include "experiments/cli/calls.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/motion_file.hpp"
+#include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -38,6 +39,8 @@ std::vector<std::string> fitted(const Options& o) {
 }
 
 int run(const Options& o) {
+  if (o.solvers.size() > 3) throw InputError("--solver: three to draw beside, at most");
+  check_solvers(o.solvers);
   const std::string solver = external::solver_text(o.motion);
   admit_solver(solver);
   const Case one = CaseMaker().make({o.scene, fitted(o), solver});
@@ -54,7 +57,7 @@ int run(const Options& o) {
     RunRequest both{
         .scene = o.scene, .overrides = one.spec.overrides, .solvers = {one.spec.solver}};
     both.solvers.insert(both.solvers.end(), o.solvers.begin(), o.solvers.end());
-    render::draw_end(both, o.picture);
+    draw_end(both, o.picture, [](const std::string& news) { progress() << news << '\n'; });
     answer.add({"picture"}, o.picture);
   }
   print(answer, o.format);
@@ -91,4 +94,7 @@ TAUT_VERB(external_score) = {
     .example =
         "taut external score hang blender.pc2 --fps 24 --series blender.csv\n  taut external "
         "score hang houdini.pc2 --scale 0.01 --z-up --solver jakobsen --picture hang.png",
+    .answer =
+        "status steps dt vertices links projections digest key step vertex picture *; "
+        "read: what how",
     .bind = taut::bind_verb<taut::verb::score::add_options, taut::verb::score::run>};

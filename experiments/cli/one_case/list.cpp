@@ -127,6 +127,20 @@ void list_record(Answer& all) {
   all.add(std::move(table));
 }
 
+/// What each verb prints with --json: a row for its facts, a row for each table.
+void list_answers(Answer& all) {
+  Table table{"answers", "answers of verbs", {{"verb"}, {"table"}, {"columns", "names"}}};
+  for (const VerbEntry* verb : verbs())
+    for (const std::string& part : parts_of(verb->answer, ';')) {
+      const std::string text = part.substr(part.find_first_not_of(' '));
+      const std::size_t colon = text.find(": ");
+      const bool facts = colon == std::string::npos;
+      table.rows.push_back({verb->name, facts ? "facts" : text.substr(0, colon),
+                            facts ? text : text.substr(colon + 2)});
+    }
+  all.add(std::move(table));
+}
+
 /// What publications assert.
 void list_assertions(Answer& all) {
   Table table{"assertions",
@@ -147,7 +161,7 @@ void list_assertions(Answer& all) {
 constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {
     {"scenes", list_scenes},         {"solvers", list_solvers}, {"metrics", list_metrics},
     {"studies", list_studies},       {"keys", list_keys},       {"fabrics", list_fabrics},
-    {"assertions", list_assertions}, {"record", list_record}};
+    {"assertions", list_assertions}, {"record", list_record},   {"answers", list_answers}};
 
 std::vector<std::string> kinds() {
   std::vector<std::string> names;
@@ -164,10 +178,9 @@ int run(const Options& options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option(
-         "WHAT", o.what,
-         "scenes | solvers | metrics | studies | keys | fabrics | assertions | record (default: "
-         "all)")
+  app.add_option("WHAT", o.what,
+                 "scenes | solvers | metrics | studies | keys | fabrics | assertions | record | "
+                 "answers (default: all)")
       ->check(known("kind", kinds()));
   add_format(app, o.format, "Types, ranges and examples of keys, too");
 }
@@ -181,4 +194,17 @@ TAUT_VERB(list) = {.name = "list",
                        "Names scenes, solvers with parameters, metrics, studies, keys, fabrics, "
                        "assertions",
                    .example = "taut list solvers",
+                   .answer =
+                       "solvers: name summary source; "
+                       "parameters: solver name default unit allowed help; "
+                       "scenes: name vertices links dt duration summary; "
+                       "metrics: name summary source; "
+                       "values: metric name unit in_series help; "
+                       "studies: name presets question scenes solvers; "
+                       "keys: key type unit range default example help; "
+                       "study_keys: key help; "
+                       "fabrics: name mass warp weft drape source licence; "
+                       "record: key column type help; "
+                       "assertions: source name summary verdict because truth; "
+                       "answers: verb table columns",
                    .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};

@@ -161,4 +161,5 @@ TAUT_VERB(reference) = {
     .group = VerbGroup::one_case,
     .summary = "Rebuilds converged references of scenes, or says why there is none",
     .example = "taut reference drape\n  taut reference --all",
+    .answer = "references: scene kind t floor derivation refused",
     .bind = taut::bind_verb<taut::verb::references::add_options, taut::verb::references::run>};

@@ -1,7 +1,6 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
-#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/image/video.hpp"
@@ -23,7 +22,6 @@ struct Options {
   std::string size, quality;
   double range = 0;
   bool sheet = false, video = false, dark = false, json = false;
-  bool silent = false;  ///< the files are not named
 };
 
 std::pair<int, int> parse_size(const std::string& text) {
@@ -164,7 +162,7 @@ int run(Options options) {
   const std::vector<std::string> files = options.video   ? draw_video(options, set, out)
                                          : options.sheet ? draw_sheet(options, set, times, out)
                                                          : draw_stills(options, set, times, out);
-  if (!options.silent) print_files(files, options.json);
+  print_files(files, options.json);
   return kPass;
 }
 
@@ -192,12 +190,6 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 }  // namespace
-
-void draw_end(const RunRequest& what, const std::string& file) {
-  Options options;
-  options.what = what, options.output = file, options.silent = true;
-  run(options);
-}
 
 }  // namespace taut::verb::render
 

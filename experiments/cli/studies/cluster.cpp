@@ -209,12 +209,17 @@ TAUT_VERB(cluster_submit) = {
     .example =
         "taut cluster submit iterations --on slurm --hours 2\n  taut cluster submit "
         "my/study.toml --on parallel --sshlogin a,b --shards 8 --dry-run",
+    .answer = "folder cases shards minutes",
     .bind = taut::bind_verb<taut::verb::cluster::add_options_submit, taut::verb::cluster::submit>};
 
 TAUT_VERB(cluster_status) = {
     .name = "cluster status",
     .summary = "Done and failed cases of every shard, and the command that starts the rest",
     .example = "taut cluster status results/cluster/iterations",
+    .answer =
+        "cases done start again; "
+        "shards: shard state cases done host started; "
+        "failed: shard case status",
     .bind = taut::bind_verb<taut::verb::cluster::add_options_status, taut::verb::cluster::status>};
 
 TAUT_VERB(cluster_merge) = {
@@ -223,4 +228,9 @@ TAUT_VERB(cluster_merge) = {
     .example =
         "taut cluster merge results/cluster/iterations\n"
         "  taut cluster merge results/shard1 results/shard2 --out results/runs",
+    .answer =
+        "cases there merged store; "
+        "missing: case; "
+        "foreign: case; "
+        "conflicts: case",
     .bind = taut::bind_verb<taut::verb::cluster::add_options_merge, taut::verb::cluster::merge>};

@@ -1,182 +1,26 @@
-#include "experiments/report/report.hpp"
-
-#include <set>
-
-#include "core/io/scene_io.hpp"
-#include "core/model/solver.hpp"
-#include "core/model/text.hpp"
-#include "core/solver/simd/kernels.hpp"
-#include "experiments/case/digest.hpp"
-#include "experiments/case/fingerprint.hpp"
-#include "experiments/cli/calls.hpp"
+#include "experiments/command_line/page.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/render/film/film.hpp"
-#include "experiments/report/findings.hpp"
-#include "experiments/report/stored.hpp"
-#include "experiments/study/main_job.hpp"
-#include "experiments/system/data.hpp"
-#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/process.hpp"
 
 namespace taut::verb::reporting {
 
 namespace {
 
-struct Options {
-  std::vector<std::string> studies, films;
-  std::string preset, results, output;
-  bool no_media = false, json = false;
-  bool silent = false;  ///< the file is not named
+struct Options : PageRequest {
+  bool no_media = false;
 };
 
-std::string command_line(const Options& options) {
-  std::string what, films;
-  for (const std::string& study : options.studies) what += " " + shell_word(study);
-  if (!options.preset.empty()) what += " --preset " + options.preset;
-  for (const std::string& scene : options.films) films += " --film " + shell_word(scene);
-  return "./taut run" + what + (options.studies.empty() ? "" : " && ./taut report" + what + films);
-}
-
-/// Every solver with what it cannot do on the shipped scenes at its default settings.
-std::vector<report::SolverInfo> introductions() {
-  std::vector<report::SolverInfo> all;
-  for (const SolverEntry* entry : solvers())
-    all.push_back(
-        {std::string(entry->name), std::string(entry->summary), std::string(entry->source), {}});
-  for (const std::string& name : shipped("scenes")) {
-    const Scene scene = load_scene(find_scene(name));
-    for (std::size_t i = 0; i < all.size(); ++i)
-      for (const std::string& reason :
-           solvers()[i]->unsupported(scene, parse_solver(all[i].name).params))
-        group_of(all[i].unsupported, reason).push_back(name);
-  }
-  return all;
-}
-
-/// "20261121T205040Z" as people write it: "2026-11-21 20:50 UTC".
-std::string readable(const std::string& stamp) {
-  return stamp.substr(0, 4) + "-" + stamp.substr(4, 2) + "-" + stamp.substr(6, 2) + " " +
-         stamp.substr(9, 2) + ":" + stamp.substr(11, 2) + " UTC";
-}
-
-/// The model, or the page into its file.
-int put_out(const report::ReportInput& input, const Options& options) {
-  if (options.json && options.output.empty()) {
-    std::cout << report::make_model(input, 1) << '\n';
+int run(Options options) {
+  options.media = !options.no_media;
+  if (options.output.empty() && !options.model) options.output = "report.html";
+  const std::string text = page_text(options);
+  if (options.output.empty()) {
+    std::cout << text;
     return kPass;
   }
-  write_file(options.output,
-             options.json ? report::make_model(input, 1) + "\n" : report::make_report(input));
-  if (!options.silent) std::cout << options.output << '\n';
+  write_file(options.output, text);
+  std::cout << options.output << '\n';
   return kPass;
-}
-
-std::vector<Study> load_all(const std::vector<std::string>& names, const std::string& preset) {
-  std::vector<Study> studies;
-  for (const std::string& name : names) studies.push_back(load_study(name, preset));
-  return studies;
-}
-
-/// `taut report A B [STUDY...]`: what differs, and what B has.
-int compare_folders(const Options& options) {
-  if (options.studies.size() < 2 || !Store::is_at(options.studies[1]))
-    throw InputError("report " + options.studies[0] +
-                     ": one results folder; --out shows it, a second one is compared with it");
-  if (!options.output.empty()) test_writable(options.output);
-  const Store a(options.studies[0]), b(options.studies[1]);
-  std::vector<std::string> names(options.studies.begin() + 2, options.studies.end());
-  std::string preset = options.preset;
-  if (names.empty()) {
-    const MainJob job = main_job();
-    names = job.studies;
-    if (preset.empty()) preset = job.preset;
-  }
-  report::ReportInput input = report::stored_anywhere(load_all(names, preset), b);
-  input.differences = report::stored_differences(a, b);
-  if (input.differences->pairs.empty())
-    throw InputError("no case is in both " + options.studies[0] + " and " + options.studies[1]);
-  input.question =
-      "What differs between " + options.studies[0] + " and " + options.studies[1] + "?";
-  input.title = options.studies[0] + " and " + options.studies[1];
-  input.command = "./taut report " + options.studies[0] + " " + options.studies[1];
-  input.solvers = introductions();
-  input.vectors = to_string(widest());
-  input.provenance = {{"program", program_digest().substr(0, 10)},
-                      {"made", readable(utc_stamp())},
-                      {"toolchain", std::string(toolchain())}};
-  return put_out(input, options);
-}
-
-/// What other verbs found of this build; what cannot be read is said and left out.
-void add_findings(report::ReportInput& input, const Store& store, const std::string& program) {
-  const auto add = [&](const char* verb, auto& to, const auto& stored) {
-    try {
-      to = stored(store, program);
-    } catch (const InputError& error) {
-      input.left_out.emplace_back(verb, error.what());
-      std::cerr << "left out: " << error.what() << '\n';
-    }
-  };
-  add("taut verify", input.truths, report::stored_truths);
-  add("taut check", input.regressions, report::stored_regressions);
-  add("taut converge", input.steps, report::stored_steps);
-  add("taut require", input.required, report::stored_requirements);
-  add("taut frontier --all", input.frontiers, report::stored_frontiers);
-}
-
-int run(Options options) {
-  if (options.output.empty() && !options.json) options.output = "report.html";
-  if (!options.studies.empty() && Store::is_at(options.studies[0])) return compare_folders(options);
-  if (options.studies.size() > 1 && Store::is_at(options.studies[1]))
-    throw InputError(options.studies[0] + ": no results folder to compare with " +
-                     options.studies[1]);
-  const std::string command = command_line(options);
-  std::vector<std::string> maps = options.studies;
-  if (options.studies.empty()) {
-    const MainJob job = main_job();
-    options.studies = job.studies;
-    maps = job.maps;
-    if (options.films.empty()) options.films = shipped("scenes");
-    if (options.preset.empty()) options.preset = job.preset;
-  }
-  if (!options.output.empty()) test_writable(options.output);
-  const std::vector<Study> studies = load_all(options.studies, options.preset);
-  const Store store(options.results);
-  report::ReportInput input = report::stored_results(studies, store);
-  if (!std::filesystem::exists(options.results))
-    throw InputError("no results folder " + options.results + "; taut run makes it");
-  const auto none = [](const report::StudyResult& study) { return study.records.empty(); };
-  if (const std::size_t others = store.keys().size();
-      others > 0 && std::ranges::all_of(input.studies, none))
-    throw InputError(options.results + ": " + std::to_string(others) +
-                     " cases are there, but none that this build would run for " +
-                     join(options.studies, ", ") + "; taut run makes them" +
-                     where_else(studies.front(), store));
-  report::add_stored_maps(input, load_all(maps, options.preset), store);
-  input.command = command;
-  input.solvers = introductions();
-  input.vectors = to_string(widest());
-  const std::string program = program_digest();
-  if (studies.size() == 1) input.question = studies.front().question;
-  input.provenance = {{"program", program.substr(0, 10)},
-                      {"made", readable(utc_stamp())},
-                      {"toolchain", std::string(toolchain())},
-                      {"preset", options.preset}};
-  if (options.preset.empty()) input.provenance.pop_back();
-  add_findings(input, store, program);
-  if (!options.json && !options.no_media) {
-    std::set<std::string> scenes(options.films.begin(), options.films.end());
-    for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
-    std::size_t filmed = 0;
-    const Countdown countdown("filmed scene");
-    film_scenes(input, options.films, std::filesystem::path(options.results) / "films",
-                [&](const std::string& news) {
-                  progress() << news << '\n';
-                  countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
-                });
-  }
-  return put_out(input, options);
 }
 
 void add_options(CLI::App& app, Options& options) {
@@ -189,21 +33,13 @@ void add_options(CLI::App& app, Options& options) {
                  "shipped scenes")
       ->allow_extra_args(false);
   app.add_flag("--no-media", options.no_media, "Without pictures and videos");
-  add_json(app, options.json,
+  add_json(app, options.model,
            "The model of the page (experiments/report/model/MODEL.md), without pictures");
   add_output(app, options.output,
              "The page (default: report.html), or the model (default: standard output)");
 }
 
 }  // namespace
-
-std::string report_main_job(const std::string& preset, const std::string& results) {
-  Options options;
-  options.preset = preset, options.results = results, options.silent = true;
-  options.output = "report.html";
-  run(options);
-  return options.output;
-}
 
 }  // namespace taut::verb::reporting
 

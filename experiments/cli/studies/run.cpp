@@ -1,15 +1,19 @@
 #include <iterator>
 
+#include "experiments/baseline/check.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/cli/calls.hpp"
+#include "experiments/command_line/page.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
+#include "experiments/steps/one_step.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
-#include "experiments/timing/statistics.hpp"
+#include "experiments/timing/study_bench.hpp"
+#include "experiments/truths/verify.hpp"
 
 namespace taut::verb::run {
 
@@ -55,22 +59,40 @@ void say_part(int part, const std::string& what) {
 /// still gives numbers; the report shows how noisy. Then truths and baselines: what the report says
 /// besides the studies. It says which one failed, too, so the run goes on.
 int finish_main_job(const MainJob& job, const Options& options) {
-  say_part(2, "what accuracy costs, one case at a time");
-  bench::time_study(job.bench, job.preset, 0.015, options.out);
   Store store(options.out);
+  say_part(2, "what accuracy costs, one case at a time");
+  require_one_quiet_host();
+  const Study trade = load_study(job.bench, job.preset);
+  keep(store,
+       bench_study(trade.name, run_and_collect({trade.name, cases_of(trade)}, store, "taut bench"),
+                   [](const std::string& scene, std::size_t cases) {
+                     progress() << scene << ": timing " << cases << " cases\n";
+                     return TimingOptions{.seconds = 0.015, .progress = Countdown("timing round")};
+                   }));
   for (const std::string& scene : job.steps) {
     say_part(3, "inside one step of " + scene);
-    store.keep(
-        convergence::one_step(scene, load_study(job.studies.front(), options.preset).solvers));
+    const StudyScene chosen = parse_scene(scene);
+    store.keep(one_step({.scene = chosen.name,
+                         .settings = chosen.settings,
+                         .solvers = load_study(job.studies.front(), options.preset).solvers}));
   }
   say_part(4, "solvers beside closed forms and published numbers");
-  store.keep(verify::verify_all(options.jobs));
+  store.keep(answer_of(taut::verify(
+      {.truths = truths_in_order(), .jobs = options.jobs, .progress = Countdown("truth")})));
   say_part(5, "the committed baselines");
-  const Answer compared = check::check_all(options.jobs, options.out);
-  if (!options.json) print(compared, {});
+  BaselineOptions baselines = baseline_options();
+  baselines.baselines = results_folder() / "baselines";
+  baselines.out = options.out;
+  baselines.jobs = options.jobs;
+  const Check compared = check_studies({}, baselines);
+  if (compared.end == CheckEnd::interrupted) throw Interrupted();
+  if (compared.cases > 0) store.keep(compared.answer);
+  if (!options.json) print(compared.answer, {});
   say_part(6, "the page and its films");
-  const std::string page =
-      reporting::report_main_job(options.preset == job.preset ? "" : options.preset, options.out);
+  const std::string page = "report.html";
+  write_file(page, page_text({.preset = options.preset == job.preset ? "" : options.preset,
+                              .results = options.out,
+                              .output = page}));
   if (!options.json) std::cout << page << '\n';
   return kPass;
 }
@@ -242,4 +264,8 @@ TAUT_VERB(run) = {.name = "run",
                       "taut run\n  taut run iterations --preset quick -j 2\n"
                       "  taut run default-setting --table stretch.rms --table stretch.max\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
+                  .answer =
+                      "results store cases ran stored; "
+                      "statuses: status cases; "
+                      "*: setting *",
                   .bind = taut::bind_verb<taut::verb::run::add_options, taut::verb::run::run>};

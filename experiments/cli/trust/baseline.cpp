@@ -1,6 +1,7 @@
 #include "core/model/text.hpp"
+#include "experiments/baseline/baseline_study.hpp"
+#include "experiments/baseline/check_answer.hpp"
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/command_line/baseline_study.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
 
@@ -63,23 +64,24 @@ int update(Options options) {
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison changes = study.compare();
+  if (!changes.findings.empty()) {  // what cannot be written is said before anything is printed
+    write_baseline(study.folder, updated(study.before, study.now, study.tolerances));
+    note_reason(study, options.why, changes);
+  }
   const bool data = options.format.is_data();
   if (data || !study.before.empty()) tell(study, changes, options.format);
   std::ostream& news = data ? progress() : std::cout;
-  if (changes.findings.empty()) {
+  if (changes.findings.empty())
     news << study.name << ": " << changes.cases << " cases are as the baseline says; nothing "
          << "was written\n";
-    return kPass;
-  }
-  write_baseline(study.folder, updated(study.before, study.now, study.tolerances));
-  note_reason(study, options.why, changes);
-  news << study.name << ": " << study.now.size() << " cases in " << study.folder.string() << '\n';
+  else
+    news << study.name << ": " << study.now.size() << " cases in " << study.folder.string() << '\n';
   return kPass;
 }
 
 void add_options(CLI::App& app, Options& options) {
   app.add_option("STUDY", options.study, "Name or path")->required();
-  options.bind(app);
+  add_baseline_options(app, options);
   add_format(app, options.format);
 }
 
@@ -102,6 +104,9 @@ TAUT_VERB(baseline_update) = {
     .name = "baseline update",
     .summary = "Takes what is different as the new baseline",
     .example = "taut baseline update regression --why \"contacts are continuous\"",
+    .answer =
+        "cases; "
+        "findings: study kind case change command solver scene value before now",
     .bind =
         taut::bind_verb<taut::verb::baseline::add_update_options, taut::verb::baseline::update>};
 
@@ -109,4 +114,7 @@ TAUT_VERB(baseline_diff) = {
     .name = "baseline diff",
     .summary = "Shows what an update would change (exit 1: something)",
     .example = "taut baseline diff regression",
+    .answer =
+        "cases; "
+        "findings: study kind case change command solver scene value before now",
     .bind = taut::bind_verb<taut::verb::baseline::add_options, taut::verb::baseline::diff>};

@@ -1,22 +1,12 @@
-#include <atomic>
-#include <cmath>
-#include <exception>
-#include <fstream>
-#include <mutex>
-#include <thread>
+#include "experiments/truths/verify.hpp"
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
-#include "experiments/case/digest.hpp"
-#include "experiments/cli/calls.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/system/clock.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/process.hpp"
 #include "experiments/truths/assertions/assertions.hpp"
-#include "experiments/truths/truth.hpp"
-#include "experiments/truths/verification.hpp"
 
 namespace taut::verb::verify {
 
@@ -37,92 +27,14 @@ struct Options {
 std::vector<const TruthEntry*> choose(const Options& options) {
   for (const std::string& solver : options.solvers)
     if (solver != "reference") parse_solver(solver);
-  std::vector<const TruthEntry*> chosen;
-  for (const TruthEntry* truth : truths()) {
-    if (options.assertions && std::ranges::count(assertions(), truth->name, &Assertion::truth) == 0)
-      continue;
+  std::vector<const TruthEntry*> chosen = truths_in_order();
+  std::erase_if(chosen, [&](const TruthEntry* truth) {
+    const bool asserted = std::ranges::count(assertions(), truth->name, &Assertion::truth) > 0;
     const bool named = options.names.empty() || std::ranges::count(options.names, truth->name) > 0;
-    if (named && (options.section == 0 || truth->section == options.section))
-      chosen.push_back(truth);
-  }
-  std::ranges::sort(chosen, {}, [](const TruthEntry* t) { return std::pair(t->section, t->row); });
-  return chosen;
-}
-
-/// What one truth may use: it costs a second or two.
-constexpr ProcessLimits kLimits{.cpu_seconds = 600, .memory = std::size_t{4} << 30};
-
-/// A truth in a process of its own: whatever its solver does costs this truth alone. Throws
-/// InputError of a shipped scene that is missing.
-std::vector<Finding> findings_of(const TruthEntry& truth, const Options& options) {
-  const Scratch scratch;
-  std::vector<std::string> words{sibling_program(""), "verify", std::string(truth.name), "--here",
-                                 "--json"};
-  for (const std::string& solver : options.solvers) words.insert(words.end(), {"--solver", solver});
-  Process process(words, {.output = ProcessOptions::Stream::piped,
-                          .errors_file = scratch.path() / "errors",
-                          .limits = kLimits});
-  const std::string out = process.read_all(5 * kLimits.cpu_seconds);
-  const std::optional<ProcessEnd> end = process.wait(1);
-  const std::string said = last_line(std::ifstream(scratch.path() / "errors"));
-  if (end && end->exit_code == kUsage) throw InputError(said);
-  if (end && out.ends_with("}\n")) {
-    const Answer answer = answer_from_json(out, std::string(truth.name));
-    const Verification found = verification_in(answer);
-    if (found.truths.size() == 1) return found.truths.front().findings;
-  }
-  Finding f;
-  f.subject = options.solvers.empty() ? "taut" : options.solvers.front();
-  f.quantity = "the check ends", f.unit = "1", f.expected = 1, f.verdict = TruthVerdict::broken;
-  f.why = (end ? end->text() : "it took too long") + (said.empty() ? "" : ": " + said);
-  return {f};
-}
-
-/// Checks the truths, `jobs` at a time; they stay in their order. Throws what a truth threw first.
-std::vector<CheckedTruth> check(const std::vector<const TruthEntry*>& chosen,
-                                const Options& options) {
-  std::vector<CheckedTruth> checked(chosen.size());
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::size_t done = 0;
-  std::exception_ptr failed;
-  const Countdown countdown("truth");
-  const auto work = [&] {
-    try {
-      for (std::size_t i = next++; i < chosen.size(); i = next++) {
-        const auto start = SteadyClock::now();
-        if (options.here) {
-          Findings findings(options.solvers);
-          chosen[i]->check(findings);
-          checked[i] = {*chosen[i], findings.all(), seconds_since(start)};
-        } else {
-          checked[i] = {*chosen[i], findings_of(*chosen[i], options), seconds_since(start)};
-        }
-        const std::lock_guard lock(mutex);
-        countdown(++done, chosen.size());
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failed) failed = std::current_exception();
-      next = chosen.size();
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (int j = 1; j < options.jobs; ++j) threads.emplace_back(work);
-    work();
-  }
-  if (failed) std::rethrow_exception(failed);
-  return checked;
-}
-
-Verification verify(const Options& options) {
-  Verification found{check(choose(options), options), {}};
-  found.assertions = judge_assertions([&](std::string_view truth) -> const std::vector<Finding>* {
-    const auto at = std::ranges::find(found.truths, truth, &CheckedTruth::name);
-    return at == found.truths.end() ? nullptr : &at->findings;
+    const bool within = options.section == 0 || truth->section == options.section;
+    return (options.assertions && !asserted) || !named || !within;
   });
-  return found;
+  return chosen;
 }
 
 int summary(const std::vector<CheckedTruth>& truths) {
@@ -187,7 +99,11 @@ int run(const Options& options) {
   if (options.update && !(options.assertions && options.of_all_assertions()))
     throw InputError(
         "--update keeps the verdicts of all assertions: taut verify --assertions --update");
-  const Verification found = verify(options);
+  const Verification found = taut::verify({.truths = choose(options),
+                                           .solvers = options.solvers,
+                                           .jobs = options.jobs,
+                                           .here = options.here,
+                                           .progress = Countdown("truth")});
   const Answer answer = answer_of(found, options.assertions);
   if (options.record) {
     Store store(options.out);
@@ -228,12 +144,6 @@ void add_options(CLI::App& app, Options& options) {
 
 }  // namespace
 
-Answer verify_all(int jobs) {
-  Options options;
-  options.jobs = jobs;
-  return answer_of(verify(options));
-}
-
 }  // namespace taut::verb::verify
 
 TAUT_VERB(verify) = {
@@ -246,4 +156,11 @@ TAUT_VERB(verify) = {
         "  taut verify --assertions\n"
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
         "did; 4 nothing was held to anything",
+    .answer =
+        "truths: verdict place name numbers nearest section section_title statement source "
+        "seconds; "
+        "findings: verdict truth subject quantity unit measured expected tolerance uncertainty "
+        "why; "
+        "assertions: source section verdict assertion figure; "
+        "broken: truth number",
     .bind = taut::bind_verb<taut::verb::verify::add_options, taut::verb::verify::run>};

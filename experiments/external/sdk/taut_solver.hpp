@@ -66,7 +66,7 @@ struct Json {
   }
 };
 
-/// Reads one value; throws std::runtime_error if it is none.
+/// Reads one value; throws std::runtime_error if there is none.
 class JsonParser {
  public:
   static Json parse(const std::string& text) {

@@ -1,10 +1,8 @@
 #include "experiments/render/film/film.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <optional>
-#include <thread>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
@@ -19,6 +17,7 @@
 #include "experiments/report/stored.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/run_all.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
@@ -204,26 +203,18 @@ void film_scenes(report::ReportInput& input, const std::vector<std::string>& oth
                  const std::function<void(const std::string&)>& say) {
   const std::vector<Film> films = all_films(input, others);
   std::vector<std::optional<FilmResult>> results(films.size());
-  std::atomic<std::size_t> next{0};
   std::mutex output;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < films.size(); k = next++) {
-      std::string news = films[k].scene + " filmed";
-      bool made = true;
-      try {
-        results[k] = kept_or_made(films[k], folder, made);
-      } catch (const InputError& error) {
-        news = films[k].scene + " not filmed: " + error.what();
-      }
-      const std::lock_guard lock(output);
-      if (made) say(news);
+  run_all(films.size(), kScenesAtATime, [&](std::size_t k) {
+    std::string news = films[k].scene + " filmed";
+    bool made = true;
+    try {
+      results[k] = kept_or_made(films[k], folder, made);
+    } catch (const InputError& error) {
+      news = films[k].scene + " not filmed: " + error.what();
     }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (int j = 1; j < kScenesAtATime; ++j) threads.emplace_back(work);
-    work();
-  }
+    const std::lock_guard lock(output);
+    if (made) say(news);
+  });
   for (auto& result : results) {
     if (!result) continue;
     input.media.push_back(std::move(result->media));

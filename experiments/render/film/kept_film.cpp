@@ -90,7 +90,7 @@ void keep_film(const std::filesystem::path& file, const FilmResult& film) {
   json["digest"] = digest_of(json);
   write_regular(picture_of(file, "", clip.type), clip.bytes);
   write_regular(picture_of(file, "-poster", clip.poster_type), clip.poster);
-  write_regular(file, to_text(json));  // the last: a film without it is none
+  write_regular(file, to_text(json));  // the last: without it there is no film
 }
 
 std::optional<FilmResult> kept_film(const std::filesystem::path& file) try {

@@ -42,7 +42,7 @@ std::vector<Cell> row_of(const OneStep& step, const std::vector<Cell>& own) {
   };
   const double k = solvers.at(own, "structural").number();
   return {step.scene(),
-          step.label(solver),
+          solver_label(step, solver),
           std::isnan(k) ? Cell("rigid") : Cell(shown({"N/m", "N/m"}, k, 2)),
           after(1),
           after(kLooked),

@@ -208,12 +208,14 @@ PlotFiles make_plot(PlotSpec spec, const std::vector<PlotPanel>& panels,
   const PlotKind& kind = find_plot_kind(spec.kind);
   if (spec.x.empty()) spec.x = kind.x;
   if (spec.y.empty()) spec.y = kind.y;
-  if (spec.along.empty())
-    spec.along =
-        spec.x == "dt" || spec.x == kSubsteps || spec.x == "vertices" ? spec.x : kind.along;
   Records all;
   for (const PlotPanel& panel : panels)
     all.insert(all.end(), panel.records.begin(), panel.records.end());
+  // A curve runs along what is set, whatever it is called, and not along what was measured.
+  const bool measured = spec.x == "projections" || std::ranges::any_of(all, [&](const Record* r) {
+                          return r->values.contains(spec.x);
+                        });
+  if (spec.along.empty()) spec.along = measured ? kind.along : spec.x;
   for (const std::string& name : {spec.x, spec.y}) check_value_name(name, all);
   if (spec.file.empty()) spec.file = slug(spec.kind + "-" + spec.y + "-over-" + spec.x);
   std::vector<std::string> without;

@@ -60,8 +60,8 @@ std::string job_script(const Plan&, Scheduler);
 std::string readme(const Plan&, Scheduler);
 
 /// How far a cluster folder is: facts `cases`, `done`, `start` (the command that starts what is not
-/// done) and `again` (that runs failures again); tables `shards` and `failed`. Throws InputError:
-/// it is none.
+/// done) and `again` (that runs failures again); tables `shards` and `failed`. Throws InputError
+/// if it is not one.
 Answer status_of(const std::filesystem::path& folder);
 
 /// What a merge of some folders would find.

@@ -32,7 +32,7 @@ struct Probed : Outcome {
            (status.kind == Status::Kind::ok ||
             (status.kind == Status::Kind::extreme && status.reason == "stretch"));
   }
-  /// A crash is an answer; want of time or memory is none, nor is a broken protocol.
+  /// A crash is an answer; lack of time or memory and a broken protocol are not.
   bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
 };
 

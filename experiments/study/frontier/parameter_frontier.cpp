@@ -20,7 +20,7 @@ bool ran(const Record& record) {
          kind == Status::Kind::extreme;
 }
 
-JudgedRun look(const Case& one, const Record& record, const Store& store) {
+JudgedRun judged_run(const Case& one, const Record& record, const Store& store) {
   JudgedRun seen{one, record, {}};
   if (!ran(record) || !store.has_frames(one.key)) return seen;
   seen.end = store.motion(one.key).frames.back().state.x;
@@ -35,7 +35,7 @@ void tell_theory(const FrontierSetting& setting, ParameterFrontier& found) {
     found.theory = setting.question.setting(end);
 }
 
-void tell(const Frontier& frontier, const FrontierQuestion& question, ParameterFrontier& found) {
+void fill(const Frontier& frontier, const FrontierQuestion& question, ParameterFrontier& found) {
   using Kind = Frontier::Kind;
   if (frontier.kind == Kind::not_answered) {
     found.lacks = "not answered: no time or memory, or interrupted";
@@ -67,18 +67,18 @@ std::optional<ParameterFrontier> search(const FrontierSetting& setting, const st
                                                 : record->status.reason;
     return found;
   }
-  const JudgedRun start = look(first, *record, store);
+  const JudgedRun start = judged_run(first, *record, store);
   const std::vector<std::string> known = symptoms(start, nullptr);
   found.at_start = join(known, ", ");
   tell_theory(setting, found);
   const Judge judge = [&](const Case& one, const Record& r) {
-    std::vector<std::string> wrong = symptoms(look(one, r, store), &start);
+    std::vector<std::string> wrong = symptoms(judged_run(one, r, store), &start);
     std::erase_if(wrong, [&](const std::string& name) { return std::ranges::count(known, name); });
     return join(wrong, ", ");
   };
   const CaseFrontier result = find_frontier(question, store, options, judge);
   found.cases = result.frontier.probes.size(), found.ran = result.ran;
-  tell(result.frontier, question, found);
+  fill(result.frontier, question, found);
   if (result.interrupted) return {};
   return found;
 }

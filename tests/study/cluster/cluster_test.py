@@ -15,7 +15,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 import stored  # noqa: E402
 from command_line import BINARIES, CommandLine, facts_of, main, rows_of  # noqa: E402
 
-AWAKE = {**os.environ, "TAUT_TEST_AWAKE": "1"}  # where no solver has to be slow
 
 
 class Cluster(CommandLine):
@@ -34,7 +33,7 @@ class Cluster(CommandLine):
         count = shards[1] or shards[2]
         here = self.folder / folder
         done = subprocess.run([BINARIES / program, *words, "--shard", f"{number}/{count}", "--out", f"shards/{number:04}", *options], cwd=here,
-                              text=True, capture_output=True, env=AWAKE)
+                              text=True, capture_output=True)
         self.assertEqual(done.returncode, expect, done.stderr)
         return done
 
@@ -53,7 +52,7 @@ class Cluster(CommandLine):
         return [row["id"] for row in stored.query(self.folder / folder, "SELECT id FROM planned WHERE shard = ? ORDER BY key", shard)]
 
     def whole(self, program="taut"):
-        return self.store_digest(self.taut("run", "./study.toml", "--out", "whole", program=program, env=AWAKE)).split()[1]
+        return self.store_digest(self.taut("run", "./study.toml", "--out", "whole", program=program)).split()[1]
 
 
 class Submit(Cluster):
@@ -139,7 +138,7 @@ class Submit(Cluster):
                 if on == "slurm":
                     shutil.rmtree(self.folder / "c")
             if parallel:
-                done = subprocess.run(["./job.sh"], cwd=self.folder / "c", env={**AWAKE, "TAUT": str(BINARIES / "taut")}, text=True, capture_output=True)
+                done = subprocess.run(["./job.sh"], cwd=self.folder / "c", env={**os.environ, "TAUT": str(BINARIES / "taut")}, text=True, capture_output=True)
                 self.assertEqual(done.returncode, 0, name + done.stderr)
                 self.status()
             shutil.rmtree(self.folder / "c")
@@ -305,8 +304,10 @@ class Tasks(Cluster):
         self.fail("waited in vain")
 
     def test_a_task_that_is_preempted_stops_one_out_of_time_queues_itself_again_and_all_go_on(self):
-        study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\naxes.variant = [0, 1, 2, 3]\n')
+        study = self.study(solvers=["jakobsen", "bullet", "faulty:mode=held"])  # in this order: the larger estimate first
+        (self.folder / "go-on").touch()
         whole = self.whole(program="taut-faulty")
+        goes_on = self.folder / "c/go-on"
         for sent, code, told in [(signal.SIGTERM, 130, None), (signal.SIGUSR1, 0, "requeue 7_1\n"), (signal.SIGKILL, -9, None)]:
             with self.subTest(sent.name):
                 self.submit("--shards", 1, study=study, program="taut-faulty", on="slurm")
@@ -316,6 +317,7 @@ class Tasks(Cluster):
                 self.assertEqual((self.folder / "told").read_text() if (self.folder / "told").exists() else None, told)
                 self.assertEqual(self.states(expect=3, program="taut-faulty"), ["begun"])
                 (self.folder / "c/shards/0001/results.db.writer").write_text("zeus 7\n")
+                goes_on.touch()
                 self.assertIn("were stored already", self.shard(1, program="taut-faulty").stderr)
                 self.assertEqual(self.merge("c", "--out", "m")["store"], whole)
             for made in ("c", "bin", "m", "told"):

@@ -1,16 +1,12 @@
-#include "experiments/command_line/baseline_study.hpp"
+#include "experiments/baseline/baseline_study.hpp"
 
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <set>
 
 #include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
-#include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/command_line/options.hpp"
-#include "experiments/command_line/output.hpp"
 #include "experiments/results/store.hpp"
 
 namespace taut {
@@ -20,7 +16,7 @@ namespace {
 void run_all(const std::vector<Case>& cases, Store& store, const BaselineOptions& options,
              BaselineStudy& result) {
   store.prepare();
-  const CampaignProgress campaign = run_missing(
+  const CampaignProgress campaign = options.run(
       {{result.name, cases}}, store, "taut check " + result.name, {.jobs = options.jobs});
   result.conflict = campaign.conflicts > 0;
   result.interrupted = campaign.interrupted;
@@ -37,7 +33,7 @@ void mark_flaky(const std::vector<Case>& cases, Store& store, const BaselineOpti
     const auto a = store.find(one), b = second.find(one);
     if (!a || !b || (a->digest == b->digest && a->status.step == b->status.step)) continue;
     for (BaselineRow& row : result.now) row.flaky = row.flaky || row.id == one.id;
-    progress() << result.name << ": " << one.id << ": does not repeat bit for bit: flaky\n";
+    options.say(result.name + ": " + one.id + ": does not repeat bit for bit: flaky");
   }
   std::filesystem::remove_all(folder);
 }
@@ -57,12 +53,6 @@ void add_frontiers(Store& store, const BaselineOptions& options, BaselineStudy& 
 }
 
 }  // namespace
-
-void BaselineOptions::bind(CLI::App& app) {
-  add_baselines(app, baselines);
-  add_results(app, out);
-  add_jobs(app, jobs);
-}
 
 Comparison BaselineStudy::compare() const {
   const std::set<std::string> left_out(not_run.begin(), not_run.end());

@@ -1,6 +1,6 @@
 // Error over iterations inside one step: the exact step, gaps and rates against other programs and
 // closed forms.
-#include "experiments/timing/convergence.hpp"
+#include "experiments/steps/convergence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,23 +1,28 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "experiments/answer/answer.hpp"
-#include "experiments/baseline/check_answer.hpp"
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/study/campaign.hpp"
 
 namespace taut {
 
-/// Options that every verb about baselines has.
 struct BaselineOptions {
   std::string baselines;
   std::string out;  ///< results folder
   int jobs = 1;
   bool repeat = false;  ///< run every case a second time, to mark those that differ as flaky
-  void bind(CLI::App&);
+  /// Runs what the store lacks, in a session of this command.
+  std::function<CampaignProgress(const std::vector<StudyCases>&, Store&, const std::string& command,
+                                 CampaignOptions)>
+      run;
+  /// Is told news for people, a line each.
+  std::function<void(const std::string&)> say;
+  /// What a value is called where it is counted by its name; "": it is one of the other values.
+  std::function<std::string(const std::string& value)> title;
 };
 
 /// A study beside its baseline.

@@ -1,4 +1,4 @@
-#include "experiments/timing/convergence.hpp"
+#include "experiments/steps/convergence.hpp"
 
 #include <algorithm>
 #include <cmath>

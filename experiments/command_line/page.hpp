@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace taut {
+
+/// What `taut report` writes.
+struct PageRequest {
+  /// None: the main job. The first two may be results folders: what differs between them.
+  std::vector<std::string> studies;
+  std::vector<std::string> films;  ///< scenes to film that no study ran
+  std::string preset, results;
+  std::string output;  ///< file that the text is for; "": none
+  bool media = true;   ///< with pictures and videos
+  bool model = false;  ///< the model of the page instead, without them
+};
+
+/// The page of stored results, one HTML text, or its model. Throws InputError, of an output that
+/// cannot be written before anything is done.
+std::string page_text(const PageRequest&);
+
+}  // namespace taut
