@@ -187,5 +187,4 @@ TAUT_SOLVER(pd) = {
     .make = taut::solver::pd::make,
     .unsupported = taut::solver::pd::unsupported,
     .resolved_settings = taut::solver::pd::resolved_settings,
-    .accuracy = {
-        .substeps = "substeps", .sweeps = "iterations", .labelled = "substeps|iterations"}};
+    .accuracy = {.substeps = "substeps", .sweeps = "iterations", .all_at_once = true}};

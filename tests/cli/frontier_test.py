@@ -138,7 +138,7 @@ class Assertions(CommandLine):
 
 
 class Profiles(CommandLine):
-    LEVELS = [0.1, 0.01, 0.001, 0.0001]
+    LEVELS = [0.1, 0.03, 0.01, 0.003, 0.001]
 
     def shares(self):
         results = self.folder / "results/runs"
