@@ -164,8 +164,10 @@ int run(const Options& options) {
   store.prepare();
   const std::vector<ScalingLine> lines =
       measure_scaling(cases, options.limit, [&](const Case& one, double expected) {
-        return options.error.empty() ? measure(one, expected, store, options)
-                                     : least(one, error_of(options.error), store, options);
+        return options.error.empty()
+                   ? measure(one, expected, store, options)
+                   : least(one, error_of(options.error, unit_of_value(kErrorMetric)), store,
+                           options);
       });
   Answer answer{"bench scaling", study.name};
   keep(study, lines, store);
