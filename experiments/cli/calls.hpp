@@ -34,7 +34,8 @@ Answer check_all(int jobs, const std::string& results);
 }  // namespace check
 
 namespace reporting {
-/// Writes the page of the main job, at this preset, and returns its file.
+/// Writes the page of the main job, at this preset, and returns what it says in ten lines, the last
+/// of which is its file.
 std::string report_main_job(const std::string& preset, const std::string& results);
 }  // namespace reporting
 

@@ -27,7 +27,7 @@ struct Options {
   std::vector<std::string> studies, films;
   std::string preset, results, output;
   bool no_media = false, json = false;
-  bool silent = false;  ///< the file is not named
+  std::string* said = nullptr;  ///< gets what is said of the page in place of standard output
 };
 
 std::string command_line(const Options& options) {
@@ -68,7 +68,12 @@ int put_out(const report::ReportInput& input, const Options& options) {
   }
   write_file(options.output,
              options.json ? report::make_model(input, 1) + "\n" : report::make_report(input));
-  if (!options.silent) std::cout << options.output << '\n';
+  if (options.said)
+    *options.said =
+        join(report::in_few_lines(input), "", [](const std::string& line) { return line + "\n"; }) +
+        std::filesystem::absolute(options.output).lexically_normal().string() + "\n";
+  else
+    std::cout << options.output << '\n';
   return kPass;
 }
 
@@ -151,8 +156,8 @@ int run(Options options) {
       others > 0 && std::ranges::all_of(input.studies, none))
     throw InputError(options.results + ": " + std::to_string(others) +
                      " cases are there, but none that this build would run for " +
-                     join(options.studies, ", ") + "; taut run makes them" +
-                     where_else(studies.front(), store));
+                     join(options.studies, ", ") + "; taut run " + join(studies, " ", study_words) +
+                     " makes them" + where_else(studies.front(), store));
   report::add_stored_maps(input, load_all(maps, options.preset), store);
   input.command = command;
   input.solvers = introductions();
@@ -199,10 +204,11 @@ void add_options(CLI::App& app, Options& options) {
 
 std::string report_main_job(const std::string& preset, const std::string& results) {
   Options options;
-  options.preset = preset, options.results = results, options.silent = true;
+  std::string said;
+  options.preset = preset, options.results = results, options.said = &said;
   options.output = "report.html";
   run(options);
-  return options.output;
+  return said;
 }
 
 }  // namespace taut::verb::reporting
