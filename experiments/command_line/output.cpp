@@ -143,7 +143,8 @@ void Progress::show(const CampaignProgress& campaign, const Record* record) {
   if (record && (verbose_ || !record->status.is_result()))
     std::cerr << (terminal_ ? "\r\033[K" : "") << record->id << ": " << describe(record->status)
               << '\n';
-  const std::size_t tenth = 10 * campaign.done() / std::max<std::size_t>(1, campaign.cases);
+  const double share = campaign.work > 0 ? campaign.work_done / campaign.work : 0;
+  const auto tenth = static_cast<std::size_t>(10 * share + 1e-9);
   if (!terminal_ && tenth == told_) return;
   told_ = tenth;
   std::string left = "?";

@@ -48,7 +48,7 @@ class Progress {
  private:
   std::chrono::steady_clock::time_point start_;
   bool terminal_, verbose_;
-  std::size_t told_ = 0;  ///< tenths
+  std::size_t told_ = 0;  ///< tenths of the work
 };
 
 /// Runs what the store lacks, each case once, in a session that `command` names, with progress on

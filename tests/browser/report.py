@@ -480,7 +480,7 @@ def compared(checks):
     solver = model["solvers"][0]
     page = checks.open()
     head = page.run(f"document.querySelector('#answer thead [data-s=\"0\"]').innerText")
-    checks.true(solver["arithmetic"].split(" (")[0] in head, "the head of a column has its arithmetic", head)
+    checks.true(solver["arithmetic"].split(" (")[0] in head.replace("\u00a0", " "), "the head of a column has its arithmetic", head)
     with_film = next((s for s in model["scenes"] if s.get("film")), None)
     if with_film:
         film = next(f for f in model["films"] if f["id"] == with_film["film"])

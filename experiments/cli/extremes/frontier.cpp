@@ -377,7 +377,7 @@ TAUT_VERB(frontier) = {
         "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
         "  taut frontier chain jakobsen:iterations=1,substeps=1,order=mesh --of omega --from 1\n"
         "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000\n"
-        "  taut frontier moving-ball jakobsen pd xpbd --keep stretch.rms:5%\n"
+        "  taut frontier ball jakobsen pd xpbd --keep stretch.rms:5%\n"
         "  taut frontier --all jakobsen bullet\n"
         "Exit: 0 found; 1 a frontier of --all moved; 4 nothing was answered or compared",
     .bind = taut::bind_verb<taut::verb::frontier::add_options, taut::verb::frontier::run>};

@@ -15,7 +15,7 @@ function glyphBox(id) {
 const shades = [0.01, 0.03, 0.1, 0.3];
 const shadeOf = (value) => d3.bisectLeft(shades, value);
 const shaded = (value) => `background:color-mix(in srgb, var(--c${statusIndex('ok')}) ${[100, 70, 45, 24, 8][shadeOf(value)]}%, var(--card));` +
-    (shadeOf(value) > 1 ? 'color:var(--ink)' : '');
+    (shadeOf(value) > 0 ? 'color:var(--ink)' : '');
 /** What the shades mean, if a cell has one. */
 const shadeKey = (cells) => cells.some(({value}) => value !== undefined) && el('ul', {className: 'key'},
   [...shades, Infinity].map((end, i) => item(el('span', {className: 'glyph-box', style: shaded(end) + ';border:1px solid var(--line)'}, ''),

@@ -53,7 +53,7 @@ function winnersCard() {
     return node;
   };
   return el('div', {className: 'card winners', id: 'winners'},
-    el('h3', {}, `Cheapest for an ${error.title} of at most ...`),
+    el(model.differences ? 'h3' : 'h2', {}, `Cheapest for an ${error.title} of at most ...`),
     scrolling('The cheapest solver of each error on each scene', el('tr', {}, el('th', {scope: 'col'}, 'scene'),
       levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))), rows.map(line)),
     note('Each cell: the solver, how many times cheaper it is than the next solver, CPU time of a frame of 1/60\u00A0s, setting, arithmetic, and the stiffness of links that are not rigid. ',

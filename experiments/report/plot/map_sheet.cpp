@@ -14,8 +14,10 @@ namespace {
 
 /// "set xtics (...)" and the range of cells that are one apart.
 std::string cell_ticks(const char* axis, const Quantity& q, const std::vector<double>& values) {
+  constexpr std::size_t kMost = 7;  // labels that do not touch in a narrow panel
+  const std::size_t every = (values.size() + kMost - 1) / kMost;
   std::string list;
-  for (std::size_t k = 0; k < values.size(); ++k)
+  for (std::size_t k = 0; k < values.size(); k += std::max<std::size_t>(1, every))
     list += (k > 0 ? ", " : "") + gnuplot_string(tick_of(q, values[k])) + " " + std::to_string(k);
   return "set " + std::string(axis) + "tics (" + list + ")\nset " + axis +
          "range [-0.5:" + exact(static_cast<double>(values.size()) - 0.5) + "]\n";

@@ -49,10 +49,10 @@ std::string_view value_with(Role role) {
   return at == all.end() ? "" : (*at)->name;
 }
 
-constexpr double kLetter = 8, kLine = 18;    ///< of the key's text, at a font of 13 [px]
+constexpr double kLetter = 9, kLine = 21;    ///< of the key's text, at a font of 13 [px]
 constexpr double kGnuplotsLetter = 11;       ///< by which gnuplot sets the columns of a key apart
 constexpr double kSample = 75;               ///< a stretch of the line before it
-constexpr double kLeft = 100, kBottom = 62;  ///< ticks and titles of the axes
+constexpr double kLeft = 116, kBottom = 62;  ///< ticks and titles of the axes
 constexpr double kNarrowest = 190;           ///< a panel of a figure whose width is given
 constexpr double kPoints = 72.0 / 25.4;      ///< of a millimetre
 constexpr double kFont = 13, kPixel = 0.72;  ///< px, and a pixel in the PDF [pt]
