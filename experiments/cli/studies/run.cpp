@@ -217,7 +217,7 @@ int run(Options options) {
     std::size_t all = 0;
     for (const StudyCases& study : cases) all += study.cases.size();
     progress() << "the main job: " << all << " cases of " << cases.size()
-               << " studies, then their costs, closed forms, baselines and films; five minutes on "
+               << " studies, then their costs, closed forms, baselines and films; five to six minutes on "
                   "two idle cores, and it may be interrupted\n";
     say_part(1, "cases of the studies");
   }
