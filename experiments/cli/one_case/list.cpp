@@ -160,7 +160,6 @@ constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {{"scenes", list_
 std::vector<std::string> kinds() {
   std::vector<std::string> names;
   for (const auto& [kind, list] : kKinds) names.emplace_back(kind);
-  for (const SolverEntry* entry : all_solvers()) names.emplace_back(entry->name);
   return names;
 }
 
@@ -168,17 +167,24 @@ int run(const Options& options) {
   Answer all{"list"};
   for (const auto& [kind, list] : kKinds)
     if (options.what.empty() || options.what == kind) list(all);
-  if (all.tables.empty()) list_solvers(all, options.what);
+  if (all.tables
+          .empty()) {  // looked up here alone: it may start the programs of registered solvers
+    list_solvers(all, options.what);
+    std::vector<std::string> known = kinds();
+    for (const SolverEntry* entry : all_solvers()) known.emplace_back(entry->name);
+    if (std::ranges::find(known, options.what) == known.end())
+      throw InputError("unknown kind or solver '" + options.what + "'" +
+                       suggestion(options.what, known));
+  }
   print(all, options.format);
   return kPass;
 }
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option(
-         "WHAT", o.what,
-         "scenes | solvers | metrics | studies | keys | fabrics | assertions | record, or the name "
-         "of a solver, whose parameters it lists (default: all)")
-      ->check(known("kind", kinds()));
+      "WHAT", o.what,
+      "scenes | solvers | metrics | studies | keys | fabrics | assertions | record, or the name "
+      "of a solver, whose parameters it lists (default: all)");
   add_format(app, o.format, "Types, ranges and examples of keys, too");
 }
 

@@ -216,9 +216,10 @@ int run(Options options) {
   if (bare && !options.no_report) {
     std::size_t all = 0;
     for (const StudyCases& study : cases) all += study.cases.size();
-    progress() << "the main job: " << all << " cases of " << cases.size()
-               << " studies, then their costs, closed forms, baselines and films; five to six minutes on "
-                  "two idle cores, and it may be interrupted\n";
+    progress()
+        << "the main job: " << all << " cases of " << cases.size()
+        << " studies, then their costs, closed forms, baselines and films; five to six minutes on "
+           "two idle cores, and it may be interrupted\n";
     say_part(1, "cases of the studies");
   }
   const CampaignProgress campaign = run_missing(cases, store, command_line(options),

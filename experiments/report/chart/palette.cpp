@@ -21,13 +21,13 @@ constexpr Named kSolvers[] = {
     {"bullet-deformable",
      {{"#B52C77", "#F284BB"}, "triangle-right", "'▶' ps 1.2", "9 3 2 3"}},         // magenta
     {"jakobsen", {{"#0B6BCB", "#5AA9F5"}, "circle", "7", ""}},                     // blue
-    {"mass-spring", {{"#8250C4", "#B791F2"}, "pentagon", "15", "3 3"}},        // purple
+    {"mass-spring", {{"#8250C4", "#B791F2"}, "pentagon", "15", "3 3"}},            // purple
     {"xpbd", {{"#0F7B5D", "#3CCB9F"}, "triangle-down", "11", "9 3 2 3"}},          // green
     {"implicit", {{"#2B2F36", "#D5DBE3"}, "triangle-left", "'◀' ps 1.2", "2 3"}},  // black
     {"pd", {{"#B3261E", "#F2827A"}, "diamond", "13", "12 3"}},                     // red
     {"admm", {{"#3B4CC0", "#98A5F5"}, "star", "'★' ps 1.2", "5 3"}},               // indigo
     {"vbd", {{"#5B6B00", "#B5C94A"}, "triangle", "9", "6 2"}},                     // olive
-    {"avbd", {{"#9C2FA8", "#E08CEB"}, "plus", "'✚' ps 1.1", "9 4"}},                   // violet
+    {"avbd", {{"#9C2FA8", "#E08CEB"}, "plus", "'✚' ps 1.1", "9 4"}},               // violet
 };
 /// Of solvers that the program does not have.
 constexpr std::array kOthers{
