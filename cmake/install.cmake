@@ -4,7 +4,10 @@ include(CMakePackageConfigHelpers)
 install(TARGETS taut taut-f32 COMPONENT program)
 # ./taut builds the programs alone.
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" --build \"${PROJECT_BINARY_DIR}\" --target taut_manual
-                              OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
+                              OUTPUT_VARIABLE said ERROR_VARIABLE said RESULT_VARIABLE failed)
+              if(failed)
+                message(FATAL_ERROR \"The manual could not be made: \${said}\")
+              endif()" COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/taut.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/taut.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME taut COMPONENT program)

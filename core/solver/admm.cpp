@@ -144,5 +144,6 @@ TAUT_SOLVER(admm) = {
     .resolved_settings = taut::solver::admm::resolved_settings,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
+                 .all_at_once = true,
                  .alternatives = taut::solver::admm::kAlternatives,
                  .labelled = "substeps|iterations|penalty|multipliers|precision"}};

@@ -202,5 +202,6 @@ TAUT_SOLVER(pd) = {.name = "pd",
                    .resolved_settings = taut::solver::pd::resolved_settings,
                    .accuracy = {.substeps = "substeps",
                                 .sweeps = "iterations",
+                                .all_at_once = true,
                                 .alternatives = taut::solver::pd::kAlternatives,
                                 .labelled = "substeps|iterations|precision"}};

@@ -203,7 +203,7 @@ double EnergyBudget::farthest(double t) const {
 }
 
 double legitimate_strain(const Scene& scene, int substeps) {
-  return std::clamp(2 * softest(scene, hang(scene), scene.dt / substeps).strain, 10.0, 30.0);
+  return std::clamp(2 * softest(scene, hang(scene), scene.dt / substeps).strain, 2.0, 30.0);
 }
 
 std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost,

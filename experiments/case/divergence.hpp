@@ -61,10 +61,12 @@ class EnergyBudget {
 };
 
 /// The largest strain [1] that a link of this scene may show, whoever solves it, without the case
-/// being called extreme: 10 (eleven times its length) or, where it is larger, twice that of the
+/// being called extreme: 2 (three times its length) or, where it is larger, twice that of the
 /// softest relaxation, one sweep a step (truth legitimate-strain: 2 (N - 1) g dt^2/l in a hanging
 /// chain; here by cuts, as in EnergyBudget), but at most 30: what a scene asks for beyond that, by
-/// its start, its step or its forces, must not enter a mean.
+/// its start, its step or its forces, must not enter a mean. Of the 942 cases of the main job that
+/// ended well before, 2 marks 29, none of which ended below 7 % of RMS stretch; 1 would mark 57,
+/// some of which ended at 3 %.
 double legitimate_strain(const Scene&, int substeps = 1);
 
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing

@@ -142,7 +142,10 @@ void add_baselines(CLI::App& app, std::string& folder) {
 
 BaselineOptions baseline_options() {
   BaselineOptions options;
-  options.run = run_missing;
+  options.run = [](const std::vector<StudyCases>& studies, Store& store, const std::string& command,
+                   const CampaignOptions& campaign) {
+    return run_missing(studies, store, command, campaign);
+  };
   options.say = [](const std::string& news) { progress() << news << '\n'; };
   options.title = [](const std::string& value) {
     const ValueSpec* spec = find_value(value).second;
@@ -198,6 +201,13 @@ Study load_study_to_plot(const std::string& name, const std::string& preset) {
   }
   if (!wrong.empty()) throw InputError(wrong);
   return study;
+}
+
+std::string study_words(const Study& study) {
+  const std::vector<std::string> known = shipped("studies");
+  const bool is_shipped = std::ranges::find(known, study.name) != known.end();
+  return shell_word(is_shipped ? study.name : study.file.string()) +
+         (study.preset.empty() ? "" : " --preset " + study.preset);
 }
 
 std::string where_else(const Study& study, const Store& store) {
@@ -256,7 +266,7 @@ void continue_in_right_program(const SolverChoice& choice) {
   throw InputError(choice.brief() + " needs the program " + program + ", which cannot be run");
 }
 
-double error_of(const std::string& text) {
+double error_of(const std::string& text, const Unit& of) {
   std::size_t used = 0;
   double value = 0;
   try {
@@ -267,6 +277,9 @@ double error_of(const std::string& text) {
   const std::string unit = text.substr(used);
   if (used == 0 || !(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
     throw InputError("--error " + text + ": expected a number above 0 such as 0.01 or 1%");
+  if (unit.empty() && of.shown == "%" && value >= 1)
+    throw InputError("--error " + text + ": " + text + "% or " + number_text(100 * value) +
+                     "%? a share of 1 or more needs its sign");
   return unit == "%" ? value / 100 : value;
 }
 

@@ -84,6 +84,8 @@ Study load_study_to_plot(const std::string& name_or_path, const std::string& pre
 /// "; preset quick has all of its results: --preset quick", of the presets of a study of which
 /// every case is stored; "" if there is none.
 std::string where_else(const Study&, const Store&);
+/// "iterations --preset quick": the study in a command.
+std::string study_words(const Study&);
 
 /// Throws InputError with everything that is wrong with any of these solvers' texts.
 void check_solvers(const std::vector<std::string>& texts);
@@ -108,8 +110,9 @@ class CaseOptions {
 /// one; returns if it is this. Throws InputError if the other is not installed.
 void continue_in_right_program(const SolverChoice&);
 
-/// What --error says, "0.01" or "1%". Throws InputError.
-double error_of(const std::string& text);
+/// What --error says, "0.01" or "1%". A share of 1 or more is only known with its "%": 5 may be 5
+/// %. Throws InputError.
+double error_of(const std::string& text, const Unit&);
 
 /// The words with which this program was started, and the same for a shell: "taut check -j 2".
 std::vector<std::string> typed_words();

@@ -107,7 +107,8 @@ Answer answer_of(const Record& record, std::string kind) {
   return answer;
 }
 
-Progress::Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(2) == 1) {}
+Progress::Progress(bool verbose)
+    : start_(std::chrono::steady_clock::now()), terminal_(isatty(2) == 1), verbose_(verbose) {}
 
 void show_progress(bool shown) { g_shown = shown; }
 
@@ -135,18 +136,24 @@ void Progress::show(const CampaignProgress& campaign, const Record* record) {
   if (!g_shown) return;
   const std::string place =
       "[" + std::to_string(campaign.done()) + "/" + std::to_string(campaign.cases) + "] ";
-  if (!terminal_) {
+  constexpr std::size_t kFew = 20;
+  if (!terminal_ && (verbose_ || campaign.cases <= kFew)) {
     if (record) std::cerr << place << record->id << ": " << describe(record->status) << '\n';
     return;
   }
   const double elapsed = seconds_since(start_);
-  if (record && !record->status.is_result())
-    std::cerr << "\r\033[K" << record->id << ": " << describe(record->status) << '\n';
+  if (record && (verbose_ || !record->status.is_result()))
+    std::cerr << (terminal_ ? "\r\033[K" : "") << record->id << ": " << describe(record->status)
+              << '\n';
+  const double share = campaign.work > 0 ? campaign.work_done / campaign.work : 0;
+  const auto tenth = static_cast<std::size_t>(10 * share + 1e-9);
+  if (!terminal_ && tenth == told_) return;
+  told_ = tenth;
   std::string left = "?";
   if (campaign.work_done > 0)
     left = clock_text(elapsed * (campaign.work - campaign.work_done) / campaign.work_done);
-  std::cerr << "\r\033[K" << place << counts(campaign) << "  elapsed " << clock_text(elapsed)
-            << "  left " << left << std::flush;
+  std::cerr << (terminal_ ? "\r\033[K" : "") << place << counts(campaign) << "  elapsed "
+            << clock_text(elapsed) << "  left " << left << (terminal_ ? "" : "\n") << std::flush;
 }
 
 void Progress::finish(const CampaignProgress& campaign) {
@@ -157,7 +164,7 @@ void Progress::finish(const CampaignProgress& campaign) {
 }
 
 CampaignProgress run_missing(const std::vector<StudyCases>& studies, Store& store,
-                             const std::string& command, CampaignOptions options) {
+                             const std::string& command, CampaignOptions options, bool verbose) {
   store.begin_session(command, studies, options.shard);
   std::vector<Case> cases;
   for (const StudyCases& study : studies)
@@ -165,7 +172,7 @@ CampaignProgress run_missing(const std::vector<StudyCases>& studies, Store& stor
   std::ranges::stable_sort(cases, {}, &Case::key);
   const auto same = [](const Case& a, const Case& b) { return a.key == b.key; };
   cases.erase(std::unique(cases.begin(), cases.end(), same), cases.end());
-  Progress display;
+  Progress display(verbose);
   options.progress = [&](const CampaignProgress& t, const Record* r) { display.show(t, r); };
   const CampaignProgress campaign = run_cases(cases, store, options);
   display.finish(campaign);

@@ -37,23 +37,24 @@ void print_files(const std::vector<std::string>& files, bool json);
 /// What ran, how it ended, every value that has a meaning.
 Answer answer_of(const Record&, std::string kind);
 
-/// Shows a campaign on stderr: one line that is rewritten, with the time left, on a terminal; a
-/// line per case otherwise.
+/// Shows a campaign on stderr: one line that is rewritten, with the time left, on a terminal; else
+/// a line for every tenth part, and one per case if there are few or all are asked for.
 class Progress {
  public:
-  Progress();
+  explicit Progress(bool verbose = false);
   void show(const CampaignProgress&, const Record*);
   void finish(const CampaignProgress&);  ///< the last line: how the cases ended
 
  private:
   std::chrono::steady_clock::time_point start_;
-  bool terminal_;
+  bool terminal_, verbose_;
+  std::size_t told_ = 0;  ///< tenths of the work
 };
 
 /// Runs what the store lacks, each case once, in a session that `command` names, with progress on
 /// stderr.
 CampaignProgress run_missing(const std::vector<StudyCases>&, Store&, const std::string& command,
-                             CampaignOptions);
+                             CampaignOptions, bool verbose = false);
 
 /// The same on all cores, and what is then stored of each case. Throws InputError, Interrupted.
 std::vector<Record> run_and_collect(const StudyCases&, Store&, const std::string& command);

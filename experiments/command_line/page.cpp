@@ -134,8 +134,8 @@ report::ReportInput input_of(PageRequest options) {
       others > 0 && std::ranges::all_of(input.studies, none))
     throw InputError(options.results + ": " + std::to_string(others) +
                      " cases are there, but none that this build would run for " +
-                     join(options.studies, ", ") + "; taut run makes them" +
-                     where_else(studies.front(), store));
+                     join(options.studies, ", ") + "; taut run " + join(studies, " ", study_words) +
+                     " makes them" + where_else(studies.front(), store));
   report::add_stored_maps(input, load_all(maps, options.preset), store);
   input.command = command;
   input.solvers = introductions();
@@ -164,9 +164,10 @@ report::ReportInput input_of(PageRequest options) {
 
 }  // namespace
 
-std::string page_text(const PageRequest& request) {
+Page make_page(const PageRequest& request) {
   const report::ReportInput input = input_of(request);
-  return request.model ? report::make_model(input, 1) + "\n" : report::make_report(input);
+  return {request.model ? report::make_model(input, 1) + "\n" : report::make_report(input),
+          report::in_few_lines(input)};
 }
 
 }  // namespace taut

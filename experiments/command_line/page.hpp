@@ -16,8 +16,13 @@ struct PageRequest {
   bool model = false;  ///< the model of the page instead, without them
 };
 
-/// The page of stored results, one HTML text, or its model. Throws InputError, of an output that
-/// cannot be written before anything is done.
-std::string page_text(const PageRequest&);
+struct Page {
+  std::string text;                       ///< HTML, or the model
+  std::vector<std::string> in_few_lines;  ///< its answer, for a terminal
+};
+
+/// The page of stored results. Throws InputError, of an output that cannot be written before
+/// anything is done.
+Page make_page(const PageRequest&);
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
@@ -9,6 +10,7 @@
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/answer/answer.hpp"
+#include "experiments/report/answer/winners.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
@@ -43,25 +45,29 @@ class Builder {
       : input_(input), compared_(compared_solvers_of(input)), refs_(input) {}
 
   Json build() {
+    Json winners = json_of_winners(input_, refs_);
     const Answer answer = answer_of(input_, compared_, refs_);
     Json scenes = Json::array();
     for (const QuotedScene& quoted : compared_.scenes) scenes.push_back(scene(quoted));
     for (const SceneMedia& media : input_.media)
       if (!compared_.quoted(media.scene)) scenes.push_back(filmed_scene(media));
     Json cost, differences;
-    if (input_.bench) cost = json_of_cost(*input_.bench, refs_, charts_, tables_);
+    if (input_.bench) cost = json_of_cost(input_, refs_, charts_, tables_);
     if (input_.differences) differences = json_of(*input_.differences, refs_, tables_);
     Json steps = json_of_steps(input_, refs_, charts_, tables_);
     Json limits = json_of_limits(input_, tables_);
     Json method = this->method();
     Json cases = this->cases();
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
-    Json model{{"schema", "taut-report/5"},
+    Json model{{"schema", "taut-report/6"},
                {"meta", meta(cases.size())},
                {"solvers", solvers()},
                {"statuses", statuses()},
                {"metrics", metrics()}};
+    add_if(model, "winners", std::move(winners));
     model["answer"] = parse_json(to_json(answer));
+    for (const auto& [term, meaning] : terms_of(quoted_and_timed(), input_.vectors))
+      model["terms"].push_back({{"term", term}, {"meaning", meaning}});
     add_if(model, "scenes", std::move(scenes));
     add_if(model, "charts", std::move(charts_));
     add_if(model, "maps", std::move(maps_));
@@ -98,6 +104,18 @@ class Builder {
     one["cases"] = refs_.cases().size(), one["planned"] = refs_.cases().size() + planned;
     if (listed < refs_.cases().size()) one["listed"] = listed;
     return one;
+  }
+
+  /// The cases whose settings the first screen says.
+  std::vector<const Record*> quoted_and_timed() const {
+    std::vector<const Record*> all;
+    for (const QuotedScene& scene : compared_.scenes)
+      for (const Record* r : scene.cases)
+        if (r) all.push_back(r);
+    if (input_.bench)
+      for (const SceneBench& scene : input_.bench->scenes)
+        for (const BenchedCase& c : scene.cases) all.push_back(&c.record);
+    return all;
   }
 
   /// What anything above names, with its cost and its film.
@@ -376,7 +394,8 @@ std::string make_report(const ReportInput& input) {
   const std::string model = for_script(make_model(input));
   CaseList list(input);
   const ComparedSolvers compared = compared_solvers_of(input);
-  const std::string answer = escape_html(to_text(answer_of(input, compared, list)));
+  const std::string answer = escape_html(join(in_few_lines(input), "\n") + "\n\n" +
+                                         to_text(answer_of(input, compared, list)));
   const std::string title = escape_html(report_title(input, compared));
   const std::string_view page = page_file("index.html");
   std::string html;
@@ -392,6 +411,19 @@ std::string make_report(const ReportInput& input) {
     at = close + 2;
   }
   return html;
+}
+
+std::vector<std::string> in_few_lines(const ReportInput& input) {
+  constexpr std::size_t kMostScenes = 6;
+  CaseList list(input);
+  const WinnerMap map = winners_of(input, list);
+  std::vector<std::string> lines;
+  for (const std::vector<Said>& sentence : sentences_of(map)) lines.push_back(text_of(sentence));
+  const auto level = static_cast<std::size_t>(std::ranges::find(kErrorLevels, kPricedError) -
+                                              std::begin(kErrorLevels));
+  for (const WinnerRow& row : map.rows)
+    if (lines.size() < kMostScenes + 2) lines.push_back(line_of(row, level));
+  return lines;
 }
 
 }  // namespace taut::report

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace taut::report {
 
@@ -22,5 +23,9 @@ struct PageFile {
   std::string_view text;
 };
 std::span<const PageFile> page_files();
+
+/// What the page says first, in at most nine lines: who is cheapest, and at kPricedError the
+/// setting, cost and certainty on each scene; none without a bench.
+std::vector<std::string> in_few_lines(const ReportInput&);
 
 }  // namespace taut::report

@@ -165,9 +165,19 @@ std::vector<KeptAnswer> default_limits(const Scene& scene) {
       if (depth || value.role == Role::passages || (value.kept && is_count(value.unit)))
         all.push_back({std::string(value.name), depth ? 0.001 * extent(scene) : 0});
       if (value.name == kMotionError) all.push_back({std::string(value.name), 0.25});
+      if (value.role == Role::error) all.push_back({std::string(value.name), kMostStretch});
     }
   }
   return all;
+}
+
+std::string beyond(const Record& record, const std::vector<KeptAnswer>& limits) {
+  std::string said;
+  for (const KeptAnswer& limit : limits)
+    if (const double value = std::abs(record.value(limit.name)); value > limit.tolerance)
+      said += (said.empty() ? "" : "; ") + limit.name + " " + text(limit, value) + ", more than " +
+              text(limit, limit.tolerance);
+  return said;
 }
 
 std::vector<std::string> default_answers(const Observation& full) {

@@ -1,5 +1,8 @@
 #include "experiments/timing/hardly_moves.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "experiments/answer/number.hpp"
 
 namespace taut {
@@ -10,6 +13,12 @@ std::string hardly_moves(const Record& r) {
         value->role == Role::motion && share < kLeastMotion)
       return "hardly moves: " + shown(value->unit, share) + " of the way";
   return "";
+}
+
+bool is_motion_judged(const Record& r) {
+  return std::ranges::any_of(values_with_role(), [&](const ValueSpec* value) {
+    return value->role == Role::motion && std::isfinite(r.value(std::string(value->name)));
+  });
 }
 
 }  // namespace taut

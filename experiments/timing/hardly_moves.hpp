@@ -13,5 +13,7 @@ inline constexpr double kLeastMotion = 0.5;
 /// "hardly moves: 5 % of the way", for people; "": it moves, or the scene has no reference in
 /// motion.
 std::string hardly_moves(const Record&);
+/// Whether the scene has a reference in motion that says so.
+bool is_motion_judged(const Record&);
 
 }  // namespace taut

@@ -20,10 +20,10 @@ std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates, const
   return order;
 }
 
-std::string line(const BenchedCase& c, const std::string& metric) {
+std::string line(const BenchedCase& c, const std::string& metric, double fps) {
   return parse_solver(c.record.spec.solver).brief() + ", " + metric + " " +
          number_text(c.record.value(metric), unit_of_value(metric)) + ", " +
-         text(c.cost(), Column("cost", "", kFrameCost));
+         text(c.cost(), Column("cost", "", frame_cost(fps)));
 }
 
 }  // namespace
@@ -45,14 +45,15 @@ std::string verdict(const Recommendation& recommendation, const SceneBench& benc
 }
 
 std::string nearest(const SolverRecommendation& solver, const SceneBench& bench,
-                    const Recommendation& recommendation, const std::string& metric) {
+                    const Recommendation& recommendation, const std::string& metric, double fps) {
   constexpr double kAny = std::numeric_limits<double>::max();
   const Target any = recommendation.target.error ? Target{{}, kAny} : Target{kAny, {}};
   const auto at = best_for(any, bench.candidates(metric), solver.solver);
   const std::string missed = bench.searched_to_the_end(solver.solver)
                                  ? "never, to the end of its accuracy parameters"
                                  : "not by the settings tried";
-  return missed + (at ? "; nearest: " + line(bench.cases[*at], metric) : "; every case failed");
+  return missed +
+         (at ? "; nearest: " + line(bench.cases[*at], metric, fps) : "; every case failed");
 }
 
 std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target& target,
@@ -104,9 +105,10 @@ Interval cost_expected_again(const SceneBench& bench, std::size_t at) {
   return {cost.low / stray, cost.mid, cost.high * stray};
 }
 
-std::string text(const Target& target, const std::string& metric) {
+std::string text(const Target& target, const std::string& metric, double fps) {
   if (target.error) return metric + " <= " + number_text(*target.error, unit_of_value(metric));
-  return "least " + metric + " within " + number_text(*target.budget, kFrameCost) + " of 1/60 s";
+  return "least " + metric + " within " + number_text(*target.budget, frame_cost(fps)) + " of 1/" +
+         number_text(fps) + " s";
 }
 
 Table recommendations(const std::string& metric) {

@@ -36,7 +36,7 @@ Recommendation recommend(const SceneBench&, const Target&, const std::string& me
 Interval cost_expected_again(const SceneBench&, std::size_t at);
 
 /// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms a frame of 1/60 s".
-std::string text(const Target&, const std::string& metric);
+std::string text(const Target&, const std::string& metric, double fps = 1 / kFrame);
 
 /// How sure of what: "clearly within the budget", "likely cheaper than bullet", "costs the same as
 /// bullet within 5 %". Precondition: there is a best.
@@ -44,7 +44,7 @@ std::string verdict(const Recommendation&, const SceneBench&);
 
 /// What a solver that did not reach the target came nearest to, and whether it could not.
 std::string nearest(const SolverRecommendation&, const SceneBench&, const Recommendation&,
-                    const std::string& metric);
+                    const std::string& metric, double fps = 1 / kFrame);
 
 /// An empty table of recommendations, and its rows for one of them: the best, then every other
 /// solver with what it costs or how near it came.

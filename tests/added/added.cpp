@@ -92,7 +92,7 @@ TEST(Added, AMetricsRoleDrawsItsCharts) {
 
 TEST(Added, AMetricsRoleMakesItsQuestion) {
   const Json& table = made()["answer"]["tables"]["sag.rms"];
-  EXPECT_EQ(table["title"], "RMS sag at equal work");
+  EXPECT_EQ(table["title"], "RMS sag at equal sweeps");
   EXPECT_TRUE(
       table["caption"].get<std::string>().starts_with("last second; 1 × 16 (substeps × sweeps)"));
   EXPECT_EQ(table["columns"][2]["heading"], "Made up");

@@ -7,7 +7,10 @@ import subprocess
 # Texts whose contrast with the background behind them is below WCAG AA, as "text: ratio".
 CONTRAST = r"""
 (() => {
-  const parse = c => { const m = c.match(/[\d.]+/g).map(Number); return m.length < 4 ? [...m, 1] : m; };
+  const parse = c => {
+    const m = c.match(/[\d.]+/g).map(Number), of = c.startsWith('color(srgb') ? 255 : 1;  // a mixture
+    return [...m.slice(0, 3).map(v => of * v), m[3] ?? 1];
+  };
   const light = c => c.slice(0, 3).map(v => v / 255)
       .map(v => v <= .04045 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4)
       .reduce((s, v, i) => s + v * [.2126, .7152, .0722][i], 0);

@@ -261,9 +261,15 @@ def films(checks):
 
 
 def prints(checks):
-    """On paper: every scene, every question with its scenes, what is folded; afterwards as it was."""
+    """On paper what was chosen: every scene, every question with its scenes, what is folded; afterwards as it was."""
     page = checks.open()
     titles = page.run("model.scenes.map(s => s.title)")
+    page.media("print")
+    checks.true(page.run(SCENES) == [], "scenes are not printed unless they are chosen", page.run(SCENES))
+    checks.true(page.run(f"({SEEN})(document.getElementById('answer'))"), "the answer is")
+    page.media("")
+    page.settle()
+    page.run("document.querySelectorAll('.to-paper input:not(:checked)').forEach(box => box.click())")
     page.size(688, 900)
     page.media("print")
     checks.true(page.run(SCENES) == titles, "all scenes are printed", page.run(SCENES))
@@ -289,7 +295,8 @@ def answer(checks):
     tables = checks.model()[0]["answer"]["tables"]
     page.size(1280, 800)
     page.settle()
-    bottom = "document.querySelector('.answer').getBoundingClientRect().bottom"
+    mapped = page.run("Boolean(model.winners)")
+    bottom = f"document.querySelector('{'#winners tbody' if mapped else '.answer'}').getBoundingClientRect().bottom"
     checks.true(page.run(bottom) <= 800, "the answer is one screen", page.run(bottom))
     page.size(390, 844)
     page.run("state.set({open: 'none'})")
@@ -321,7 +328,7 @@ def answer(checks):
         checks.true(marked == best, f"{name}: the best are marked", [marked, best])
     names = page.run("answered")
     for scene in names:
-        page.run(f"(s => {{ s.value = {scene!r}; s.dispatchEvent(new Event('change')); }})(document.querySelector('.answer select'))")
+        page.run(f"[...document.querySelectorAll('#answer-scenes a')].find(a => a.textContent === {scene!r}).click()")
         page.settle()
         wrong = []
         for name, table in tables.items():
@@ -343,6 +350,38 @@ def answer(checks):
     dialog = page.run("document.querySelector('dialog').innerText")
     checks.true(entry["command"] in dialog and entry["key"] in label, "a click opens its case with the command", [label, dialog[:99]])
     page.press("Escape")
+
+
+def winners(checks):
+    """The map says of each scene and error who is cheapest, by how much, at what cost and setting, or why nobody is; each number of
+    its sentences leads somewhere."""
+    page = checks.open()
+    model = checks.model()[0]
+    if "winners" not in model:
+        checks.true(page.run("document.getElementById('winners')") is None, "nothing was timed: no map")
+        return
+    titles, rows = {s["id"]: s["title"] for s in model["solvers"]}, model["winners"]["rows"]
+    said = page.run("[...document.querySelectorAll('#winners tbody tr')].map(tr => [...tr.querySelectorAll('td')].map(td => td.innerText))")
+    checks.true([len(row) for row in said] == [len(row["cells"]) for row in rows], "a cell for each error of each scene", said)
+    wrong = []
+    for texts, row in zip(said, rows):
+        for text, cell in zip(texts, row["cells"]):
+            wanted = [cell["why"]] if "why" in cell else []
+            for one in cell.get("cheapest", []):
+                wanted += [titles[one["solver"]], one["setting"].replace(" × ", "\u00a0×\u00a0"), one["arithmetic"].split(" (")[0].replace(" × ", "\u00a0×\u00a0")]
+            if "next" in cell and len(cell["cheapest"]) == 1:
+                wanted += ["×", titles[cell["next"]["solver"]]]
+            wrong += [[text, part] for part in wanted if part not in text]
+    checks.empty(wrong, "each cell of the map says its contenders")
+    parts = [part["text"] for sentence in model["winners"]["sentences"] for part in sentence if any(c.isdigit() for c in part["text"])]
+    linked = page.run("[...document.querySelectorAll('.finding a')].map(a => a.textContent)")
+    checks.true(linked == parts, "each number of a sentence is a link", [linked, parts])
+    page.run("document.querySelector('.finding .to-case').click()")
+    page.settle()
+    checks.true(page.run("cases.has(state.get('case'))"), "that opens its case")
+    page.press("Escape")
+    lacking = page.run("[...document.querySelectorAll('#winners small')].map(e => e.textContent).filter(t => /^(float|double)/.test(t) && !explain(t))")
+    checks.empty(lacking, "each arithmetic is explained")
 
 
 def charts(checks):
@@ -441,7 +480,7 @@ def compared(checks):
     solver = model["solvers"][0]
     page = checks.open()
     head = page.run(f"document.querySelector('#answer thead [data-s=\"0\"]').innerText")
-    checks.true(solver["arithmetic"].split(" (")[0] in head, "the head of a column has its arithmetic", head)
+    checks.true(solver["arithmetic"].split(" (")[0] in head.replace("\u00a0", " "), "the head of a column has its arithmetic", head)
     with_film = next((s for s in model["scenes"] if s.get("film")), None)
     if with_film:
         film = next(f for f in model["films"] if f["id"] == with_film["film"])
@@ -460,7 +499,7 @@ def compared(checks):
     checks.quiet("with differences")
 
 
-ALL = {f.__name__: f for f in (drawn, answer, compared, charts, layout, permalinks, table, points, switches, keyboard, films, prints, hostile, without_script)}
+ALL = {f.__name__: f for f in (drawn, answer, winners, compared, charts, layout, permalinks, table, points, switches, keyboard, films, prints, hostile, without_script)}
 
 
 def use(report, out, every, names=()):

@@ -80,11 +80,11 @@ Status strained(const Scene& scene, double strain) {
   return verdict.status();
 }
 
-TEST(VerdictBorders, AStrainOfTenIsExtremeUnlessRelaxationAsSoftAsPossibleHasIt) {
+TEST(VerdictBorders, AStrainOfTwoIsExtremeUnlessRelaxationAsSoftAsPossibleHasIt) {
   Scene scene = chain();
-  EXPECT_EQ(legitimate_strain(scene), 10);
-  EXPECT_EQ(strained(scene, 9.99).kind, Status::Kind::ok);
-  const Status status = strained(scene, 10.01);
+  EXPECT_EQ(legitimate_strain(scene), 2);
+  EXPECT_EQ(strained(scene, 1.99).kind, Status::Kind::ok);
+  const Status status = strained(scene, 2.01);
   EXPECT_EQ(status.kind, Status::Kind::extreme);
   EXPECT_EQ(status.reason, "stretch");
   EXPECT_EQ(status.step, 7);

@@ -204,7 +204,7 @@ class Verbs(CommandLine):
         self.taut("run", study)
         for value, drawn in (("stretch.max", True), ("compression.max", False)):
             figure = self.folder / self.taut("plot", study, "--kind", "convergence", "--y", value).out.split()[0]
-            self.assertEqual("theory: slope -1" in figure.with_suffix(".gp").read_text(), drawn, value)
+            self.assertEqual("theory of relaxation: 1/sweeps" in figure.with_suffix(".gp").read_text(), drawn, value)
         self.assertIn(" title 'Largest stretch over sweeps per substep, small",
                       (figure.parent / "small-convergence-stretch.max-over-iterations.gp").read_text())
         figure = self.folder / self.taut("plot", study, "--kind", "convergence", "--title", "Ours").out.split()[0]
@@ -515,7 +515,9 @@ class Verbs(CommandLine):
         self.assertNotEqual(facts_of(strict)["best"], setting)
         self.assertLessEqual(kept or 0, deep / 2)
         usual = [row["value"] for row in rows_of(self.advise("--error", "30%", "--solver", "jakobsen", expect=None), "kept")]
-        self.assertEqual(usual, ["penetration.peak", "tunnelling.events"])
+        self.assertEqual(usual, ["penetration.peak", "tunnelling.events"], "the error says how much stretch there may be")
+        within = self.advise("--budget", 1, "--solver", "jakobsen", expect=None)
+        self.assertEqual({row["value"]: row["limit"] for row in rows_of(within, "kept")}["stretch.rms"], 0.1)
         for wrong in ("penetration.peek:1mm", "penetration.peak", "penetration.peak:1kg", "shape:1%", "tunnelling.count:1%"):
             self.taut("advise", "./small.toml", "--error", "1%", "--keep", wrong, expect=2)
 
@@ -547,6 +549,79 @@ class Verbs(CommandLine):
         self.assertFalse({"price", "equal_cost", "setting"} & set(page["answer"]["tables"]))
         self.assertTrue(all("cpu.per_step" in case["values"] for case in page["cases"]), "the costs are there")
 
+    def test_an_error_is_five_per_cent_or_refused(self):
+        for text in ("5", "1"):
+            said = self.taut("advise", "hang", "--error", text, expect=2).err
+            self.assertIn(f"--error {text}: {text}% or {100 * int(text)}%?", said)
+
+    def test_a_budget_is_of_a_frame_of_the_frames_a_second(self):
+        cost = {}
+        for fps in (60, 30):
+            answer = self.advise("--budget", 0.01, "--fps", fps, "--solver", "jakobsen")
+            self.assertIn(f"within 0.01 ms a frame of 1/{fps} s", answer["subject"])
+            self.assertLessEqual(facts_of(answer)["cost"][1], 0.01e-3 * fps)
+            cost[fps] = answer["facts"]["cost"]
+        self.assertAlmostEqual(cost[30]["scale"], 2 * cost[60]["scale"])
+
+    def test_of_a_search_that_was_ended_nothing_is_best(self):
+        said = self.taut("advise", "hang", "--error", "0.1%", "--patience", 2, expect=None)
+        if "INCOMPLETE" not in said.out:
+            self.skipTest("two seconds were enough for all solvers")
+        self.assertNotRegex(said.out, r"(?m)^ *best  ")
+        if said.returncode == 3:
+            self.assertRegex(said.out, r"cheapest so far; (\d+ solvers? not tried(, )?)?(\d+ solvers? not searched to the end)?")
+
+    def test_several_solvers_have_one_table_of_frontiers_with_what_is_acceptable(self):
+        loose, strict = ({row["solver"]: row for row in rows_of(self.answer(
+            "frontier", "./small.toml", "jakobsen:iterations=4", "xpbd", "--tolerance", 0.3, "--keep", keep), "frontiers")}
+            for keep in ("stretch.rms:1000%", "stretch.rms:2%"))
+        self.assertEqual(list(loose), ["jakobsen:iterations=4", "xpbd"])
+        for solver, row in strict.items():
+            self.assertEqual(row["stable"], loose[solver]["stable"])
+            if isinstance(row["acceptable"], float):
+                self.assertLess(row["acceptable"], row["stable"])
+            self.assertRegex(row["acceptable_end"], r"stretch\.rms \S+ %, more than 2 %")
+        one = self.answer("frontier", "./small.toml", "xpbd", "--tolerance", 0.3, "--keep", "stretch.rms:2%")["facts"]["acceptable"]
+        self.assertEqual(one["value"], strict["xpbd"]["acceptable"])
+        self.assertIn("more than 2 %", one["note"])
+        self.taut("frontier", "./small.toml", "xpbd", "--keep", "stretch.rmz:2%", expect=2)
+
+    def test_a_study_runs_at_two_time_steps_beside_its_own(self):
+        study = self.study(solvers=["jakobsen:iterations=2"], rest='axes.time.dt = ["1/64"]\n')
+        table = self.taut("run", study, "--dt", "1/32", "--dt", "1/16", "--table", "stretch.rms").out
+        self.assertEqual([line.split()[0] for line in table.splitlines() if "dt=" in line], ["jakobsen:iterations=2"] * 2)
+        self.assertEqual(sorted(r["dt"] for r in self.records()), [1 / 32, 1 / 16])
+        self.taut("run", study)
+        self.assertEqual(len(self.records()), 3)
+        self.taut("run", "--dt", "1/32", expect=2)
+
+    def test_a_figure_is_as_wide_as_it_is_asked_to_be(self):
+        study = self.study(solvers=["jakobsen", "bullet"], rest='axes.iterations = [1, 4, 16]\n[[plot]]\nkind = "convergence"\nfile = "mine"\n')
+        self.taut("run", study)
+        pdf = next(line for line in self.taut("plot", study, "--width", "84mm", "--height", "60mm", "--no-title").out.splitlines() if line.endswith(".pdf"))
+        box = re.search(rb"/MediaBox \[ 0 0 ([0-9.]+) ([0-9.]+) \]", (self.folder / pdf).read_bytes())
+        self.assertEqual([round(float(side) * 25.4 / 72) for side in box.groups()], [84, 60])
+        script = (self.folder / pdf).with_suffix(".gp").read_text()
+        self.assertNotIn(" title 'RMS", script)
+        for wrong in (("--width", "84"), ("--font", "8mm"), ("--width", "20mm"), ("--width", "84mm", "--height", "20mm"), ("--width", "0mm")):
+            self.taut("plot", study, *wrong, expect=2)
+
+    def test_list_shows_the_parameters_of_one_solver(self):
+        one = self.answer("list", "jakobsen")
+        self.assertEqual({row["solver"] for row in rows_of(one, "parameters")}, {"jakobsen"})
+        self.assertIn("omega", [row["name"] for row in rows_of(one, "parameters")])
+        self.taut("list", "jakobson", expect=2)
+
+    def test_many_cases_are_tenths_and_all_of_them_lines_if_asked_for(self):
+        study = self.study(solvers=["jakobsen"], rest=f"axes.iterations = {list(range(1, 31))}\n")
+        lines = self.taut("run", study).err.splitlines()
+        tenths = [line for line in lines if line.startswith("[") and "  left " in line]
+        self.assertTrue(9 <= len(tenths) <= 11, lines)
+        self.assertEqual([line for line in lines if "jakobsen:iterations=7" in line], [])
+        self.assertIn("study: 30 cases: ok 30", lines)
+        other = self.study("other.toml", solvers=["xpbd"], rest=f"axes.iterations = {list(range(1, 31))}\n")
+        self.assertEqual(len([line for line in self.taut("run", other, "--verbose").err.splitlines() if line.endswith(": ok")]), 30)
+
     def test_a_budget_is_kept_and_what_cannot_be_had_is_said(self):
         answer = self.advise("--budget", 0.01, "--solver", "jakobsen")
         self.assertLessEqual(facts_of(answer)["cost"][1], 0.01e-3 * 60)
@@ -561,7 +636,7 @@ class Verbs(CommandLine):
     def test_export_is_one_tidy_table(self):
         study = self.study(solvers=["jakobsen:iterations=2", "xpbd"],
                            rest='axes.time.dt = ["1/64", "1/32"]\n')
-        self.assertIn("taut run makes them", self.taut("export", study, expect=2).err)
+        self.assertRegex(self.taut("export", study, expect=2).err, r"taut run \S*study\.toml makes them")
         self.taut("run", study)
         self.assertEqual(self.taut("export", study, "-o", "x.csv").out, "x.csv\n")
         text = (self.folder / "x.csv").read_text()

@@ -138,7 +138,7 @@ class Assertions(CommandLine):
 
 
 class Profiles(CommandLine):
-    LEVELS = [0.1, 0.01, 0.001, 0.0001]
+    LEVELS = [0.1, 0.03, 0.01, 0.003, 0.001]
 
     def shares(self):
         results = self.folder / "results/runs"
@@ -166,13 +166,13 @@ class Profiles(CommandLine):
     def test_plot_and_page_show_what_the_raw_samples_give(self):
         study = self.study(solvers=["jakobsen", "bullet"], rest="[axes]\niterations = [1, 4, 16, 64]\n")
         self.taut("bench", study)
-        # Costs at will, and the most accurate setting of Bullet could not be timed.
+        # Costs at will, and the accurate settings of Bullet could not be timed.
         results = self.folder / "results/runs"
         for place, row in enumerate(stored.query(results, "SELECT timing_id, solver FROM timings JOIN cases USING (key) ORDER BY timing_id")):
             bullet = row["solver"] == "bullet"
             stored.change(results, "UPDATE samples SET cpu = ? WHERE timing_id = ?",
                           (1 + place % 4) * (3e-6 if bullet and place % 4 else 4e-6), row["timing_id"])
-            if bullet and place % 4 == 3:
+            if bullet and place % 4 > 0:  # what is left reaches no small error
                 stored.change(results, "UPDATE timings SET failure = 'no clock' WHERE timing_id = ?", row["timing_id"])
         stored.seal_benches(results)
         ratios = self.shares()

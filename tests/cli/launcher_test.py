@@ -121,7 +121,8 @@ class Launcher(unittest.TestCase):
         file.write_text(file.read_text().replace(there, then))
 
     def test_nothing_to_build_nothing_said_nothing_started(self):
-        self.assertEqual(self.call("run").err, "taut: building default\n")
+        self.assertEqual(self.call("run").err, "taut: the first build of default: three to six minutes on two cores, once; then the command runs\n"
+                                               "taut: building default\n")
         self.assertIn("cmake", self.started())
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.assertEqual(self.call("run").err, "")

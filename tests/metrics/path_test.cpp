@@ -28,7 +28,7 @@ struct Outcome {
 
 Outcome outcome(const Scene& scene, const std::string& solver) {
   const Record record = run_case(scene, parse_solver(solver)).record;
-  EXPECT_EQ(record.status.kind, Status::Kind::ok);
+  EXPECT_TRUE(record.status.is_result() && record.status.kind != Status::Kind::exploded);
   return {record.digest, record.values.at("tunnelling.count"),
           record.values.at("tunnelling.events")};
 }

@@ -96,7 +96,7 @@ TEST(Figure, StrainsHaveThreeDigitsAndASignIfWanted) {
   EXPECT_EQ(strain_text(-0.05, false), "5.00 %");
 }
 
-TEST(Figure, PanelsStandSideBySideFourInTwoRows) {
+TEST(Figure, PanelsStandUpToThreeSideBySideFourInTwoRows) {
   struct Page {
     int width, height, panels, columns, rows;
     double unit;
@@ -106,6 +106,8 @@ TEST(Figure, PanelsStandSideBySideFourInTwoRows) {
                            Page{1920, 1080, 2, 2, 1, 1, 66, 126, 958, 888},
                            Page{1920, 1080, 3, 3, 1, 1, 66, 126, 637, 888},
                            Page{1920, 1080, 4, 2, 2, 1, 66, 126, 958, 409},
+                           Page{1920, 1080, 5, 3, 2, 1, 66, 126, 637, 409},
+                           Page{1920, 1080, 9, 3, 3, 1, 66, 126, 637, 249},
                            Page{960, 1080, 2, 2, 1, 0.5, 33, 63, 479, 984},
                            Page{960, 1080, 1, 1, 1, 0.8, 53, 101, 960, 926},
                            Page{1920, 540, 1, 1, 1, 0.5, 33, 63, 1920, 444}}) {

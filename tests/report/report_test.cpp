@@ -111,7 +111,7 @@ TEST(Report, NamesFromOutsideStayText) {
 
 TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   const Json model = model_of(example());
-  EXPECT_EQ(model["schema"], "taut-report/5");
+  EXPECT_EQ(model["schema"], "taut-report/6");
   for (const char* part : {"meta", "solvers", "statuses", "metrics", "answer", "scenes", "charts",
                            "maps", "tables", "method", "missing", "cases"})
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;

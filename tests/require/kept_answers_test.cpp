@@ -87,7 +87,8 @@ TEST(KeptAnswers, LimitsByDefaultAreOfContactAndOfMotion) {
       all[limit.name] = limit.tolerance;
     return all;
   };
-  EXPECT_EQ(limits("swing"), (std::map<std::string, double>{{"motion.error", 0.25}}));
+  EXPECT_EQ(limits("swing"),
+            (std::map<std::string, double>{{"motion.error", 0.25}, {"stretch.rms", 0.1}}));
   EXPECT_EQ(limits("ball").count("motion.error"), 0u);
   EXPECT_GT(limits("ball").at("penetration.peak"), 0);
   EXPECT_EQ(limits("ball").at("tunnelling.events"), 0);

@@ -227,9 +227,9 @@ std::optional<Scene> with_everything(const std::string& solver, bool elastic) {
   scene.start.v[thrown].z() = 3;
   scene.colliders.push_back({Ball{scene.start.x[thrown] + Vec3(0.004, 0.003, 0.025), 0.01}});
   const auto& [a, b, c] = scene.mesh.triangles[100];  // its corners are outside of this one
-  const Vec3 middle =
+  const Vec3 on_face =
       (scene.start.x[to_index(a)] + scene.start.x[to_index(b)] + scene.start.x[to_index(c)]) / 3;
-  scene.colliders.push_back({Ball{middle - Vec3(0, 0, 0.015), 0.02}});
+  scene.colliders.push_back({Ball{on_face - Vec3(0, 0, 0.015), 0.02}});
   scene.start.x[60] = scene.start.x[20] + Vec3(0.01, 0.02, 0.03);  // no link joins them
   if (elastic) scene.stiffness = {400, 200, 20};
   scene.bending = Bending{.warp = 1e-4, .weft = 2e-4, .direction = Vec3::UnitX()};

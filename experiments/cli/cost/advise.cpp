@@ -3,6 +3,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
+#include "experiments/advise/expected_cost.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/require/require.hpp"
@@ -29,19 +30,22 @@ constexpr int kFewestRounds = 2;  ///< with which finalists are timed where the 
 struct Options {
   std::string scene, metric = kErrorMetric, error, out;
   double budget = 0;  ///< ms per frame; 0: not given
+  double fps = 1 / kFrame;
   std::vector<std::string> solvers, settings, keep;
   double patience = 120;
   int rounds = 8;
   double seconds = 0.05, tolerance = kTolerance;
   Format format;
+
+  Unit frame() const { return frame_cost(fps); }
 };
 
 Target target_of(const Options& options) {
   if (options.error.empty() == (options.budget <= 0))
     throw InputError(std::string("advise needs one of --error and --budget") +
                      (options.error.empty() ? "" : ", not both"));
-  if (!options.error.empty()) return {error_of(options.error), {}};
-  return {{}, options.budget * 1e-3 / kFrame};
+  if (!options.error.empty()) return {error_of(options.error, unit_of_value(options.metric)), {}};
+  return {{}, options.budget * 1e-3 * options.fps};
 }
 
 /// What a step of the cheapest setting costs without one effect of the scene.
@@ -74,6 +78,15 @@ struct Result {
 
   const BenchedCase& best() const { return bench.cases[*recommendation.best]; }
   bool complete() const { return cut.empty() && unrefined.empty(); }
+  /// What the best is called: that of a search that was ended is not the best.
+  std::string called() const {
+    const auto tried_once = [&](const std::string& solver) {
+      return std::ranges::count(tried, parse_solver(solver).entry->name, &Candidate::solver) > 0;
+    };
+    const auto n = static_cast<std::size_t>(std::ranges::count_if(cut, tried_once));
+    return cut.empty() ? "best"
+                       : so_far(target.error ? "cheapest" : "most accurate", cut.size() - n, n);
+  }
   bool confirmed() const { return cost.contains(again.mid); }
 };
 
@@ -84,6 +97,9 @@ class Advisor {
       : options_(options), store_(options.out), result_{.target = target_of(options)} {
     const Scene scene = load_scene(find_scene(options.scene), options.settings);
     result_.limits = default_limits(scene);
+    if (result_.target.error)  // which says how much is accepted
+      std::erase_if(result_.limits,
+                    [&](const KeptAnswer& one) { return one.name == options.metric; });
     if (!options.keep.empty()) result_.limits.clear();
     read_all(options.keep, [&](const std::string& asked) {
       if (asked != "nothing") result_.limits.push_back(parse_limit(asked, scene));
@@ -155,10 +171,8 @@ class Advisor {
     Candidate found{
         record->solver, record->spec.solver, {}, std::abs(record->value(options_.metric)), {}};
     if (!completed(record->status)) found.failure = describe(record->status);
-    for (const KeptAnswer& limit : result_.limits)
-      if (const double value = std::abs(record->value(limit.name)); value > limit.tolerance)
-        found.failure += (found.failure.empty() ? "" : "; ") + limit.name + " " +
-                         text(limit, value) + ", more than " + text(limit, limit.tolerance);
+    if (const std::string why = beyond(*record, result_.limits); !why.empty())
+      found.failure += (found.failure.empty() ? "" : "; ") + why;
     try {
       TimingWorker worker(record->spec);
       worker.give_up_at(at(end));
@@ -178,7 +192,7 @@ class Advisor {
                        ? options_.metric + " " +
                              number_text(found.error, unit_of_value(options_.metric))
                        : found.failure)
-               << ", " << number_text(found.cost.mid, kFrameCost) << '\n';
+               << ", " << number_text(found.cost.mid, options_.frame()) << '\n';
     return found;
   }
 
@@ -244,10 +258,12 @@ class Advisor {
   /// Every solver is searched before one is refined; each gets an equal share of the time that
   /// those before it have left.
   void search(std::vector<std::string> solvers) {
-    if (solvers.size() > 1)
+    if (solvers.size() > 1) {
+      solvers = by_expected_cost(std::move(solvers), options_.scene, options_.settings, store_);
       solvers = cheapest_first(std::move(solvers), [&](const std::string& setting) {
         return evaluate(setting, options_.patience);
       });
+    }
     result_.cut = search(solvers, SearchDepth::columns);
     for (const std::string& solver : search(solvers, SearchDepth::refined))
       if (std::ranges::find(result_.cut, solver) == result_.cut.end())
@@ -343,11 +359,11 @@ void add_best(Answer& answer, const Options& options, const Result& result) {
   const Record& record = result.best().record;
   Cell best(parse_solver(record.spec.solver).brief());
   best.key = record.key;
-  answer.add({"best"}, best.with(verdict(chosen, result.bench)));
+  answer.add({"best", result.called()}, best.with(verdict(chosen, result.bench)));
   answer.add({"error", options.metric, unit_of_value(options.metric)},
              record.value(options.metric));
-  answer.add({"cost", "CPU time", kFrameCost}, result.cost);
-  answer.add({"again", "timed again", kFrameCost},
+  answer.add({"cost", "CPU time", options.frame()}, result.cost);
+  answer.add({"again", "timed again", options.frame()},
              Cell(result.again)
                  .with(result.confirmed()
                            ? ""
@@ -366,29 +382,30 @@ void add_nearest(Answer& answer, const Options& options, const Result& result) {
   for (const Candidate& c : result.tried)
     if (c.failure.empty() && std::isfinite(c.error) && (!nearest || miss(c) < miss(*nearest)))
       nearest = &c;
-  answer.add({"best"}, Cell().with(result.too_dear     ? "unreachable"
-                                   : result.complete() ? "never reached"
-                                                       : "not reached in the time given"));
+  answer.add({"best", result.called()},
+             Cell().with(result.too_dear     ? "unreachable"
+                         : result.complete() ? "never reached"
+                                             : "not reached in the time given"));
   if (result.too_dear) {
     answer.add({"cheapest", "the cheapest setting"},
                parse_solver(result.too_dear->setting).brief());
-    answer.add({"cheapest_cost", "its CPU time", kFrameCost}, result.too_dear->cost.mid);
+    answer.add({"cheapest_cost", "its CPU time", options.frame()}, result.too_dear->cost.mid);
   }
   if (!nearest) return;
   answer.add({"nearest"}, parse_solver(nearest->setting).brief());
   answer.add({"error", options.metric, unit_of_value(options.metric)}, nearest->error);
-  answer.add({"quick_cost", "CPU time", kFrameCost}, nearest->cost.mid);
+  answer.add({"quick_cost", "CPU time", options.frame()}, nearest->cost.mid);
 }
 
 /// Every solver's best beside the best of all.
 Table solvers_of(const Options& options, const Result& result) {
   Table table{"solvers",
-              "every solver's best",
+              result.cut.empty() ? "every solver's best" : "the cheapest so far of each solver",
               {{"solver"},
                {"setting"},
                {"error", options.metric, unit_of_value(options.metric)},
-               {"cost", "CPU time", kFrameCost},
-               {"times", "x the best"},
+               {"cost", "CPU time", options.frame()},
+               {"times", result.cut.empty() ? "x the best" : "x the first"},
                {"peak_bytes", "memory", kMegabytes}}};
   for (const KeptAnswer& limit : result.limits)
     table.columns.push_back({limit.name, "", unit_of(limit)});
@@ -405,7 +422,8 @@ Table solvers_of(const Options& options, const Result& result) {
       row.emplace_back("");
     } else {
       row.resize(table.columns.size());
-      row.back() = nearest(solver, result.bench, result.recommendation, options.metric);
+      row.back() =
+          nearest(solver, result.bench, result.recommendation, options.metric, options.fps);
     }
   }
   return table;
@@ -413,7 +431,7 @@ Table solvers_of(const Options& options, const Result& result) {
 
 /// What is kept beside the error, and what the best makes of it.
 Table limits_of(const Result& result) {
-  Table table{"kept", "kept beside the error", {{"value"}, {"limit", "at most"}, {"best"}}};
+  Table table{"kept", "kept beside the error", {{"value"}, {"limit", "at most"}, {"best", "here"}}};
   const bool any = result.recommendation.best.has_value();
   for (const KeptAnswer& limit : result.limits) {
     const auto said = [&](double value) {
@@ -425,12 +443,12 @@ Table limits_of(const Result& result) {
   return table;
 }
 
-Table without_of(const Result& result) {
+Table without_of(const Options& options, const Result& result) {
   Table table{"without",
               "what costs most in the cheapest setting",
               {{"effect", "without"},
                {"share", "its share", kShare, 2},
-               {"cost", "CPU time left", kFrameCost},
+               {"cost", "CPU time left", options.frame()},
                {"fits", "fits the budget"}}};
   for (const auto& [effect, cost] : result.without)
     table.rows.push_back(
@@ -444,7 +462,7 @@ Table tried_of(const Options& options, const Result& result) {
               "all that was tried",
               {{"setting"},
                {"error", options.metric, unit_of_value(options.metric)},
-               {"quick_cost", "quick CPU time", kFrameCost},
+               {"quick_cost", "quick CPU time", options.frame()},
                {"refused"}}};
   for (const Candidate& c : result.tried)
     table.rows.push_back({parse_solver(c.setting).brief(), c.error, c.cost.mid, c.failure});
@@ -464,7 +482,7 @@ Table refused_of(const Result& result) {
 }
 
 Answer answer_of(const Options& options, const Result& result, double elapsed) {
-  std::string subject = options.scene + ", " + text(result.target, options.metric);
+  std::string subject = options.scene + ", " + text(result.target, options.metric, options.fps);
   if (!result.cut.empty())
     subject += "; INCOMPLETE: --patience ended the search of " + join(result.cut, ", ");
   Answer answer{"advise", subject};
@@ -478,7 +496,7 @@ Answer answer_of(const Options& options, const Result& result, double elapsed) {
   answer.add(Column("complete").in_detail(), result.complete());
   answer.add(solvers_of(options, result));
   answer.add(limits_of(result));
-  answer.add(without_of(result));
+  answer.add(without_of(options, result));
   answer.add(refused_of(result));
   Table not_done{"not_done", "NOT DONE: stopped by --patience", {{"solver"}, {"what"}}};
   for (const std::string& solver : result.cut) not_done.rows.push_back({solver, "search"});
@@ -513,13 +531,15 @@ int run(Options options) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.scene, "Name or path of a scene")->required();
   app.add_option("--error", o.error, "Reach this error (0.01 or 1%) at the least cost");
-  app.add_option("--budget", o.budget,
-                 "Reach the least error within this CPU time per frame of 1/60 s [ms]")
+  app.add_option("--budget", o.budget, "Reach the least error within this CPU time per frame [ms]")
+      ->check(above_zero());
+  app.add_option("--fps", o.fps, "Frames a second, of which one has the budget (default: 60)")
       ->check(above_zero());
   app.add_option("--keep", o.keep,
                  "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in "
                  "%; repeat it; nothing: only the error counts (default: no passage, no crossing, "
-                 "vertices at most 0.1 % of the cloth deep, as far as the scene has them)")
+                 "vertices at most 0.1 % of the cloth deep, a motion within 25 % of its way from "
+                 "the reference, an RMS stretch of at most 10 %, as far as the scene has them)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--solver", o.solvers,

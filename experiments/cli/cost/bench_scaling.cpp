@@ -20,7 +20,7 @@ int run(const Options& options) {
                                                    : "scaling-error";
   ScalingOptions how{.limit = options.limit, .samples = options.samples};
   how.say = [](const std::string& text) { progress() << text << '\n'; };
-  if (!options.error.empty()) how.error = error_of(options.error);
+  if (!options.error.empty()) how.error = error_of(options.error, unit_of_value(kErrorMetric));
   const Study study = load_study(name, options.preset);
   Store store(options.out);
   store.prepare();

@@ -9,6 +9,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/plot/plot.hpp"
+#include "experiments/require/require.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/files.hpp"
 
@@ -18,7 +19,9 @@ namespace {
 
 struct Options {
   CaseOptions which;
-  std::vector<std::string> all;  ///< solvers whose every parameter is asked for; empty: one case
+  std::vector<std::string> others;  ///< solvers that are asked the same
+  std::vector<std::string> keep;    ///< METRIC:LIMIT; empty: what the scene accepts
+  std::vector<std::string> all;     ///< solvers whose every parameter is asked for; empty: one case
   std::string baselines;
   bool check = false, update = false;
   std::string of = "dt", out;
@@ -59,8 +62,47 @@ void add_theory(Answer& answer, const std::optional<Prediction>& theory, const F
     answer.add({"growth", "growth per step, theory", kNumber, 5}, theory->growth);
 }
 
-Answer answer_of(const Options& options, const Case& first, const CaseFrontier& result,
+/// One solver: how far it is stable, and how far what it does is acceptable, too.
+struct Found {
+  Case first;
+  CaseFrontier stable, acceptable;
+};
+
+/// What is accepted of the scene: what was asked for, else its own limits.
+std::vector<KeptAnswer> limits_of(const Options& options, const Scene& scene) {
+  if (options.keep.empty()) return default_limits(scene);
+  std::vector<KeptAnswer> limits;
+  read_all(options.keep,
+           [&](const std::string& asked) { limits.push_back(parse_limit(asked, scene)); });
+  return limits;
+}
+
+/// "stretch.rms 31 %, more than 10 %": what ends what is acceptable, at a value that was tried.
+std::string ends_with(const Frontier& found) {
+  const bool none = found.kind == Frontier::Kind::none_stable;
+  const Probed* probe =
+      found.kind == Frontier::Kind::all_stable ? nullptr : found.at(found.unstable);
+  if (!probe) return none ? "" : "as far as was looked (--to)";
+  return probe->symptom.empty() ? describe(probe->status) : probe->symptom;
+}
+
+/// The last acceptable value beside the last stable one.
+void add_acceptable(Answer& answer, const Frontier& found, const Unit& unit) {
+  const Column column("acceptable", "acceptable up to", unit, 7);
+  if (found.kind == Frontier::Kind::none_stable)
+    answer.add(column, Cell("none").with("from the start: " + ends_with(found)));
+  else if (found.kind != Frontier::Kind::not_answered)
+    answer.add(column, Cell(found.stable)
+                           .with(found.kind == Frontier::Kind::all_stable
+                                     ? ends_with(found)
+                                     : "then, at " + number_text(found.unstable) + ", " +
+                                           ends_with(found)));
+}
+
+Answer answer_of(const Options& options, const Found& one,
                  const std::optional<Prediction>& theory) {
+  const Case& first = one.first;
+  const CaseFrontier& result = one.stable;
   const Frontier& found = result.frontier;
   const Unit unit = unit_of(options, first.choice);
   Answer answer{"frontier", first.scene->name + " " + options.which.spec().solver +
@@ -80,6 +122,7 @@ Answer answer_of(const Options& options, const Case& first, const CaseFrontier& 
   else if (found.kind != Frontier::Kind::none_stable)
     end("stable", "stable up to", found.stable);
   if (found.kind != Frontier::Kind::all_stable) end("unstable", "unstable from", found.unstable);
+  add_acceptable(answer, one.acceptable.frontier, unit);
   add_theory(answer, theory, found, unit);
   if (found.kind != Frontier::Kind::all_stable)
     answer.add({"above", "values above the bracket"},
@@ -90,29 +133,103 @@ Answer answer_of(const Options& options, const Case& first, const CaseFrontier& 
   answer.add({"looked_for", "growth looked for over", kTime},
              Cell(first.scene->duration()).with("what grows more slowly counts as stable"));
   answer.add({"cases"}, found.probes.size());
-  answer.add({"ran", "of which were run now"}, result.ran);
+  answer.add({"ran", "of which were run now"}, result.ran + one.acceptable.ran);
   Table probes{
       "probes", "what was run", {{"value", options.of, unit, 7}, {"status"}, {"step"}, {"case"}}};
   for (std::size_t i = 0; i < found.probes.size(); ++i) {
-    const Probed& one = found.probes[i];
+    const Probed& probe = found.probes[i];
     Cell id(result.records[i].id);
     id.key = result.records[i].key;
-    probes.rows.push_back({one.value, Cell(to_string(one.status.kind)).with(one.status.reason),
-                           one.status.step >= 0 ? Cell(one.status.step) : Cell(), id});
+    probes.rows.push_back({probe.value,
+                           Cell(to_string(probe.status.kind)).with(probe.status.reason),
+                           probe.status.step >= 0 ? Cell(probe.status.step) : Cell(), id});
   }
   probes.detail = true;
   answer.add(std::move(probes));
   return answer;
 }
 
+/// What its first case that did not end well says.
+std::string not_answered_because(const CaseFrontier& result) {
+  for (const Record& record : result.records)
+    if (record.status.kind != Status::Kind::ok) return record.id + ": " + describe(record.status);
+  return "";
+}
+
 int not_answered(const CaseFrontier& result) {
   if (result.interrupted) return kInterrupted;
-  for (const Record& record : result.records)
-    if (record.status.kind != Status::Kind::ok) {
-      std::cerr << record.id << ": " << describe(record.status) << '\n';
-      break;
-    }
+  if (const std::string why = not_answered_because(result); !why.empty()) std::cerr << why << '\n';
   return kNothing;
+}
+
+FrontierQuestion question_of(const Options& options, const std::string& solver) {
+  FrontierQuestion question{options.which.spec(), options.of, {}};
+  question.base.solver = solver;
+  question.range = range_of(question.base, options.of, options.from, options.to);
+  question.range.tolerance = options.tolerance;
+  return question;
+}
+
+/// Both ends of one solver; the second search finds most of its cases stored.
+Found find(const Options& options, const FrontierQuestion& question, Store& store) {
+  Found found{make_case(question.at(question.range.from)), {}, {}};
+  store.begin_session("taut frontier " + found.first.id);
+  const std::vector<KeptAnswer> limits = limits_of(options, *found.first.scene);
+  Progress progress;
+  const CampaignOptions how{.jobs = options.jobs,
+                            .progress = [&](const CampaignProgress& t, const Record* record) {
+                              if (record) progress.show(t, record);
+                            }};
+  found.stable = find_frontier(question, store, how);
+  if (found.stable.frontier.kind == Frontier::Kind::not_answered) return found;
+  found.acceptable = find_frontier(question, store, how, [&](const Case&, const Record& record) {
+    return completed(record.status) ? beyond(record, limits) : describe(record.status);
+  });
+  return found;
+}
+
+/// Several solvers, a row each.
+int run_several(const Options& options, Store& store) {
+  std::vector<std::string> solvers{options.which.spec().solver};
+  solvers.insert(solvers.end(), options.others.begin(), options.others.end());
+  check_solvers(solvers);
+  const Unit unit = unit_of(options, parse_solver(solvers.front()));
+  Table table{"frontiers",
+              "",
+              {{"solver"},
+               {"stable", "stable up to", unit, 4},
+               {"stable_end", "then"},
+               {"acceptable", "acceptable up to", unit, 4},
+               {"acceptable_end", "then"}}};
+  int answered = 0;
+  std::vector<KeptAnswer> limits;
+  for (const std::string& solver : solvers) {
+    const Found found = find(options, question_of(options, solver), store);
+    if (found.stable.interrupted) return kInterrupted;
+    const Frontier &stable = found.stable.frontier, &acceptable = found.acceptable.frontier;
+    if (limits.empty()) limits = limits_of(options, *found.first.scene);
+    if (stable.kind == Frontier::Kind::not_answered) {
+      table.rows.push_back({solver, Cell(), not_answered_because(found.stable), Cell(), ""});
+      continue;
+    }
+    ++answered;
+    const auto value = [](const Frontier& one) {
+      return one.kind == Frontier::Kind::bracketed || one.kind == Frontier::Kind::all_stable
+                 ? Cell(one.stable)
+                 : Cell("none");
+    };
+    table.rows.push_back(
+        {solver, value(stable), ends_with(stable), value(acceptable), ends_with(acceptable)});
+  }
+  table.caption = "acceptable: " + join(limits, ", ", [](const KeptAnswer& one) {
+                    return one.name + " at most " + text(one, one.tolerance);
+                  });
+  Answer answer{"frontier",
+                options.which.spec().scene + ": largest " + options.of + " of each solver"};
+  answer.add(Column("of").in_detail(), options.of);
+  answer.add(std::move(table));
+  print(answer, options.format);
+  return answered > 0 ? kPass : kNothing;
 }
 
 /// The commands that run the cases beyond.
@@ -195,31 +312,29 @@ int run(const Options& options) {
   if (!options.all.empty()) return run_all(options);
   if (options.which.spec().scene.empty() || options.which.spec().solver.empty())
     throw InputError("SCENE and SOLVER are required, or --all SOLVER");
-  FrontierQuestion question{options.which.spec(), options.of, {}};
-  question.range = range_of(question.base, options.of, options.from, options.to);
-  question.range.tolerance = options.tolerance;
-  const Case first = make_case(question.at(question.range.from));
   Store store(options.out);
   store.prepare();
-  store.begin_session("taut frontier " + first.id);
-  Progress progress;
-  const CaseFrontier result = find_frontier(
-      question, store,
-      {.jobs = options.jobs, .progress = [&](const CampaignProgress& t, const Record* record) {
-         if (record) progress.show(t, record);
-       }});
-  if (result.frontier.kind == Frontier::Kind::not_answered) {
-    if (options.format.is_data()) print(answer_of(options, first, result, {}), options.format);
-    return not_answered(result);
+  if (!options.others.empty()) return run_several(options, store);
+  const FrontierQuestion question = question_of(options, options.which.spec().solver);
+  const Found found = find(options, question, store);
+  if (found.stable.frontier.kind == Frontier::Kind::not_answered) {
+    if (options.format.is_data()) print(answer_of(options, found, {}), options.format);
+    return not_answered(found.stable);
   }
-  const std::optional<Prediction> theory = predicted_frontier(question);
-  print(answer_of(options, first, result, theory), options.format);
+  print(answer_of(options, found, predicted_frontier(question)), options.format);
   return kPass;
 }
 
 void add_options(CLI::App& app, Options& options) {
   options.which.bind(app);
   for (const char* name : {"SCENE", "SOLVER"}) app.get_option(name)->required(false);
+  auto* others =
+      app.add_option("OTHERS", options.others, "Further solvers: then one table, a row for each");
+  app.add_option("--keep", options.keep,
+                 "METRIC:LIMIT up to which a case is acceptable, in SI units, in the unit shown "
+                 "(stretch.rms:5%); repeat it (default: what the scene accepts, as advise has it)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   auto* all =
       app.add_option(
              "--all", options.all,
@@ -227,7 +342,9 @@ void add_options(CLI::App& app, Options& options) {
              "what goes wrong first, as a table and a picture; a minute or so")
           ->expected(1, 2)
           ->excludes("SCENE")
-          ->excludes("SOLVER");
+          ->excludes("SOLVER")
+          ->excludes(others)
+          ->excludes("--keep");
   for (const char* name : {"--dt", "--duration", "--set", "--fabric"})
     app.get_option(name)->excludes(all);
   add_baselines(app, options.baselines);
@@ -260,6 +377,7 @@ TAUT_VERB(frontier) = {
         "taut frontier chain mass-spring:substeps=1 --tolerance 0.001\n"
         "  taut frontier chain jakobsen:iterations=1,substeps=1,order=mesh --of omega --from 1\n"
         "  taut frontier flag bullet --of wind.strength --from 0.1 --to 1000\n"
+        "  taut frontier ball jakobsen pd xpbd --keep stretch.rms:5%\n"
         "  taut frontier --all jakobsen bullet\n"
         "Exit: 0 found; 1 a frontier of --all moved; 4 nothing was answered or compared",
     .answer =

@@ -45,12 +45,14 @@ void list_scenes(Answer& all) {
   all.add(std::move(table));
 }
 
-void list_solvers(Answer& all) {
+/// All solvers, or that of this name.
+void list_solvers(Answer& all, const std::string& only) {
   Table table{"solvers", "solvers", {{"name"}, {"summary"}, {"source"}}},
       parameters{"parameters",
                  "parameters of solvers",
                  {{"solver"}, {"name", "parameter"}, {"default"}, {"unit"}, {"allowed"}, {"help"}}};
   for (const SolverEntry* entry : all_solvers()) {
+    if (!only.empty() && entry->name != only) continue;
     table.rows.push_back({entry->name, entry->summary, entry->source});
     for (const ParamSpec& spec : entry->params)
       parameters.rows.push_back(
@@ -59,6 +61,8 @@ void list_solvers(Answer& all) {
   all.add(std::move(table));
   all.add(std::move(parameters));
 }
+
+void list_every_solver(Answer& all) { list_solvers(all, ""); }
 
 void list_metrics(Answer& all) {
   Table table{"metrics", "metrics", {{"name"}, {"summary"}, {"source"}}},
@@ -158,10 +162,15 @@ void list_assertions(Answer& all) {
   all.add(std::move(table));
 }
 
-constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {
-    {"scenes", list_scenes},         {"solvers", list_solvers}, {"metrics", list_metrics},
-    {"studies", list_studies},       {"keys", list_keys},       {"fabrics", list_fabrics},
-    {"assertions", list_assertions}, {"record", list_record},   {"answers", list_answers}};
+constexpr std::pair<const char*, void (*)(Answer&)> kKinds[] = {{"scenes", list_scenes},
+                                                                {"solvers", list_every_solver},
+                                                                {"metrics", list_metrics},
+                                                                {"studies", list_studies},
+                                                                {"keys", list_keys},
+                                                                {"fabrics", list_fabrics},
+                                                                {"assertions", list_assertions},
+                                                                {"record", list_record},
+                                                                {"answers", list_answers}};
 
 std::vector<std::string> kinds() {
   std::vector<std::string> names;
@@ -173,15 +182,24 @@ int run(const Options& options) {
   Answer all{"list"};
   for (const auto& [kind, list] : kKinds)
     if (options.what.empty() || options.what == kind) list(all);
+  if (all.tables
+          .empty()) {  // looked up here alone: it may start the programs of registered solvers
+    list_solvers(all, options.what);
+    std::vector<std::string> known = kinds();
+    for (const SolverEntry* entry : all_solvers()) known.emplace_back(entry->name);
+    if (std::ranges::find(known, options.what) == known.end())
+      throw InputError("unknown kind or solver '" + options.what + "'" +
+                       suggestion(options.what, known));
+  }
   print(all, options.format);
   return kPass;
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("WHAT", o.what,
-                 "scenes | solvers | metrics | studies | keys | fabrics | assertions | record | "
-                 "answers (default: all)")
-      ->check(known("kind", kinds()));
+  app.add_option(
+      "WHAT", o.what,
+      "scenes | solvers | metrics | studies | keys | fabrics | assertions | record | answers, or "
+      "the name of a solver, whose parameters it lists (default: all)");
   add_format(app, o.format, "Types, ranges and examples of keys, too");
 }
 
@@ -193,7 +211,7 @@ TAUT_VERB(list) = {.name = "list",
                    .summary =
                        "Names scenes, solvers with parameters, metrics, studies, keys, fabrics, "
                        "assertions",
-                   .example = "taut list solvers",
+                   .example = "taut list solvers\n  taut list jakobsen",
                    .answer =
                        "solvers: name summary source; "
                        "parameters: solver name default unit allowed help; "

@@ -130,8 +130,8 @@ void check_output(const Options& options) {
 int run(Options options) {
   if (options.output.ends_with(".mp4")) options.video = true;
   check_output(options);
-  if (options.what.solvers.empty() || options.what.solvers.size() > 4)
-    throw InputError("one to four --solver, for example --solver jakobsen --solver bullet");
+  if (options.what.solvers.empty() || options.what.solvers.size() > std::size_t{kMostPanels})
+    throw InputError("one to nine --solver, for example --solver jakobsen --solver bullet");
   check_solvers(options.what.solvers);
   if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");
   if (!options.duration.empty())
@@ -168,7 +168,7 @@ int run(Options options) {
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.what.scene, "Name of a shipped scene, or a path")->required();
-  app.add_option("--solver", o.what.solvers, "NAME or NAME:key=value,...; one to four of them")
+  app.add_option("--solver", o.what.solvers, "NAME or NAME:key=value,...; one to nine of them")
       ->allow_extra_args(false);
   app.add_option("--at", o.at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
   app.add_flag("--sheet", o.sheet, "One picture, a row for each moment");

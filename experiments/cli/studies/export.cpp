@@ -142,7 +142,8 @@ int run(const Options& options) {
     each_case(study, [](Case&&) {});  // what is wrong with it is said first
   if (!asked || asked->count("FROM asked WHERE case_id IS NOT NULL") == 0)
     throw InputError("no case of study '" + study.name + "' is in " + options.results +
-                     " as this build would run it; taut run makes them" + where_else(study, store));
+                     " as this build would run it; taut run " + study_words(study) + " makes them" +
+                     where_else(study, store));
   const std::string text = options.series ? asked->series()
                            : options.tidy ? asked->tidy()
                                           : asked->wide();

@@ -21,8 +21,9 @@ using report::PlotSpec;
 
 struct Options {
   std::string study, preset, kind, x, y, title, results, output;
+  std::string width, height, font;
   std::vector<std::string> solvers, scenes;
-  bool json = false;
+  bool no_title = false, json = false;
 };
 
 /// A plot's `slope`, the exponent of a theory; nothing if it names none.
@@ -32,6 +33,22 @@ std::optional<double> exponent(const std::string& text) {
   if (!value || !std::isfinite(*value))
     throw InputError("slope = " + text + " in [[plot]]: expected a number");
   return value;
+}
+
+/// "84mm" as 84: a number with this unit. Throws InputError.
+double size_of(const char* option, const std::string& text, const std::string& unit) {
+  if (text.empty()) return 0;
+  const auto value = text.ends_with(unit) ? whole<double>(text.substr(0, text.size() - unit.size()))
+                                          : std::nullopt;
+  if (!value || !(*value > 0 && *value <= 2000))
+    throw InputError(std::string(option) + " " + text + ": expected a number with its unit, as 8" +
+                     unit);
+  return *value;
+}
+
+report::FigureSize figure_size(const Options& options) {
+  return {size_of("--width", options.width, "mm"), size_of("--height", options.height, "mm"),
+          size_of("--font", options.font, "pt")};
 }
 
 /// A picture, and the exponent of a theory that it names.
@@ -99,8 +116,9 @@ report::PlotPanel panel_of(const Wanted& want, const report::StudyResult& study,
   return panel;
 }
 
-/// A figure of these scenes; of a single one it bears the name.
-report::PlotFiles draw(Wanted want, const report::StudyResult& study,
+/// A figure of these scenes; of a single one it bears the name. Several panels have titles of their
+/// own, and the figure has one only if it is asked for.
+report::PlotFiles draw(Wanted want, const Options& options, const report::StudyResult& study,
                        const std::vector<std::string>& scenes, const Store& store,
                        const std::filesystem::path& out) {
   PlotSpec& spec = want.spec;
@@ -113,11 +131,13 @@ report::PlotFiles draw(Wanted want, const report::StudyResult& study,
     spec.title = report::capitalised(report::quantity(spec.y).title) + " over " +
                  report::quantity(spec.x).title;
   if (panels.size() == 1) spec.title += ", " + panels.front().title;
+  if (options.no_title || (panels.size() > 1 && options.title.empty())) spec.title.clear();
   report::Records drawn;
   for (const report::PlotPanel& panel : panels)
     drawn.insert(drawn.end(), panel.records.begin(), panel.records.end());
   if (const std::string unequal = report::unequal_work(drawn); !unequal.empty())
-    spec.title += "; unequal work: " + unequal;
+    spec.remark = "unequal work: " + unequal;
+  if (!spec.remark.empty()) progress() << spec.remark << '\n';
   if (spec.file.empty()) spec.file = spec.kind + "-" + spec.y + "-over-" + spec.x;
   spec.file = slug((scenes.size() == 1 ? scenes.front() + "-" : "") + spec.file);
   return report::make_plot(spec, panels, out);
@@ -141,7 +161,7 @@ void keep(const char* option, std::vector<Record>& records, const std::vector<st
 
 /// Every figure of a study, and how many could not be drawn, which is said. Maps have their panels
 /// by solver: a figure for each scene.
-std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted,
+std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted, const Options& options,
                                         const report::ReportInput& input, const Store& store,
                                         const std::filesystem::path& out, int& dropped) {
   const report::StudyResult& study = input.studies.front();
@@ -149,9 +169,11 @@ std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted,
   for (const Record& r : study.records) push_unique(scenes, r.scene);
   std::vector<report::PlotFiles> figures;
   for (Wanted want : wanted) {
+    want.spec.size = figure_size(options);
     if (want.spec.kind == "profile") {
       if (!input.bench) throw InputError("no cost was measured: taut bench " + study.name);
-      if (want.spec.title.empty()) want.spec.title = "How often each solver is near the cheapest";
+      if (want.spec.title.empty() && !options.no_title)
+        want.spec.title = "How often each solver is near the cheapest";
       figures.push_back(report::make_profile_plot(want.spec, *input.bench, out));
       continue;
     }
@@ -161,7 +183,7 @@ std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted,
       for (const std::string& scene : scenes) sets.push_back({scene});
     }
     for (const std::vector<std::string>& set : sets) try {
-        figures.push_back(draw(want, study, set, store, out));
+        figures.push_back(draw(want, options, study, set, store, out));
       } catch (const report::FigureNotWritten&) {
         throw;
       } catch (const InputError& error) {
@@ -180,8 +202,8 @@ int run(const Options& options) {
   if (result.records.empty())
     throw InputError("none of the " + std::to_string(result.planned) + " cases of study '" +
                      study.name + "' is in " + options.results +
-                     " as this build would run them; taut run makes them" +
-                     where_else(study, store));
+                     " as this build would run them; taut run " + study_words(study) +
+                     " makes them" + where_else(study, store));
   const std::size_t missing = result.planned - result.records.size();
   if (missing > 0)
     std::cerr << missing << " of the " << result.planned << " cases of study '" << study.name
@@ -193,6 +215,7 @@ int run(const Options& options) {
                                    (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                              : std::filesystem::path(options.output);
   const std::vector<Wanted> all = wanted(options, study);
+  figure_size(options);
   for (const auto& [key, name] : {std::pair("--x: ", options.x), std::pair("--y: ", options.y)})
     if (!name.empty()) try {
         report::check_value_name(name, result.records);
@@ -204,7 +227,7 @@ int run(const Options& options) {
   bool drawn = true;
   int dropped = 0;
   try {
-    for (const report::PlotFiles& plot : draw_all(all, input, store, out, dropped)) {
+    for (const report::PlotFiles& plot : draw_all(all, options, input, store, out, dropped)) {
       for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
       for (const std::string& why : plot.without) std::cerr << why << '\n';
     }
@@ -233,6 +256,11 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--scene", options.scenes, "Only this scene; repeat it for each")
       ->allow_extra_args(false);
   app.add_option("--title", options.title, "Title above the figure");
+  app.add_flag("--no-title", options.no_title, "No title above the figure")->excludes("--title");
+  app.add_option("--width", options.width,
+                 "Width of the figure on paper, as 84mm; its key then stands below");
+  app.add_option("--height", options.height, "Its height, as 60mm (default: from its width)");
+  app.add_option("--font", options.font, "Size of its text, as 8pt (default with --width: 8pt)");
   add_output(app, options.output,
              "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
   add_json(app, options.json, "The names of the files");
@@ -247,7 +275,8 @@ TAUT_VERB(plot) = {.name = "plot",
                    .example =
                        "taut plot iterations --preset quick\n  taut plot time-steps --kind "
                        "stability -o figures\n  taut plot trade --kind profile\n  taut plot "
-                       "iterations --preset quick --x projections --y stretch.max\n"
+                       "iterations --preset quick --x projections --y stretch.max\n  taut plot "
+                       "iterations --preset quick --width 84mm --font 8pt\n"
                        "Exit: 0 drawn; 3 drawn, but for cases that were not run or a figure "
                        "that cannot be drawn; 4 nothing to draw",
                    .bind = taut::bind_verb<taut::verb::plot::add_options, taut::verb::plot::run>};

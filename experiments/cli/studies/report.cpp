@@ -13,7 +13,7 @@ struct Options : PageRequest {
 int run(Options options) {
   options.media = !options.no_media;
   if (options.output.empty() && !options.model) options.output = "report.html";
-  const std::string text = page_text(options);
+  const std::string text = make_page(options).text;
   if (options.output.empty()) {
     std::cout << text;
     return kPass;

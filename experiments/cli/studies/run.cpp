@@ -1,5 +1,7 @@
 #include <iterator>
+#include <map>
 
+#include "core/model/text.hpp"
 #include "experiments/baseline/check.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/page.hpp"
@@ -20,11 +22,11 @@ namespace taut::verb::run {
 namespace {
 
 struct Options {
-  std::vector<std::string> studies, values;
+  std::vector<std::string> studies, values, steps;
   std::string preset, shard, only, out;
   int jobs = 1;
   Limits limits;
-  bool no_report = false, json = false;
+  bool no_report = false, json = false, verbose = false;
 };
 
 std::string command_line(const Options& options) {
@@ -33,13 +35,27 @@ std::string command_line(const Options& options) {
   if (!options.preset.empty()) text += " --preset " + options.preset;
   if (!options.shard.empty()) text += " --shard " + options.shard;
   if (!options.only.empty()) text += " --only " + options.only;
+  for (const std::string& step : options.steps) text += " --dt " + step;
   return text;
+}
+
+/// The study at these time steps, under a name that says so: its own results stay as planned.
+Study at_time_steps(Study study, const std::vector<std::string>& steps) {
+  if (steps.empty()) return study;
+  const auto is_step = [](const std::string& setting) { return setting.starts_with("time.dt="); };
+  std::erase_if(study.settings, is_step);
+  std::erase_if(study.axes, [](const StudyAxis& axis) { return axis.name == "time.dt"; });
+  StudyAxis axis{.name = "time.dt", .values = {}};
+  for (const std::string& step : steps) axis.values.push_back('"' + step + '"');
+  study.axes.insert(study.axes.begin(), std::move(axis));
+  study.name += " dt=" + join(steps, ",");
+  return study;
 }
 
 std::vector<Study> load_studies(const Options& options) {
   std::vector<Study> studies;
   read_all(options.studies, [&](const std::string& name) {
-    studies.push_back(load_study_to_plot(name, options.preset));
+    studies.push_back(at_time_steps(load_study_to_plot(name, options.preset), options.steps));
   });
   return studies;
 }
@@ -57,8 +73,9 @@ void say_part(int part, const std::string& what) {
 
 /// What accuracy costs: exclusive, so after everything else has ended. A machine too noisy to judge
 /// still gives numbers; the report shows how noisy. Then truths and baselines: what the report says
-/// besides the studies. It says which one failed, too, so the run goes on.
-int finish_main_job(const MainJob& job, const Options& options) {
+/// besides the studies. It says which one failed, too, so the run goes on. Returns the answer in a
+/// few lines, and where the page is.
+std::string finish_main_job(const MainJob& job, const Options& options) {
   Store store(options.out);
   say_part(2, "what accuracy costs, one case at a time");
   require_one_quiet_host();
@@ -89,12 +106,13 @@ int finish_main_job(const MainJob& job, const Options& options) {
   if (compared.cases > 0) store.keep(compared.answer);
   if (!options.json) print(compared.answer, {});
   say_part(6, "the page and its films");
-  const std::string page = "report.html";
-  write_file(page, page_text({.preset = options.preset == job.preset ? "" : options.preset,
-                              .results = options.out,
-                              .output = page}));
-  if (!options.json) std::cout << page << '\n';
-  return kPass;
+  const std::filesystem::path file = std::filesystem::absolute("report.html").lexically_normal();
+  const Page page = make_page({.preset = options.preset == job.preset ? "" : options.preset,
+                               .results = options.out,
+                               .output = file.string()});
+  write_file(file.string(), page.text);
+  return join(page.in_few_lines, "", [](const std::string& line) { return line + "\n"; }) +
+         file.string() + "\n";
 }
 
 /// What tells the cases of one scene apart: "jakobsen:iterations=4 dt=1/120".
@@ -160,11 +178,20 @@ Answer answer_of(const CampaignProgress& campaign, const std::vector<Study>& stu
   return answer;
 }
 
-void print_unequal_work(const std::vector<Study>& studies, const Store& store) {
+/// A line for each study: how many cases it has and how they ended.
+void print_studies(const std::vector<Study>& studies, const Store& store) {
   for (const Study& study : studies) {
     const std::vector<Record> records = collect(study, store).records;
-    if (const std::string unequal = report::unequal_work(records); !unequal.empty())
-      progress() << study.name << ": unequal work: " << unequal << '\n';
+    std::map<Status::Kind, std::size_t> ends;
+    for (const Record& r : records) ++ends[r.status.kind];
+    const std::string unequal = report::unequal_work(records);
+    progress() << study.name << ": " << records.size() << " cases: "
+               << join(ends, ", ",
+                       [](const auto& end) {
+                         return std::string(to_string(end.first)) + " " +
+                                std::to_string(end.second);
+                       })
+               << (unequal.empty() ? "" : "; unequal work: " + unequal) << '\n';
   }
 }
 
@@ -211,12 +238,21 @@ int run(Options options) {
   tell_remarks(remarks_of(cases));
   Store store(options.out);
   store.prepare();
-  if (bare && !options.no_report) say_part(1, "cases of the studies");
+  if (bare && !options.no_report) {
+    std::size_t all = 0;
+    for (const StudyCases& study : cases) all += study.cases.size();
+    progress()
+        << "the main job: " << all << " cases of " << cases.size()
+        << " studies, then their costs, closed forms, baselines and films; five to six minutes on "
+           "two idle cores, and it may be interrupted\n";
+    say_part(1, "cases of the studies");
+  }
   const CampaignProgress campaign = run_missing(cases, store, command_line(options),
                                                 {.jobs = options.jobs,
                                                  .limits = options.limits,
                                                  .shard = shard,
-                                                 .only_failed = options.only == "failed"});
+                                                 .only_failed = options.only == "failed"},
+                                                options.verbose);
   const int ended = exit_code(campaign, store);
   if (campaign.interrupted)
     std::cerr << "interrupted; the same command goes on where this one stopped\n";
@@ -224,14 +260,14 @@ int run(Options options) {
   if (ended != kPass) return ended;
   if (campaign.cases == 0 && options.only == "failed")
     progress() << "no stored failure to run again\n";
-  if (bare && !options.no_report)
-    if (const int code = finish_main_job(job, options); code != kPass) return code;
+  print_studies(studies, store);
+  const std::string found = bare && !options.no_report ? finish_main_job(job, options) : "";
   if (!options.values.empty() || options.json)
     print(answer_of(campaign, studies, options, store), {.json = options.json});
   else if (!bare || options.no_report)
     std::cout << options.out << '\n';
-  print_unequal_work(studies, store);
   print_next(options, studies.front(), bare);
+  if (!options.json) std::cout << found;
   return kPass;
 }
 
@@ -246,10 +282,16 @@ void add_options(CLI::App& app, Options& options) {
       ->check(CLI::IsMember({"failed"}));
   add_results(app, options.out);
   add_limits(app, options.limits);
+  app.add_option("--dt", options.steps,
+                 "Time step [s] in place of those of the study, as 1/30; repeat it to compare two, "
+                 "with --table")
+      ->allow_extra_args(false)
+      ->needs("STUDY");
   app.add_option("--table", options.values,
                  "Then print this value of a metric, settings by scenes; repeat it for each")
       ->allow_extra_args(false)
       ->check(metric_value());
+  app.add_flag("--verbose", options.verbose, "A line for each case as it ends");
   app.add_flag("--no-report", options.no_report, "Run the main job without its report");
   add_json(app, options.json, "How the cases ended, and the tables,");
 }
@@ -263,6 +305,7 @@ TAUT_VERB(run) = {.name = "run",
                   .example =
                       "taut run\n  taut run iterations --preset quick -j 2\n"
                       "  taut run default-setting --table stretch.rms --table stretch.max\n"
+                      "  taut run default-setting --dt 1/30 --dt 1/60 --table stretch.rms\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
                   .answer =
                       "results store cases ran stored; "

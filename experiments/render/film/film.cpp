@@ -11,6 +11,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/render/film/kept_film.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
+#include "experiments/render/picture/figure.hpp"
 #include "experiments/render/picture/media.hpp"
 #include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
@@ -25,8 +26,8 @@ namespace taut {
 namespace {
 
 constexpr int kScenesAtATime = 2;
-constexpr double kSeconds = 3;  ///< of a film
-constexpr std::size_t kMostPanels = 3;
+constexpr double kSeconds = 3;          ///< of a film
+constexpr std::size_t kMostOthers = 3;  ///< who is filmed on a scene that no study ran
 
 /// One scene to be filmed: who runs it and who does not.
 struct Film {
@@ -50,7 +51,7 @@ Film studied_film(const report::ComparedSolvers& compared, const report::QuotedS
   Film film{.scene = quoted.question.scene};
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     const Record* one = quoted.cases[i];
-    if (!one || film.request.solvers.size() == kMostPanels) continue;
+    if (!one || film.request.solvers.size() == std::size_t{kMostPanels}) continue;
     if (one->status.kind == Status::Kind::unsupported) {
       film.refused.emplace_back(one->solver, one->status.reason);
       continue;
@@ -81,7 +82,7 @@ Film other_film(const report::ComparedSolvers& compared, const std::string& name
   for (const report::ComparedSolver& solver : compared.all) {
     const auto quoted = std::ranges::find_if(
         solver.cases, [&](const Record* r) { return report::work_of(*r) == solver.work; });
-    if (quoted == solver.cases.end() || film.request.solvers.size() == kMostPanels) continue;
+    if (quoted == solver.cases.end() || film.request.solvers.size() == kMostOthers) continue;
     const SolverChoice choice = parse_solver((*quoted)->spec.solver);
     const std::string why = join(choice.entry->unsupported(scene, choice.params), "; ");
     if (why.empty())
@@ -111,14 +112,14 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   MediaOptions options;
   options.speed = film.speed;
   options.duration = kSeconds * film.speed;
-  const std::size_t panels = std::max<std::size_t>(2, runs + film.refused.size());
-  options.width = 960, options.height = 400, options.crf = 28;
+  const int panels = std::max(2, static_cast<int>(runs + film.refused.size()));
+  const int columns = PageLayout::columns_of(static_cast<int>(runs));
+  const int rows = (static_cast<int>(runs) + columns - 1) / columns;
+  options.width = film.studied ? 960 : 704, options.height = film.studied ? 400 : 320;
+  options.crf = film.studied ? 28 : 30;
   options.quality.finest_sheet = 33;  // quads of three to eight pixels
-  if (!film.studied) {
-    options.width = 704, options.height = 320;
-    options.crf = 30;
-  }
-  options.width = options.width / static_cast<int>(panels) * static_cast<int>(runs) / 2 * 2;
+  options.width = options.width / PageLayout::columns_of(std::min(panels, 3)) * columns / 2 * 2;
+  if (rows > 1) options.height = options.width / columns * 4 / 5 * rows / 2 * 2;
   return options;
 }
 

@@ -136,9 +136,11 @@ std::vector<std::string> caption_of(ColourBy colour_by, const LiveFigures& live)
   return {"max |v| = " + formatted("%.3g m/s", live.max_speed)};
 }
 
+int PageLayout::columns_of(int panels) { return panels == 4 ? 2 : std::min(panels, 3); }
+
 PageLayout PageLayout::page(int width, int height, int panels) {
-  PageLayout p{.width = width, .height = height, .columns = panels == 4 ? 2 : panels};
-  p.rows = panels == 4 ? 2 : 1;
+  PageLayout p{.width = width, .height = height, .columns = columns_of(panels)};
+  p.rows = (panels + p.columns - 1) / p.columns;
   p.unit = std::min(height / 1080.0, width / 1920.0 * (panels == 1 ? 1.6 : 1));
   p.header = static_cast<int>(std::lround(66 * p.unit));
   p.footer = static_cast<int>(std::lround(126 * p.unit));
@@ -159,12 +161,14 @@ PageLayout PageLayout::sheet(int panel_width, int panel_height, int runs, int mo
 }
 
 PageLayout PageLayout::bare(int width, int height, int panels) {
+  const int columns = columns_of(panels), rows = (panels + columns - 1) / columns;
   return {.width = width,
           .height = height,
-          .columns = panels,
-          .unit = height / 836.0,
-          .panel_width = width / panels,
-          .panel_height = height};
+          .columns = columns,
+          .rows = rows,
+          .unit = height / rows / 836.0,
+          .panel_width = width / columns,
+          .panel_height = height / rows};
 }
 
 std::pair<int, int> PageLayout::corner(std::size_t run, std::size_t moment) const {

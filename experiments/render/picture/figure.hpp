@@ -8,8 +8,11 @@ namespace taut {
 /// Colours of what is written on a page.
 constexpr Rgb8 kInk = rgb(0x1B1F27), kMuted = rgb(0x5A6474);
 
-/// Where the parts of a picture go; all in pixels. A panel for each run: side by side, four in two
-/// rows; of several moments a row for each.
+/// As many runs as fit a picture.
+inline constexpr int kMostPanels = 9;
+
+/// Where the parts of a picture go; all in pixels. A panel for each run: up to three side by side,
+/// more in rows of two or three; of several moments a row for each.
 struct PageLayout {
   int width = 1920, height = 1080;
   int columns = 1, rows = 1;
@@ -17,6 +20,8 @@ struct PageLayout {
   int header = 0, footer = 0, gap = 0;
   int panel_width = 0, panel_height = 0;
 
+  /// How many stand side by side: four in two rows, else up to three.
+  static int columns_of(int panels);
   /// Titles above the panels and the colour bar below, in a picture of this size.
   static PageLayout page(int width, int height, int panels);
   /// The same around panels of this size.

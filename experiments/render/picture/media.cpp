@@ -62,7 +62,7 @@ std::size_t most_different(const Media& media, const Scene& scene,
 
 Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
                    const MediaOptions& options) {
-  assert(!runs.empty() && runs.size() <= 4);
+  assert(!runs.empty() && runs.size() <= std::size_t{kMostPanels});
   Media media;
   media.t = frame_times(scene, runs, options);
   for (const RecordedRun& run : runs) {

@@ -27,7 +27,7 @@ struct Media {
   ColourScale scale;                            ///< of the pictures
 };
 
-/// Draws the runs. Throws InputError without a renderer. Precondition: one to four runs.
+/// Draws the runs. Throws InputError without a renderer. Precondition: one to kMostPanels runs.
 Media render_media(const Scene&, const std::vector<RecordedRun>&, const MediaOptions&);
 
 }  // namespace taut

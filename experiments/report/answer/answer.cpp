@@ -56,23 +56,17 @@ bool is_compared(const Cell& cell) {
   return !std::isnan(cell.number()) && cell.state == Cell::State::value;
 }
 
-void mark_best(std::vector<Cell>& row, Better better, double nothing) {
-  Cell *best = nullptr, *second = nullptr;
+void mark_least(std::vector<Cell>& row, double nothing) {
+  Cell *least = nullptr, *second = nullptr;
   const auto value = [&](const Cell& cell) { return std::max(cell.number(), nothing); };
-  const auto beats = [&](const Cell& a, const Cell& b) {
-    return better == Better::less ? value(a) < value(b) : value(a) > value(b);
-  };
   for (Cell& cell : row) {
     if (!is_compared(cell)) continue;
-    if (!best || beats(cell, *best))
-      second = std::exchange(best, &cell);
-    else if (!second || beats(cell, *second))
+    if (!least || value(cell) < value(*least))
+      second = std::exchange(least, &cell);
+    else if (!second || value(cell) < value(*second))
       second = &cell;
   }
-  if (better == Better::neither || !second) return;
-  const double least = std::min(value(*best), value(*second)),
-               most = std::max(value(*best), value(*second));
-  best->best = most > (1 + kTolerance) * least;
+  if (second) least->best = value(*second) > (1 + kTolerance) * value(*least);
 }
 
 Common common_of(const Table& table, double nothing) {
@@ -159,15 +153,14 @@ class Questions {
   }
 
   Answer answer() {
-    const auto of_links = [](Role role) { return role == Role::error || role == Role::motion; };
-    const auto values = [&](bool first) {
-      for (const ValueSpec* value : values_with_role())
-        if (of_links(value->role) == first) add_value(*value);
-    };
-    values(true);  // a cloth may keep its links and stand still: motion is beside strain
     add_costs(answer_, input_, solvers_, list_);
+    const auto values = [&](bool of_sweeps) {
+      for (const ValueSpec* value : values_with_role())
+        if ((value->role == Role::error) == of_sweeps) add_value(*value);
+    };
     values(false);
     add_steps();
+    values(true);
     add_failures();
     answer_.subject = caption();
     return std::move(answer_);
@@ -181,28 +174,32 @@ class Questions {
       if (quoted.question.dt > 0) steps.insert(quoted.question.dt);
     const std::string work = compared_.common_work();
     return (input_.differences ? "B alone, " + input_.differences->b + ". " : std::string()) +
-           "Equal work: " + (work.empty() ? "unequal, in each cell" : work) +
+           (input_.bench ? "CPU times are per simulated second; only what rests on them is marked, "
+                           "the cheapest or the most accurate at one cost. "
+                         : "Nothing was timed, so no solver is marked as best. ") +
+           "All else: " + (work.empty() ? "sweeps differ, in each cell" : work) +
            (steps.empty() ? "" : ", time step " + range_text(steps, quantity("dt"))) +
-           (input_.bench ? ". CPU times are per simulated second" : "") +
-           ". Means are geometric where all values are positive. Marked: best by more than " +
-           shown(kShare, kTolerance, 1) +
-           ", of CPU times beyond their noise and against no upper bound; no "
-           "stretch of cloth that goes less than " +
-           shown(kShare, kLeastMotion, 1) + " of the way.";
+           ". Means are geometric where all values are positive; no stretch of cloth that goes "
+           "less than " +
+           shown(kShare, kLeastMotion, 1) + " of the way is in one.";
   }
 
-  /// The cases at equal work, scene by scene.
+  /// The cases at the same substeps and sweeps, scene by scene. They cost unequally, so nobody is
+  /// best; an error that falls with sweeps is one of solvers that sweep.
   void add_value(const ValueSpec& spec) {
     const std::string metric(spec.name), work = compared_.common_work();
     const Quantity& q = list_.use(metric);
-    Table table{metric, capitalised(q.title) + (spec.role == Role::error ? " at equal work" : ""),
-                columns_of(solvers_, q.unit)};
+    const bool of_sweeps = spec.role == Role::error;
+    const char* at = !of_sweeps ? "" : work.empty() ? " at unequal sweeps" : " at equal sweeps";
+    Table table{metric, capitalised(q.title) + at, columns_of(solvers_, q.unit)};
     std::set<double> steps;
     for (const QuotedScene& quoted : compared_.scenes) {
       std::vector<Cell> row{Cell(quoted.title).of_scene(quoted.question.scene)};
       for (std::size_t i = 0; i < solvers_.size(); ++i)
-        row.push_back(value_cell(i < quoted.cases.size() ? quoted.cases[i] : nullptr, metric,
-                                 spec.role == Role::error));
+        row.push_back(of_sweeps && solves_all_at_once(solvers_[i].name)
+                          ? Cell::lacking(Cell::State::none, "does not sweep")
+                          : value_cell(i < quoted.cases.size() ? quoted.cases[i] : nullptr, metric,
+                                       of_sweeps));
       if (std::ranges::all_of(row, [](const Cell& c) { return std::isnan(c.number()); })) continue;
       steps.insert(quoted.question.dt);
       table.rows.push_back(std::move(row));
@@ -210,13 +207,13 @@ class Questions {
     if (table.rows.empty()) return;
     const Over over = over_of(spec.role);
     const double nothing = is_depth(spec.role) ? kNoDepth : spec.negligible;
-    const Better better = q.unit.less_is_better ? Better::less : Better::neither;
-    for (auto& row : table.rows) mark_best(row, better, nothing);
     table.rows.push_back(last_row(table, over, over == Over::mean ? nothing : 0));
-    mark_best(table.rows.back(), better, nothing);
     table.caption = std::string(to_string(q.window)) + (q.window == Window::none ? "" : "; ") +
-                    (work.empty() ? "unequal work, in each cell" : work) + "; time step " +
+                    (work.empty() ? "sweeps differ, in each cell" : work) + "; time step " +
                     range_text(steps, quantity("dt")) +
+                    (of_sweeps ? "; sweeps cost unequally, and solvers that solve all links at "
+                                 "once have none"
+                               : "") +
                     (over == Over::mean && nothing > 0
                          ? "; less than " + q.text(nothing, 1) + " counts as " + q.text(nothing, 1)
                          : "") +
@@ -224,17 +221,21 @@ class Questions {
     answer_.add(std::move(table));
   }
 
-  /// When depths are measured, and who does not end a step by projecting contact.
+  /// When depths are measured, and who leaves some of them by intent.
   std::string contact_text() const {
-    std::string text = "; measured after the last pass of a step, in which contact is projected";
+    std::string text =
+        "; measured at the end of a step: solvers that project contact last end on the surface, "
+        "those that solve it with the links where their iterations end";
     for (std::size_t i = 0; i < compared_.all.size(); ++i) {
       std::set<std::string> values;
       for (const QuotedScene& quoted : compared_.scenes)
         if (const Record* r = quoted.cases[i]; r && r->params.contains("hardness"))
           values.insert(r->params.at("hardness"));
       if (!values.empty())
-        text += "; but by " + solver_title(compared_.all[i].name) + " at contact hardness " +
-                join(values, " and ") + ", the share of a depth that it corrects";
+        text += "; " + solver_title(compared_.all[i].name) +
+                " corrects a share of a depth, its "
+                "contact hardness: " +
+                join(values, " and ");
     }
     return text;
   }
@@ -327,7 +328,6 @@ class Questions {
         last.emplace_back(geometric_mean(steps).mid);
       if (has && steps.size() == 1) last.back() = table.rows[common.rows[0]][c];
     }
-    mark_best(last, Better::more, 0);
     table.rows.push_back(std::move(last));
     list_.use("dt");
     answer_.add(std::move(table));
@@ -357,7 +357,6 @@ class Questions {
       const bool ran = i < tried.size() && std::ranges::find(here, &tried[i]) != here.end();
       row.push_back(ran ? largest_stable(tried[i], shared, steps) : why_none(nullptr));
     }
-    mark_best(row, Better::more, 0);
     table.rows.push_back(std::move(row));
   }
 
@@ -477,7 +476,7 @@ class Questions {
                                                  (kinds.empty() ? "" : ": " + kinds)));
       if (!count.key.empty()) row.back().key = list_.key(count.key);
     }
-    mark_best(row, Better::less, 0);
+    mark_least(row, 0);
     return row;
   }
 

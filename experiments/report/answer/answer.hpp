@@ -13,8 +13,8 @@ inline constexpr double kPricedError = 0.01;
 /// solver of the run and whose rows are scenes; the last row is all scenes that have a value of
 /// every solver that has one anywhere. A cell is a value or why there is none: "not run", "cannot:
 /// friction", "exploded". Its note is the setting where that is not the same for all. The best of a
-/// row is marked only if it is better by more than kTolerance and, of costs, beyond what identical
-/// code differed by (judge()).
+/// row is marked only of costs, of what was had at one cost, and of failures: by more than
+/// kTolerance and, of costs, beyond what identical code differed by (judge()).
 Answer answer_of(const ReportInput&, const ComparedSolvers&, CaseList&);
 
 /// The questions of costs; none without a bench.
@@ -27,9 +27,13 @@ SceneBench with_shared_parameters(SceneBench);
 /// "4 × 2, coloured": of cases of one scene those parameters that take several values.
 std::string setting_text(const SceneBench&, std::size_t at);
 
-/// Of a solver that does not reach the error: "hardly moves: 5 % of the way", if its cloth keeps
-/// its lengths where it stands; else "".
-std::string only_still(const std::vector<Candidate>&, const std::string& solver, double error);
+/// The cases of a scene by their error in kErrorMetric; those that do what the scene does not
+/// accept (ReportInput::not_accepted) meet no target.
+std::vector<Candidate> candidates_of(const SceneBench&, const ReportInput&);
+
+/// Of a solver whose settings that reach the error do not count, why that is: "hardly moves: 5 % of
+/// the way"; else "".
+std::string only_uncounted(const std::vector<Candidate>&, const std::string& solver, double error);
 
 /// Whether a cheaper setting of the same solver may reach what case `at` reaches: none was tried,
 /// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is then
@@ -54,12 +58,11 @@ Interval geometric_mean(const std::vector<Interval>&);
 /// Its columns: "scene", then the solvers with this unit.
 std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit&, int digits = 2);
 
-enum class Better { less, more, neither };
 /// A number that is compared with others of its row: none of cloth that hardly moves.
 bool is_compared(const Cell&);
-/// Marks the best number compared of the row if the second is worse by more than kTolerance;
-/// numbers below `nothing` count as that.
-void mark_best(std::vector<Cell>& row, Better, double nothing);
+/// Marks the least number compared of the row if the second is more by kTolerance; numbers below
+/// `nothing` count as that.
+void mark_least(std::vector<Cell>& row, double nothing);
 
 /// Scenes whose values make up the last row, and who has values at all.
 struct Common {

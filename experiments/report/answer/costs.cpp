@@ -42,10 +42,20 @@ std::string link_orders(const std::vector<SceneBench>& scenes) {
   return join(all, ", ");
 }
 
-std::string only_still(const std::vector<Candidate>& candidates, const std::string& solver,
-                       double error) {
+std::vector<Candidate> candidates_of(const SceneBench& bench, const ReportInput& input) {
+  std::vector<Candidate> all = bench.candidates(kErrorMetric);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const auto why = input.not_accepted.find(bench.cases[i].record.key);
+        why != input.not_accepted.end() && all[i].failure.empty())
+      all[i].failure = why->second, all[i].not_accepted = true;
+  return all;
+}
+
+std::string only_uncounted(const std::vector<Candidate>& candidates, const std::string& solver,
+                           double error) {
   for (const Candidate& one : candidates)
-    if (one.solver == solver && one.error <= error && one.hardly_moves) return one.failure;
+    if (one.solver == solver && one.error <= error && (one.hardly_moves || one.not_accepted))
+      return one.failure;
   return "";
 }
 
@@ -69,7 +79,7 @@ namespace {
 /// One scene of a bench with its errors and costs: an interval is a bootstrap, made once.
 struct Timed {
   SceneBench bench;
-  std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
+  std::vector<Candidate> candidates;
 
   std::optional<std::size_t> best(const Target& target, const std::string& solver) const {
     return best_for(target, candidates, solver);
@@ -81,8 +91,11 @@ struct Timed {
   /// These words of a solver no setting of which reaches the error, and why: "at best 0.12 %".
   Cell not_reached(const std::string& words, const std::string& solver) const {
     if (!has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
-    if (const std::string still = only_still(candidates, solver, kPricedError); !still.empty())
-      return Cell::lacking(Cell::State::hardly_moves, words).with(still);
+    if (const std::string why = only_uncounted(candidates, solver, kPricedError); !why.empty())
+      return Cell::lacking(
+                 why.starts_with("hardly moves") ? Cell::State::hardly_moves : Cell::State::none,
+                 words)
+          .with(why);
     const Cell cell = Cell::lacking(Cell::State::none, words);
     const auto at = best({.budget = std::numeric_limits<double>::infinity()}, solver);
     if (!at) return cell.with("no case completed");
@@ -117,17 +130,20 @@ void mark_cheapest(std::vector<Cell>& row, const std::vector<std::vector<Interva
 
 class Costs {
  public:
-  Costs(const StudyBench& study, const std::vector<Column>& solvers, CaseList& list)
+  Costs(const ReportInput& input, const std::vector<Column>& solvers, CaseList& list)
       : solvers_(solvers), list_(list) {
-    for (const SceneBench& bench : study.scenes)
-      all_.push_back({bench}), shared_.push_back({with_shared_parameters(bench)});
+    for (const SceneBench& bench : input.bench->scenes) {
+      const SceneBench shared = with_shared_parameters(bench);
+      all_.push_back({bench, candidates_of(bench, input)});
+      shared_.push_back({shared, candidates_of(shared, input)});
+    }
     list.use(kErrorMetric), list.use("cpu.per_second");
   }
 
   void add_to(Answer& answer) {
-    add_equal_cost(answer);
     add_price(answer);
     add_setting(answer);
+    add_equal_cost(answer);
   }
 
  private:
@@ -168,7 +184,7 @@ class Costs {
                           ? Cell::lacking(Cell::State::none, "nothing that cheap")
                           : Cell::lacking(Cell::State::not_run, "not timed"));
       }
-      mark_best(row, Better::less, nothing);
+      mark_least(row, nothing);
       table.rows.push_back(std::move(row));
     }
     const Common common = common_of(table, nothing);
@@ -185,7 +201,7 @@ class Costs {
                          : Cell(std::exp(logs / static_cast<double>(common.rows.size()))));
       last.back().best = false;
     }
-    mark_best(last, Better::less, nothing);
+    mark_least(last, nothing);
     table.rows.push_back(std::move(last));
     answer.add(std::move(table));
   }
@@ -230,8 +246,6 @@ class Costs {
       table.rows.push_back(std::move(row));
     }
     table.rows.push_back(mean_price(table, ratios, bounds));
-    table.caption +=
-        "; two runs of identical code differed by up to " + shown(kShare, noise(shared_));
     answer.add(std::move(table));
   }
 
@@ -400,7 +414,7 @@ class Costs {
 
 void add_costs(Answer& answer, const ReportInput& input, const std::vector<Column>& solvers,
                CaseList& list) {
-  if (input.bench) Costs(*input.bench, solvers, list).add_to(answer);
+  if (input.bench) Costs(input, solvers, list).add_to(answer);
 }
 
 }  // namespace taut::report

@@ -274,6 +274,12 @@ double theory_factor(const Chart& chart) {
   return std::isfinite(factor) ? 0.6 * factor : std::numeric_limits<double>::quiet_NaN();
 }
 
+std::string theory_text(const Chart& chart) {
+  if (chart.x.name == kSweeps && *chart.slope == -1) return "theory of relaxation: 1/sweeps";
+  if (*chart.slope == 1) return "in proportion to " + chart.x.title;
+  return "slope " + significant(*chart.slope, 2) + ", as the study says";
+}
+
 std::vector<Point> pareto_front(const Chart& chart) {
   std::vector<Point> points, front;
   for (const Curve& curve : chart.curves)

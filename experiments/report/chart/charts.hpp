@@ -84,6 +84,9 @@ bool failed(const Point&);
 /// c of a theory line y = c x^slope below the lowest curve; NaN: there is none.
 double theory_factor(const Chart&);
 
+/// Whose line it is: "theory of relaxation: 1/sweeps".
+std::string theory_text(const Chart&);
+
 /// The measured points that no other beats in both x and y, by ascending x.
 std::vector<Point> pareto_front(const Chart&);
 

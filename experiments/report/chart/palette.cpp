@@ -17,21 +17,23 @@ struct Named {
 };
 /// Most lines are dashed because a correct pair coincides: the lower one must show through.
 constexpr Named kSolvers[] = {
-    {"bullet", {{"#C8470C", "#FF8A54"}, "square", 5, "9 4"}},                   // orange
-    {"bullet-deformable", {{"#B52C77", "#F284BB"}, "diamond", 13, "9 3 2 3"}},  // magenta
-    {"jakobsen", {{"#0B6BCB", "#5AA9F5"}, "circle", 7, ""}},                    // blue
-    {"mass-spring", {{"#8250C4", "#B791F2"}, "triangle", 9, "3 3"}},            // purple
-    {"xpbd", {{"#0F7B5D", "#3CCB9F"}, "triangle-down", 11, "9 3 2 3"}},         // green
-    {"implicit", {{"#2B2F36", "#D5DBE3"}, "circle", 7, "2 3"}},                 // black
-    {"pd", {{"#B3261E", "#F2827A"}, "square", 5, "12 3"}},                      // red
-    {"admm", {{"#3B4CC0", "#98A5F5"}, "diamond", 13, "5 3"}},                   // indigo
-    {"vbd", {{"#5B6B00", "#B5C94A"}, "triangle-down", 11, "6 2"}},              // olive
-    {"avbd", {{"#9C2FA8", "#E08CEB"}, "pentagon", 15, "9 4"}},                  // violet
+    {"bullet", {{"#C8470C", "#FF8A54"}, "square", "5", "9 4"}},  // orange
+    {"bullet-deformable",
+     {{"#B52C77", "#F284BB"}, "triangle-right", "'▶' ps 1.2", "9 3 2 3"}},         // magenta
+    {"jakobsen", {{"#0B6BCB", "#5AA9F5"}, "circle", "7", ""}},                     // blue
+    {"mass-spring", {{"#8250C4", "#B791F2"}, "pentagon", "15", "3 3"}},            // purple
+    {"xpbd", {{"#0F7B5D", "#3CCB9F"}, "triangle-down", "11", "9 3 2 3"}},          // green
+    {"implicit", {{"#2B2F36", "#D5DBE3"}, "triangle-left", "'◀' ps 1.2", "2 3"}},  // black
+    {"pd", {{"#B3261E", "#F2827A"}, "diamond", "13", "12 3"}},                     // red
+    {"admm", {{"#3B4CC0", "#98A5F5"}, "star", "'★' ps 1.2", "5 3"}},               // indigo
+    {"vbd", {{"#5B6B00", "#B5C94A"}, "triangle", "9", "6 2"}},                     // olive
+    {"avbd", {{"#9C2FA8", "#E08CEB"}, "plus", "'✚' ps 1.1", "9 4"}},               // violet
 };
+/// Of solvers that the program does not have.
 constexpr std::array kOthers{
-    SolverStyle{{"#0C7680", "#4CC8D4"}, "pentagon", 15, "12 3"},  // teal
-    SolverStyle{{"#866000", "#E0B040"}, "triangle", 9, "5 3"},    // brown
-    SolverStyle{{"#56606F", "#A9B4C2"}, "square", 5, "6 2"},      // slate
+    SolverStyle{{"#0C7680", "#4CC8D4"}, "hexagon", "'⬢' ps 1.2", "12 3"},  // teal
+    SolverStyle{{"#866000", "#E0B040"}, "bar", "'▬' ps 1.2", "5 3"},       // brown
+    SolverStyle{{"#56606F", "#A9B4C2"}, "post", "'▮' ps 1.2", "6 2"},      // slate
 };
 
 constexpr Colour kWhite{"#FFFFFE", "#FFFFFE"}, kBlack{"#1A1A19", "#1A1A19"};

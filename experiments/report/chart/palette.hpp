@@ -17,8 +17,8 @@ struct Colour {
 /// that colour-blind readers, greyscale prints and coinciding lines lose nothing.
 struct SolverStyle {
   Colour colour;
-  std::string_view shape;      ///< of its marker: "circle"
-  int marker = 7;              ///< the same as gnuplot's point type, filled
+  std::string_view shape;      ///< of its marker, another for each solver: "circle"
+  std::string_view marker;     ///< the same as gnuplot's point type: "7", "'★' ps 1.2"
   std::string_view dash = "";  ///< lengths of strokes and gaps: "9 4"; "": solid
 };
 

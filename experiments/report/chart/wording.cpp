@@ -202,6 +202,11 @@ std::string solver_title(std::string_view solver) {
   return capitalised(title);
 }
 
+bool solves_all_at_once(const std::string& solver) {
+  const SolverEntry* entry = find_entry(solver);
+  return entry && entry->accuracy.all_at_once;
+}
+
 std::map<std::string, std::string> other_settings(const Record& r) {
   std::map<std::string, std::string> others = r.params;
   for (const std::string& name : r.work_parameters) others.erase(name);

@@ -75,6 +75,9 @@ struct Records : std::vector<const Record*> {
 /// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
 std::string solver_title(std::string_view solver);
 
+/// Whether an iteration of it solves for all links at once: it is no sweep.
+bool solves_all_at_once(const std::string& solver);
+
 /// The record's parameters but for those that are its substeps and sweeps.
 std::map<std::string, std::string> other_settings(const Record&);
 

@@ -4,11 +4,11 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
+#include "experiments/report/answer/winners.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/timing/profile.hpp"
-#include "experiments/timing/recommendation.hpp"
 
 namespace taut::report {
 
@@ -18,7 +18,7 @@ namespace {
 struct CostScene {
   SceneBench bench;
   CaseList& refs;
-  std::vector<Candidate> candidates = bench.candidates(kErrorMetric);
+  std::vector<Candidate> candidates;
 
   bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
   /// The cell of a case: its note is the setting, and what a small strain may have cost.
@@ -42,7 +42,7 @@ struct CostScene {
   }
 };
 
-Table levels_table(const CostScene& scene) {
+Table levels_table(const CostScene& scene, const WinnerRow& winners) {
   const Quantity q = quantity(kErrorMetric);
   const CaseSpec spec = scene.bench.cases.empty() ? CaseSpec{scene.bench.scene, {}, {}}
                                                   : scene.bench.cases.front().record.spec;
@@ -54,28 +54,24 @@ Table levels_table(const CostScene& scene) {
               {},
               "95\u00A0% interval and setting of the cheapest that was timed, " +
                   std::string(kWithoutExtras) + ". More accurate ones are searched by: " + again};
-  for (const double level : kErrorLevels) {
+  for (std::size_t k = 0; k < std::size(kErrorLevels); ++k) {
+    const double level = kErrorLevels[k];
+    const WinnerCell& winner = winners.cells[k];
     std::vector<Cell> row{level};
-    bool cheaper = true;
-    std::size_t least = 0;
-    for (const SolverRecommendation& r :
-         recommend(scene.bench, {.error = level}, kErrorMetric).solvers) {
-      if (!r.at) {
-        const std::string still = only_still(scene.candidates, r.solver, level);
-        const bool to_the_end = scene.bench.searched_to_the_end(r.solver);
-        row.push_back(Cell::lacking(still.empty() ? Cell::State::none : Cell::State::hardly_moves,
+    for (const std::string& solver : solvers_of(scene.bench)) {
+      const auto at = best_for({.error = level}, scene.candidates, solver);
+      if (!at) {
+        const std::string why = only_uncounted(scene.candidates, solver, level);
+        const bool to_the_end = scene.bench.searched_to_the_end(solver);
+        row.push_back(Cell::lacking(why.starts_with("hardly moves") ? Cell::State::hardly_moves
+                                                                    : Cell::State::none,
                                     to_the_end ? "never reached" : "not reached")
-                          .with(still));
+                          .with(why));
         continue;
       }
-      if (r.times && r.times->mid > 1)
-        cheaper =
-            cheaper && !scene.bounds(*r.at) && is_difference(judge(*r.times, scene.bench.control));
-      else
-        least = row.size();
-      row.push_back(scene.of(*r.at, Cell(scene.candidates[*r.at].cost)));
+      row.push_back(scene.of(*at, Cell(scene.candidates[*at].cost)));
+      row.back().best = winner.won() && winner.cheapest[0].solver == solver;
     }
-    row[least].best = least > 0 && row.size() > 2 && cheaper;
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -130,24 +126,23 @@ Table profile_table(const std::vector<SceneBench>& scenes) {
 
 }  // namespace
 
-Json json_of_cost(const StudyBench& study, CaseList& refs, Json& charts, Answer& tables) {
+Json json_of_cost(const ReportInput& input, CaseList& refs, Json& charts, Answer& tables) {
+  const StudyBench& study = *input.bench;
+  const WinnerMap winners = winners_of(input, refs);
   Json cost{{"machine", study.machine}};
   refs.use("cpu.per_second"), refs.use("cpu.per_step");
   std::vector<SceneBench> shared;
   for (const SceneBench& bench : study.scenes) {
     const std::vector<Record> records = StudyBench{"", "", {bench}}.records();
     shared.push_back(with_shared_parameters(bench));
-    const CostScene scene{shared.back(), refs};
-    Json one{{"scene", bench.scene},
-             {"noise", "Timing noise: two runs of identical code differed by up to " +
-                           shown(kShare, spread(bench.control)) +
-                           "; the best is marked only where it is cheaper by more."}};
+    const CostScene scene{shared.back(), refs, candidates_of(shared.back(), input)};
+    Json one{{"scene", bench.scene}};
     try {
       add_by_id(one, "charts", json_of(cost_chart(bench, records), refs), charts);
     } catch (const InputError&) {
       // nothing completed: the tables say so
     }
-    add_table(one, levels_table(scene), tables);
+    add_table(one, levels_table(scene, winners.rows[shared.size() - 1]), tables);
     cost["scenes"].push_back(std::move(one));
   }
   add_table(cost, profile_table(shared), tables);

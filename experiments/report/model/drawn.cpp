@@ -140,9 +140,7 @@ Json json_of(const Chart& chart, CaseList& refs) {
   add_curves(one, chart, refs);
   for (const TimeSeries& series : chart.series) one["series"].push_back(json_of(series, refs));
   if (const double factor = theory_factor(chart); std::isfinite(factor))
-    one["theory"] = {{"slope", *chart.slope},
-                     {"factor", factor},
-                     {"text", "theory: slope " + significant(*chart.slope, 2)}};
+    one["theory"] = {{"slope", *chart.slope}, {"factor", factor}, {"text", theory_text(chart)}};
   if (chart.floor) one["floor"] = {{"y", chart.floor->y}, {"text", chart.floor->text}};
   if (chart.front)
     for (const Point& p : pareto_front(chart))
@@ -177,6 +175,9 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
             {"status", to_string(status.kind)},
             {"case", refs.key(*cell.record)}};
     add_if(at, "reason", status.reason);
+    if (const double error = cell.record->value(kErrorMetric);
+        completed(status) && std::isfinite(error))
+      at["value"] = rounded(error, 3);
     one["cells"].push_back(std::move(at));
   }
   return one;

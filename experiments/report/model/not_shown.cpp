@@ -48,7 +48,7 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
         join(computing, "; in ",
              [](const auto& one) { return one.first + " by " + joined(one.second); }) +
         ". CPU times compare programs, not algorithms (simd=scalar and precision=double "
-        "make Jakobsen and XPBD alike).");
+        "make Jakobsen, XPBD, VBD and AVBD alike).");
   std::vector<std::string> absent;
   for (const SolverEntry* entry : solvers())
     if (!shown.contains(std::string(entry->name))) absent.push_back(solver_title(entry->name));

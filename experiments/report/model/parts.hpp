@@ -28,8 +28,10 @@ Json facts_of(const CaseList&, const std::string& scene);
 Json json_of(const Chart&, CaseList&);
 Json json_of(const StatusMap&, const std::string& id, CaseList&);
 Json json_of(const SceneMedia&, const ReportInput&, CaseList&, std::size_t& budget);
+/// Who wins where, and what that says in all; null: nothing was timed.
+Json json_of_winners(const ReportInput&, CaseList&);
 /// What accuracy costs, scene by scene.
-Json json_of_cost(const StudyBench&, CaseList&, Json& charts, Answer& tables);
+Json json_of_cost(const ReportInput&, CaseList&, Json& charts, Answer& tables);
 /// What two folders have otherwise.
 Json json_of(const Differences&, CaseList&, Answer& tables);
 /// What scenes require and how far solvers go; null without either.

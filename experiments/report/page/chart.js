@@ -10,15 +10,21 @@ const polygon = (corners, first) => ({draw(context, area) {
   }
   context.closePath();
 }});
+const bar = (ratio) => ({draw(context, area) {
+  const height = Math.sqrt(area / ratio), width = ratio * height;
+  context.rect(-width / 2, -height / 2, width, height);
+}});
 const markers = {circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle,
-                 'triangle-down': polygon(3, Math.PI / 2), diamond: d3.symbolDiamond, pentagon: polygon(5, -Math.PI / 2)};
+                 'triangle-down': polygon(3, Math.PI / 2), 'triangle-left': polygon(3, Math.PI), 'triangle-right': polygon(3, 0),
+                 diamond: d3.symbolDiamond, pentagon: polygon(5, -Math.PI / 2), hexagon: polygon(6, 0), star: d3.symbolStar,
+                 plus: d3.symbolCross, bar: bar(2.5), post: bar(0.4)};
 const markerPath = (name, size) => d3.symbol().type(markers[name] ?? d3.symbolCircle).size(size)();
 /** Dashes of a solver's further settings. */
 const variantDashes = ['', '7 4', '2 3', '10 3 2 3', '16 4', '4 2', '10 3 2 3 2 3', '2 6'];
 const dashOf = ({solver, variant}) => variant ? variantDashes[variant % variantDashes.length] : solverOf(solver).dash;
 
-/** Pixels: of a chart alone and beside others, above and below its plot, and of a row of failed cases; powers of ten on an axis. */
-const box = {height: 250, small: 190, top: 10, bottom: 22, row: 13, smallRow: 9, decades: 6};
+/** Pixels: of a chart alone and beside others, above and below its plot, of a row of failed cases and of one of their glyphs; powers of ten on an axis. */
+const box = {height: 250, small: 190, top: 10, bottom: 22, row: 13, smallRow: 9, glyph: 8, decades: 6};
 
 /** A scale over shown values: logarithmic over the positive ones or linear, with a little air. */
 function scaleOf(kind, values, range) {
@@ -119,12 +125,21 @@ function frameOf(specs, kind) {
   const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
   const up = numbers([...points.filter((p) => !p.failed).map((p) => p.y), ...specs.filter(floorShown).map((spec) => spec.floor.y)], y.scale);
   const least = kind === 'log' ? (d3.max(up) || 0) / 10 ** box.decades : -Infinity;
-  const frame = {kind, least, up: up.filter((v) => v >= least), rows: d3.max(specs, (spec) => failing(spec).length),
+  const frame = {kind, least, up: up.filter((v) => v >= least), failed: specs.some((spec) => pointsOf(spec).some((p) => p.failed)),
                  across: numbers(points.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale)};
   return {...frame, floored: points.some((p) => onFloor(p, specs[0], frame))};
 }
 const pointsOf = (spec) => spec.series.flatMap((s) => s.points);
-const failing = (spec) => spec.series.filter((s) => s.points.some((p) => p.failed));
+/** Of each failed case the place among those that failed near its x: [row, from the left, how many in the row]. */
+function failedPlaces(spec, px) {
+  const places = new Map(), columns = d3.nest().key(([p]) => Math.round(px(p.x) / (2 * box.glyph))).entries(
+    spec.series.flatMap((s) => s.points.filter((p) => p.failed && Number.isFinite(px(p.x))).map((p) => [p])));
+  const xs = columns.map(({values}) => d3.mean(values, ([p]) => px(p.x))).sort(d3.ascending);
+  const gap = d3.min(d3.pairs(xs), ([a, b]) => b - a) ?? 1e3, most = Math.max(1, Math.floor(gap / box.glyph));
+  for (const {values} of columns)
+    values.forEach(([p], i) => places.set(p, [Math.floor(i / most), i % most, Math.min(most, values.length - most * Math.floor(i / most))]));
+  return {places, rows: d3.max(columns, ({values}) => Math.ceil(values.length / most)) ?? 0};
+}
 const onFloor = (p, {y}, {kind, least}) => kind === 'log' && !p.failed && (p.zero || (p.y > 0 && p.y * y.scale < least));
 
 /** The figure of one quantity over another: a panel for each chart, all on the same axes, `nameOf` above each. */
@@ -185,8 +200,10 @@ function chartPanel(spec, view, name, remarks) {
 }
 
 function drawChart(svg, spec, {kind, height, frame, clip}, width) {
-  const {x, y} = spec, failures = failing(spec), row = height === box.height ? box.row : box.smallRow;
-  const strip = frame.rows ? frame.rows * row + 6 : 0, base = height - box.bottom, floor = frame.floored ? 12 : 0;
+  const {x, y} = spec, row = height === box.height ? box.row : box.smallRow;
+  const rough = scaleOf(x.axis, frame.across, [40, width - 12]);  // before the axes have their widths
+  const failures = failedPlaces(spec, (v) => rough(v * x.scale));
+  const strip = frame.failed ? Math.max(1, failures.rows) * row + 6 : 0, base = height - box.bottom, floor = frame.floored ? 12 : 0;
   const [yLow, yHigh] = [base - floor, box.top + strip];
   const ys = scaleOf(kind, frame.up, [yLow, yHigh]);
   svg.attr('viewBox', `0 0 ${width} ${height}`).attr('width', width).attr('height', height);
@@ -234,10 +251,11 @@ function drawChart(svg, spec, {kind, height, frame, clip}, width) {
         .attr('d', s.points.filter(usable).map((p) => errorBar(p, px, py)).join(''));
     const group = svg.append('g').attr('data-s', solver.order).style('color', colour);
     s.points.forEach((p, i) => {
-      const floored = onFloor(p, spec, frame), cx = px(p.x) + (floored ? dodge : 0);
+      const floored = onFloor(p, spec, frame), [line, at, of] = failures.places.get(p) ?? [0, 0, 1];
+      const cx = px(p.x) + (floored ? dodge : p.failed ? (at - (of - 1) / 2) * box.glyph : 0);
       if (!Number.isFinite(cx) || (!p.failed && !floored && !usable(p))) return;
-      const cy = p.failed ? box.top + 4 + failures.indexOf(s) * row : floored ? base - 5 : py(p.y);
-      drawPoint(group, {spec, series: s, point: p, place: `${order}-${i}`, order, cx, cy, floored});
+      const cy = p.failed ? box.top + 4 + line * row : floored ? base - 5 : py(p.y);
+      drawPoint(group, {spec, series: s, point: p, place: `${order}-${i}`, order, cx, cy, floored, size: height === box.height ? 52 : 34});
     });
   });
   nameBest(svg, spec);
@@ -251,7 +269,7 @@ function errorBar(p, px, py) {
          [p.x_low, p.x_high].map((v) => `M${px(v)},${cy - cap}v${2 * cap}`).join('');
 }
 
-function drawPoint(group, {spec, series, point, place, order, cx, cy, floored}) {
+function drawPoint(group, {spec, series, point, place, order, cx, cy, floored, size}) {
   const known = cases.has(point.case);
   const g = group.append('g').attr('class', 'point').attr('transform', `translate(${cx},${cy})`)
       .attr('role', known ? 'button' : 'img').attr('tabindex', -1).attr('data-group', order).attr('data-place', place);
@@ -260,7 +278,7 @@ function drawPoint(group, {spec, series, point, place, order, cx, cy, floored}) 
     g.append('text').attr('class', 'glyph').attr('dy', '0.35em').text(statusOf(point.status).glyph);
   } else {
     g.append('path').attr('class', floored ? 'zero' : 'dot')
-        .attr('d', floored ? markerPath('triangle', 50) : markerPath(solverOf(series.solver).marker, 52))
+        .attr('d', floored ? markerPath('triangle', 50) : markerPath(solverOf(series.solver).marker, size))
         .classed('hollow', point.status !== 'ok');
     if (point.name && !floored) g.append('text').attr('class', 'name').attr('x', 7).attr('y', -6).text(point.name);
   }

@@ -91,8 +91,11 @@ function colourBar(bar) {
     el('div', {className: 'ticks'}, bar.ticks.map((t) => el('span', {style: `left:${100 * t.at}%`}, t.text))));
 }
 
+/** As the film has its panels: four in two rows, else up to three side by side. */
+const columnsOf = (n) => n === 4 ? 2 : Math.min(n, 3);
+
 function panels(film) {
-  return el('div', {className: 'panels'}, film.panels.map(({solver, settings, case: key}) =>
+  return el('div', {className: 'panels', style: `grid-template-columns:repeat(${columnsOf(film.panels.length)},minmax(0,1fr))`}, film.panels.map(({solver, settings, case: key}) =>
     el('div', {}, named(solver), el('small', {}, caseLink(key, short(settings, 60)),
       cases.has(key) && cases.get(key).status !== 'ok' && [' ', glyphBox(cases.get(key).status), ' ',
         statusOf(cases.get(key).status).title]))));
@@ -101,7 +104,7 @@ function panels(film) {
 /** Who of the solvers compared is not in a film. */
 function filmed(film) {
   const seen = film.panels.map(({solver}) => solver), others = compared.filter((id) => !seen.includes(id));
-  return others.length ? note(`${film.panels.length} of ${compared.length} solvers compared, the first that run the scene; `,
+  return others.length ? note(`${film.panels.length} of ${compared.length} solvers compared; `,
     `not filmed: ${others.map((id) => solverOf(id).title).join(', ')}.`) : null;
 }
 

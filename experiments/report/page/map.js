@@ -11,16 +11,27 @@ function glyphBox(id) {
   return el('span', {className: 'glyph-box', style: `background:var(--c${i});color:var(--i${i})`}, statusOf(id).glyph);
 }
 
+/** Ends of the shades of what completed: RMS stretch. */
+const shades = [0.01, 0.03, 0.1, 0.3];
+const shadeOf = (value) => d3.bisectLeft(shades, value);
+const shaded = (value) => `background:color-mix(in srgb, var(--c${statusIndex('ok')}) ${[100, 70, 45, 24, 8][shadeOf(value)]}%, var(--card));` +
+    (shadeOf(value) > 0 ? 'color:var(--ink)' : '');
+/** What the shades mean, if a cell has one. */
+const shadeKey = (cells) => cells.some(({value}) => value !== undefined) && el('ul', {className: 'key'},
+  [...shades, Infinity].map((end, i) => item(el('span', {className: 'glyph-box', style: shaded(end) + ';border:1px solid var(--line)'}, ''),
+    el('span', {}, end === Infinity ? `more than ${100 * shades[i - 1]}\u00A0%` : `${i ? '' : 'RMS stretch '}up to ${100 * end}\u00A0%`))));
+
 function mapCell(map, cell, row, column) {
   if (!cell) return el('td', {}, el('span', {className: 'absent', 'aria-label': 'left out by the study'}, '·'));
   const i = statusIndex(cell.status), known = cases.has(cell.case);
   const button = el('button', {type: 'button', className: 'cell', tabIndex: -1,
-    'data-group': row, style: `--c:var(--c${i});--i:var(--i${i})`}, statusOf(cell.status).glyph);
+    'data-group': row, style: `--c:var(--c${i});--i:var(--i${i});` + (cell.value === undefined ? '' : shaded(cell.value))}, statusOf(cell.status).glyph);
   if (known) button.onclick = () => state.set({case: cell.case});
   else button.setAttribute('aria-disabled', true);
   const at = (axis, place) => `${axis.title} ${shown(axis.values[place], axis, 4)}`;
   const settings = `${at(map.x, column)}, ${at(map.y, row)}`;
-  describe(button, [`${map.label}: ${settings}`, ...caseLines(cell.status, cell.reason, cell.case)]);
+  const error = cell.value === undefined ? [] : [`RMS stretch ${number(100 * cell.value)}\u00A0%`];
+  describe(button, [`${map.label}: ${settings}`, ...error, ...caseLines(cell.status, cell.reason, cell.case)]);
   return el('td', {}, button);
 }
 
@@ -48,7 +59,7 @@ function mapsOf(scene) {
   if (!shown.length) return null;
   const used = new Set(shown.flatMap((map) => map.cells.map((cell) => cell.status)));
   return el('section', {className: 'part'}, el('h3', {}, 'Stability'),
-    statusKey(used),
+    statusKey(used), shadeKey(shown.flatMap((map) => map.cells)),
     d3.nest().key((map) => map.study + '\n' + map.title).entries(shown).map(({values}) => [
       el('h4', {}, short(values[0].title, 140), ' ', el('small', {}, `study ${short(values[0].study, 40)}`,
         values[0].scene_settings && `: ${short(values[0].scene_settings, 100)}`)),

@@ -1,9 +1,26 @@
 'use strict';
 // The page from top to bottom: its contents, the solvers' switches, printing.
 
+const name = (part) => part.id === 'answer' && !model.differences ? 'Answer' : part.querySelector('h2').textContent;
+
+/** What goes on paper, by the ids of sections in the address: all scenes and all cases are many pages. */
+const toPaper = () => state.get('print') ? state.params().getAll('print') : ['differences', 'answer', 'charts', 'cost'];
+function printChooser(sections) {
+  const boxes = sections.map(({id}) => el('input', {type: 'checkbox', onchange: () => {
+    const chosen = sections.filter((_, i) => boxes[i].checked).map((part) => part.id);
+    state.set({print: chosen.length ? chosen : ['none']}, false);
+  }}));
+  state.watch(() => sections.forEach((part, i) => {
+    boxes[i].checked = toPaper().includes(part.id);
+    part.classList.toggle('unprinted', !boxes[i].checked);
+  }));
+  return el('details', {className: 'to-paper'}, el('summary', {}, 'Print'),
+    sections.map((part, i) => el('label', {}, boxes[i], ' ', name(part))),
+    el('button', {type: 'button', onclick: () => print()}, 'print these'));
+}
+
 /** The contents, which stay in sight, and the solvers' switches. */
 function contents(sections) {
-  const name = (part) => part.id === 'answer' && !model.differences ? 'Answer' : part.querySelector('h2').textContent;
   const links = sections.map((part) => choice({at: part.id}, {}, name(part)));
   const seen = new IntersectionObserver(() => {
     const now = sections.findLastIndex((part) => part.getBoundingClientRect().top < 140);
@@ -19,17 +36,17 @@ function contents(sections) {
     el('button', {type: 'button', className: 'switch', onclick: () => flip(id)}, swatch({solver: id}), ' ', short(solverOf(id).title, 40)));
   state.watch(() => ids.forEach((id, i) => switches[i].setAttribute('aria-pressed', !isOff(id))));
   const group = el('div', {className: 'switches', role: 'group', 'aria-label': 'Solvers shown'}, switches);
-  document.getElementById('contents').append(el('ul', {}, links.map((link) => item(link))), ids.length > 1 ? group : '');
+  document.getElementById('contents').append(el('ul', {}, links.map((link) => item(link))), ids.length > 1 ? group : '', printChooser(sections));
 }
 
-/** All scenes and folded parts for paper; afterwards as it was. */
+/** All scenes and folded parts of what goes on paper; afterwards as it was. */
 function watchPrinting() {
   let closed = [];
   const begin = () => {
     if (document.body.classList.contains('printing')) return;
     document.body.classList.add('printing');
-    for (const {showAll} of oneOf.views) showAll();
-    closed = [...document.querySelectorAll('main details:not([open])')];
+    for (const {showAll, isPrinted} of oneOf.views) if (isPrinted()) showAll();
+    closed = [...document.querySelectorAll('main section:not(.unprinted) details:not([open])')];
     for (const part of closed) part.open = true;
     for (const {draw} of drawn) draw(330);
   };

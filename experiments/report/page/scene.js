@@ -19,15 +19,13 @@ function scenePart(scene) {
   const priced = model.cost?.scenes.find((entry) => entry.scene === scene.id);
   const series = all(scene.charts, charts).filter((chart) => chart.kind === 'series');
   return el('article', {className: 'scene', 'aria-label': short(scene.title)},
-    el('h3', {className: 'scene-title'}, scene.title), el('p', {}, scene.summary),
+    el('h3', {className: 'scene-title'}, scene.title), el('p', {}, scene.summary), filmOf(scene),
     scene.studied === false && note('No study of this report runs this scene: it is shown, not compared.'),
     ends(scene.statuses),
     (scene.refusals ?? []).map(({solver, reason}) => el('p', {}, named(solver), ` cannot run this scene: ${reason}.`)),
-    filmOf(scene),
     series.length ? el('div', {className: 'grid'}, series.map(seriesFigure)) : null,
     mapsOf(scene),
     priced && el('section', {className: 'part'}, el('h3', {}, `What accuracy costs on ${short(scene.title)}`),
-      note(priced.noise),
       all(priced.tables, tables).map((table) => tableNode(table))),
     all(scene.tables, tables).map(foldedTable),
     scene.facts?.length ? folded('The scene in numbers', factList(scene.facts)) : null);
@@ -58,7 +56,7 @@ function oneOf(key, parts, label) {
   };
   const showAll = () => boxes.forEach((box, i) => { box.hidden = false; build(i); });
   state.watch(showOne);
-  oneOf.views.push({showOne, showAll});
+  oneOf.views.push({showOne, showAll, isPrinted: () => !boxes[0].closest('.unprinted')});
   const chips = el('nav', {className: 'chips', 'aria-label': label, onkeydown: (event) => {
     const by = {ArrowLeft: -1, ArrowRight: 1}[event.key];
     const next = by && links[links.indexOf(document.activeElement) + by];
@@ -72,7 +70,7 @@ oneOf.views = [];
 function chartsSection() {
   const apart = new Set(model.steps?.charts), by = (key, list) => d3.nest().key(key).entries(list);
   const nameOf = (spec) => choice({scene: spec.scene, at: 'scenes'}, {}, short(scenes.get(spec.scene)?.title ?? spec.scene, 30));
-  const parts = by((chart) => chart.y.metric, (model.charts ?? []).filter((chart) => chart.kind !== 'series' && !apart.has(chart.id)))
+  const parts = by((chart) => chart.y.metric, (model.charts ?? []).filter((chart) => chart.kind !== 'series' && !apart.has(chart.id) && !(model.winners && chart.kind === 'cost')))
       .map(({key, values}) => ({id: key, title: values[0].y.title, holds: values.map(({id}) => `chart-${id}`),
         build: () => by((chart) => chart.x.metric, values).map(({values: one}) => chartFigure(one, one[0].title, nameOf))}));
   return parts.length ? section('charts', model.scenes?.length > 1 ? 'All scenes' : 'Charts', oneOf('chart', parts, 'Quantities')) : null;

@@ -57,7 +57,7 @@ function cellContent(cell, column, most, brief) {
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
   const failed = entry && entry.status !== 'ok' && lacks(cell) && glyphBox(entry.status);
   return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
-    spread, note && el('small', {title: note}, ' ', short(noted, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
+    spread, note && el('small', {title: [note, explain(note)].filter(Boolean).join('\n')}, ' ', short(noted, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
     most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
       el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
 }
@@ -73,7 +73,7 @@ function tableRow(table, cells, props, head, bars, brief) {
 }
 const tableHeads = (table, first) => el('tr', {}, table.columns.map((column, i) => el('th', {scope: 'col',
   'data-s': solvers.get(column.name)?.order}, i === 0 && first !== undefined ? first :
-  [solvers.has(column.name) && i > 0 ? [named(column.name, column.heading), solverOf(column.name).arithmetic && el('small', {className: 'arithmetic', title: solverOf(column.name).arithmetic}, solverOf(column.name).arithmetic.replace(/ \(\w+\)/g, ''))] : column.heading,
+  [solvers.has(column.name) && i > 0 ? [named(column.name, column.heading), solverOf(column.name).arithmetic && explained(plainArithmetic(solverOf(column.name).arithmetic), {className: 'arithmetic'})] : column.heading,
    column.shown && first === undefined && ` [${column.shown}]`])));
 
 /** What is copied: the table for a spreadsheet, numbers in SI. */
@@ -122,7 +122,7 @@ function questionRows(table) {
     for (const fold of folds) fold.classList.toggle('folded', !open);
     if (cells === shown) return;
     head?.remove();
-    head = tableRow(table, shown = cells, {className: 'question'},
+    head = tableRow(table, shown = cells, {className: scene ? 'question of-scene' : 'question'},
                     [button, el('small', {title: cells[0].note ?? ''}, cells[0].value, cells[0].scene && cells[0].note && ` ${cells[0].note}`)], true, true);
     body.prepend(head);
   });
@@ -133,10 +133,12 @@ function questionRows(table) {
 const answered = [...new Set([...questions.values()].flatMap(scenesOf).map(sceneOf))];
 const chosenScene = () => answered.includes(state.get('scene')) ? state.get('scene') : '';
 function sceneChooser() {
-  const box = el('select', {'aria-label': 'scene of the answer', onchange: () => state.set({scene: box.value}, false)},
-    el('option', {value: ''}, 'all scenes'), answered.map((scene) => el('option', {value: scene}, scene)));
-  state.watch(() => { box.value = chosenScene(); });
-  return box;
+  const links = ['', ...answered].map((scene) => choice({scene}, {}, scene || 'All scenes'));
+  state.watch(() => links.forEach((link, i) => {
+    if (['', ...answered][i] === chosenScene()) link.setAttribute('aria-current', 'true');
+    else link.removeAttribute('aria-current');
+  }));
+  return el('nav', {className: 'chips still', id: 'answer-scenes', 'aria-label': 'scene of the answer'}, el('span', {}, 'The table below is of'), links);
 }
 
 /** What the page is and what it asks. */
@@ -150,8 +152,10 @@ function pageHead() {
 /** The first screen: a row for each question. */
 function answerSection() {
   const asked = [...questions.values()];
-  return el('section', {id: 'answer'}, model.differences ? el('h2', {}, `B alone: ${model.differences.b}`) : pageHead(),
+  return el('section', {id: 'answer'}, model.differences ? el('h2', {}, `B alone: ${model.differences.b}`) : pageHead(), winnersPart(),
+    answered.length > 1 && sceneChooser(),
     asked.length ? el('div', {className: `card scroll answer ${asked[0].columns.length < 5 ? 'few' : ''}`, tabIndex: 0, role: 'region', 'aria-label': 'The answer'},
       el('table', {}, el('caption', {}, model.answer.subject),
-         el('thead', {}, tableHeads(asked[0], answered.length > 1 ? sceneChooser() : 'question')), asked.map(questionRows))) : null);
+         el('thead', {}, tableHeads(asked[0], 'question')), asked.map(questionRows))) : null,
+    asked.length ? termList() : null);
 }

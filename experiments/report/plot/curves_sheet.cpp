@@ -55,7 +55,7 @@ struct Frame {
         }
     set_range(values, charts.size() > 1);
     for (const Chart& chart : charts)  // else far below the picture
-      if (chart.floor && chart.floor->y * y.scale > (log_y ? floor / 10 : 0))
+      if (chart.floor && chart.floor->y * y.scale > (log_y ? floor / 30 : 0))
         values.push_back(chart.floor->y * y.scale);
     set_range(values, charts.size() > 1);
   }
@@ -67,8 +67,9 @@ struct Frame {
     double low = kUnbounded;
     for (const double v : values)
       if (!log_y || v >= least) low = std::min(low, v);
-    floor = log_y ? low / 3 : std::min(0.0, low);
-    top = log_y ? high * 3 : high + 0.12 * (high - floor + (high == floor ? 1 : 0));
+    const double air = log_y ? std::pow(high / low, 0.06) * 1.1 : 0;
+    floor = log_y ? low / air : std::min(0.0, low);
+    top = log_y ? high * air * air : high + 0.12 * (high - floor + (high == floor ? 1 : 0));
   }
 };
 
@@ -83,8 +84,8 @@ void set_axes(Sheet& sheet, const Frame& frame, const std::vector<Chart>& charts
   std::set<double> ticks;
   for (const Chart& chart : charts) ticks.insert(chart.ticks.begin(), chart.ticks.end());
   const double air =
-      frame.log_x ? std::pow(frame.right / frame.left, 0.05) : 0.04 * (frame.right - frame.left);
-  if (charts.size() > 1 && frame.left < frame.right)
+      frame.log_x ? std::pow(frame.right / frame.left, 0.06) : 0.05 * (frame.right - frame.left);
+  if (frame.left < frame.right)
     sheet.settings += "set xrange [" + exact(frame.log_x ? frame.left / air : frame.left - air) +
                       ":" + exact(frame.log_x ? frame.right * air : frame.right + air) + "]\n";
   const std::size_t most = charts.size() > 1 ? 8 : 12;
@@ -138,10 +139,19 @@ class Variants {
   std::map<std::string, std::vector<std::string>> labels_;
 };
 
+/// x of the k-th of n curves that fail in a panel: their marks stand beside each other.
+std::string beside(const std::string& x, const Frame& frame, std::size_t k, std::size_t n) {
+  const double share = 0.022 * (static_cast<double>(k) - 0.5 * static_cast<double>(n - 1));
+  if (n < 2 || !(frame.left < frame.right)) return x;
+  return frame.log_x ? x + "*" + exact(std::pow(frame.right / frame.left, share))
+                     : x + "+(" + exact(share * (frame.right - frame.left)) + ")";
+}
+
 /// One curve in the last panel: its points, what failed on the upper edge, what is too small for a
-/// logarithmic axis on the lower one.
+/// logarithmic axis on the lower one. What these marks mean goes to `marks`: look and title.
 void draw_curve(Sheet& sheet, std::size_t id, const Curve& curve, const Chart& chart,
-                const Frame& frame, const std::string& dash, const std::string& ends) {
+                const Frame& frame, const std::string& dash, const std::string& ends,
+                std::vector<std::pair<std::string, std::string>>& marks) {
   const std::string colour = " lc rgb '" + colour_of(curve.solver) + "'";
   const std::string x = "column(4)*" + exact(chart.x.unit.scale),
                     y = "column(5)*" + exact(chart.y.unit.scale);
@@ -153,20 +163,25 @@ void draw_curve(Sheet& sheet, std::size_t id, const Curve& curve, const Chart& c
       frame.least > 0 ? "column(5) > 0 && " + y + " >= " + exact(frame.least) : "column(5) > 0";
   sheet.draw(only(id, false, x, frame.log_y ? "(" + drawn + " ? " + y + " : NaN)" : "(" + y + ")"),
              (chart.join ? "with linespoints" : "with points") + colour + " dt " + dash + " pt " +
-                 std::to_string(solver_style(curve.solver).marker),
+                 std::string(solver_style(curve.solver).marker),
              curve.label);
   if (std::ranges::any_of(curve.points, failed)) {
-    sheet.draw(only(id, true, x, "(" + exact(frame.top) + ")"),
+    std::vector<const Curve*> failing;
+    for (const Curve& other : chart.curves)
+      if (std::ranges::any_of(other.points, failed)) failing.push_back(&other);
+    const auto place = std::ranges::find(failing, &curve) - failing.begin();
+    sheet.draw(only(id, true, beside(x, frame, static_cast<std::size_t>(place), failing.size()),
+                    "(" + exact(frame.top) + ")"),
                "with points pt 2 ps 1.2 lw 2" + colour, "");
-    sheet.explain(std::string("with points pt 2 ps 1.2 lw 2") + kGrey, ends);
+    marks.push_back({std::string("with points pt 2 ps 1.2 lw 2") + kGrey, ends});
   }
   if (!std::ranges::any_of(curve.points, low)) return;
   sheet.draw(
       only(id, false, x, "(column(5) >= 0 && !(" + drawn + ") ? " + exact(frame.floor) + " : NaN)"),
       "with points pt 10 ps 1.2" + colour, "");
-  sheet.explain(std::string("with points pt 10 ps 1.2") + kGrey,
-                frame.least > 0 ? "below: zero, or less than " + significant(frame.least, 1)
-                                : "below: exactly zero");
+  marks.push_back({std::string("with points pt 10 ps 1.2") + kGrey,
+                   frame.least > 0 ? "below: zero, or less than " + significant(frame.least, 1)
+                                   : "below: exactly zero"});
 }
 
 /// What is no curve: the theory's slope, the value's floor, the Pareto front.
@@ -175,7 +190,7 @@ void draw_guides(Sheet& sheet, const Chart& chart, const Frame& frame) {
   if (const double factor = theory_factor(chart); std::isfinite(factor) && frame.left < frame.right)
     sheet.draw("[" + exact(frame.left) + ":" + exact(frame.right) + "] " + exact(factor * y) +
                    "*(x/" + exact(x) + ")**" + exact(*chart.slope),
-               std::string("with lines dt (4,4)") + kGrey, "theory: slope " + exact(*chart.slope));
+               std::string("with lines dt (4,4)") + kGrey, theory_text(chart));
   if (chart.floor)
     sheet.draw(exact(chart.floor->y * y), std::string("with lines dt (1,3)") + kGrey,
                chart.floor->text + ", " + chart.y.text(chart.floor->y));
@@ -198,15 +213,18 @@ Sheet curves_sheet(const std::vector<Chart>& charts) {
   sheet.csv = kPointColumns;
   const std::string ends = ends_of(charts);
   Variants variants;
+  std::vector<std::pair<std::string, std::string>> marks;
   std::size_t id = 0;
   for (const Chart& chart : charts) {
     sheet.panels.push_back({chart.title, "", ""});
     for (const Curve& curve : chart.curves) {
       sheet.csv += csv_rows(id, curve);
-      draw_curve(sheet, id++, curve, chart, frame, variants.dash(curve.solver, curve.label), ends);
+      draw_curve(sheet, id++, curve, chart, frame, variants.dash(curve.solver, curve.label), ends,
+                 marks);
     }
     draw_guides(sheet, chart, frame);
   }
+  for (const auto& [look, title] : marks) sheet.explain(look, title);
   return sheet;
 }
 

@@ -14,19 +14,38 @@ namespace {
 
 /// "set xtics (...)" and the range of cells that are one apart.
 std::string cell_ticks(const char* axis, const Quantity& q, const std::vector<double>& values) {
+  constexpr std::size_t kMost = 7;  // labels that do not touch in a narrow panel
+  const std::size_t every = (values.size() + kMost - 1) / kMost;
   std::string list;
-  for (std::size_t k = 0; k < values.size(); ++k)
+  for (std::size_t k = 0; k < values.size(); k += std::max<std::size_t>(1, every))
     list += (k > 0 ? ", " : "") + gnuplot_string(tick_of(q, values[k])) + " " + std::to_string(k);
   return "set " + std::string(axis) + "tics (" + list + ")\nset " + axis +
          "range [-0.5:" + exact(static_cast<double>(values.size()) - 0.5) + "]\n";
 }
+
+/// How far what completed is off; NaN: it did not, or nobody knows.
+double error_of(const Record& r) {
+  const bool ended = r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
+  return ended ? value_of(r, kErrorMetric) : std::nan("");
+}
+
+/// Shades of cells that completed, by the end of their RMS stretch, and the ink on them.
+struct Shade {
+  double end;
+  const char *colour, *ink, *text;
+};
+constexpr Shade kShades[] = {{0.01, "#1F7A5A", "#FFFFFF", "RMS stretch up to 1 %"},
+                             {0.03, "#5BA98A", "#1A1A19", "up to 3 %"},
+                             {0.1, "#97CBB6", "#1A1A19", "up to 10 %"},
+                             {0.3, "#CBE6DB", "#1A1A19", "up to 30 %"},
+                             {1e300, "#EFF7F3", "#1A1A19", "more than 30 %"}};
 
 }  // namespace
 
 Sheet map_sheet(const std::vector<StatusMap>& maps) {
   Sheet sheet;
   sheet.x_label = maps.front().x.label(), sheet.y_label = maps.front().y.label();
-  sheet.csv = "curve,solver,label,x,y,column,row,status,reason,case\n";
+  sheet.csv = "curve,solver,label,x,y,column,row,status,reason,case,stretch\n";
   std::set<Status::Kind> kinds;
   for (const StatusMap& map : maps)
     for (const StatusMap::Cell& cell : map.cells) kinds.insert(cell.record->status.kind);
@@ -37,7 +56,8 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
                    "," + exact(map.columns[cell.column]) + "," + exact(map.rows[cell.row]) + "," +
                    std::to_string(cell.column) + "," + std::to_string(cell.row) + "," +
                    std::string(to_string(cell.record->status.kind)) + "," +
-                   csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "\n";
+                   csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "," +
+                   exact(error_of(*cell.record)) + "\n";
     sheet.panels.push_back(
         {map.label, cell_ticks("x", map.x, map.columns) + cell_ticks("y", map.y, map.rows), ""});
     for (const Status::Kind kind : kinds) {
@@ -51,6 +71,23 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
           std::string(to_string(kind)));
       sheet.draw(cells + "(" + gnuplot_string(style.glyph) + ")",
                  "with labels tc rgb '" + std::string(style.ink.light) + "'", "");
+    }
+    double from = -1;
+    for (const Shade& shade : kShades) {
+      const bool any = std::ranges::any_of(map.cells, [&](const StatusMap::Cell& cell) {
+        const double error = error_of(*cell.record);
+        return error > from && error <= shade.end;
+      });
+      const std::string cells = "'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
+                                " && column(11) > " + exact(from) +
+                                " && column(11) <= " + exact(shade.end) + " ? column(6) : NaN):7:";
+      from = shade.end;
+      if (!any) continue;
+      sheet.draw(cells + "(0.45):(0.45)",
+                 std::string("with boxxyerror fs solid 1 noborder lc rgb '") + shade.colour + "'",
+                 shade.text);
+      sheet.draw(cells + "(strcol(8) eq 'ok' ? '✓' : '~')",
+                 std::string("with labels tc rgb '") + shade.ink + "'", "");
     }
   }
   return sheet;

@@ -49,27 +49,70 @@ std::string_view value_with(Role role) {
   return at == all.end() ? "" : (*at)->name;
 }
 
-/// Where the panels and the key of a figure stand [px].
-struct Layout {
-  std::size_t panels, columns, rows;
-  std::size_t key = 0, width, height;
+constexpr double kLetter = 9, kLine = 21;    ///< of the key's text, at a font of 13 [px]
+constexpr double kGnuplotsLetter = 11;       ///< by which gnuplot sets the columns of a key apart
+constexpr double kSample = 75;               ///< a stretch of the line before it
+constexpr double kLeft = 116, kBottom = 62;  ///< ticks and titles of the axes
+constexpr double kNarrowest = 190;           ///< a panel of a figure whose width is given
+constexpr double kPoints = 72.0 / 25.4;      ///< of a millimetre
+constexpr double kFont = 13, kPixel = 0.72;  ///< px, and a pixel in the PDF [pt]
 
-  explicit Layout(const Sheet& sheet)
+/// Where the panels and the key of a figure stand, in pixels at a font of 13. A width that is given
+/// decides how many panels stand side by side, and the key stands below them.
+struct Layout {
+  std::size_t panels, columns, rows, key_columns = 1, key_rows;
+  double pixel = kPixel;  ///< pt
+  double width, height, entry = 0, header;
+  bool below;
+
+  Layout(const Sheet& sheet, const FigureSize& size, bool title)
       : panels(sheet.panels.size()),
         columns(panels < 2    ? 1
                 : panels < 5  ? 2
                 : panels < 10 ? 3
                               : 4),
-        rows((panels + columns - 1) / columns) {
-    for (const std::string& title : sheet.titles) {
-      const auto letters = static_cast<std::size_t>(
-          std::ranges::count_if(title, [](char c) { return (c & 0xC0) != 0x80; }));
-      key = std::max(key, 75 + 7 * letters);
+        below(size.width > 0) {
+    double letters = 0;
+    for (const std::string& text : sheet.titles)
+      letters = std::max(letters, static_cast<double>(std::ranges::count_if(
+                                      text, [](char c) { return (c & 0xC0) != 0x80; })));
+    entry = kSample + kLetter * letters;
+    if (size.font > 0 || below) pixel = (size.font > 0 ? size.font : 8) / kFont;
+    const auto at_least_one = [](double n) { return std::max<std::size_t>(1, std::size_t(n)); };
+    if (below) {
+      width = size.width * kPoints / pixel;
+      columns = std::min(columns, at_least_one((width - kLeft) / kNarrowest));
+      key_columns = 1 + static_cast<std::size_t>(
+                            std::max(0.0, (width - entry) / (kSample + kGnuplotsLetter * letters)));
+    } else {
+      width = (panels > 1 ? 310 * static_cast<double>(columns) : 680) + entry;
     }
-    width = (panels > 1 ? 310 * columns : 680) + key, height = (panels > 1 ? 250 * rows : 440) + 80;
+    rows = (panels + columns - 1) / columns;
+    key_rows = (sheet.titles.size() + key_columns - 1) / key_columns;
+    header = (title ? 34 : 10) + (panels > 1 ? 34 : 6);
+    const double across = (width - kLeft) / static_cast<double>(columns),
+                 panel = below        ? std::max(150.0, 0.66 * across)
+                         : panels > 1 ? 250
+                                      : 440;
+    height = static_cast<double>(rows) * panel + header + kBottom + foot();
+    if (!below) height = std::max(height, header + key());
+    if (size.height > 0) height = size.height * kPoints / pixel;
+    if (size.height > 0 && height < header + kBottom + foot() + 80 * static_cast<double>(rows))
+      throw InputError(
+          "--height " + significant(size.height) + "mm: its panels and its key need " +
+          significant(
+              (header + kBottom + foot() + 80 * static_cast<double>(rows)) * pixel / kPoints, 3) +
+          "mm");
+    if (below && entry > width)
+      throw InputError("--width " + significant(size.width) + "mm: the key alone needs " +
+                       significant(entry * pixel / kPoints, 3) + "mm at this font");
   }
-  double right() const { return 1 - static_cast<double>(key + 10) / static_cast<double>(width); }
-  double top() const { return 1 - (panels > 1 ? 70.0 : 50.0) / static_cast<double>(height); }
+  double key() const { return kLine * static_cast<double>(key_rows) + 12; }
+  double foot() const { return below ? key() : 0; }
+  double right() const { return 1 - (below ? 14 : entry + 10) / width; }
+  double left() const { return kLeft / width; }
+  double top() const { return 1 - header / height; }
+  double bottom() const { return (kBottom + foot()) / height; }
 };
 
 /// A panel beside others shows the axes' titles at the figure's edge alone.
@@ -81,24 +124,33 @@ std::string panel_commands(const Sheet& sheet, const Layout& layout, std::size_t
          gnuplot_string(first ? sheet.y_label : "") + "\n" + panel.settings + panel.plot + "\n";
 }
 
+/// Beside the panels a column, below them rows.
+std::string key_place(const Layout& layout) {
+  if (!layout.below)
+    return "set origin " + exact(layout.right()) + ", 0\nset key at screen " +
+           exact(layout.right()) + ", screen " + exact(layout.top()) + " left top Left reverse\n";
+  return "set key at screen 0.01, screen " + exact((layout.key() - 4) / layout.height) +
+         " left top Left reverse vertical maxrows " + std::to_string(layout.key_rows) +
+         " samplen 3 width 1\n";
+}
+
 std::string script(const PlotSpec& spec, const Sheet& sheet, const Layout& layout) {
-  const std::string right = exact(layout.right()), top = exact(layout.top());
+  const auto pixels = [](double n) { return std::to_string(std::lround(n)); };
   std::string text =
       "# " + spec.kind + ": " + spec.y + " over " + spec.x +
-      "\n# Again: gnuplot -e \"set terminal svg noenhanced size " + std::to_string(layout.width) +
-      "," + std::to_string(layout.height) + "; set output '" + spec.file + ".svg'\" " + spec.file +
+      (spec.remark.empty() ? "" : "\n# " + spec.remark) +
+      "\n# Again: gnuplot -e \"set terminal svg noenhanced size " + pixels(layout.width) + "," +
+      pixels(layout.height) + "; set output '" + spec.file + ".svg'\" " + spec.file +
       ".gp\nset encoding utf8\nset datafile separator ','\nunset key\n"
-      "set offsets graph 0.04, graph 0.04, 0, 0\nset grid lc rgb '#E5E7EB'\n"
-      "set border 3\nset tics nomirror\n" +
+      "set grid lc rgb '#E5E7EB'\nset border 3\nset tics nomirror\n" +
       sheet.settings + "set multiplot layout " + std::to_string(layout.rows) + "," +
-      std::to_string(layout.columns) + " title " + gnuplot_string(spec.title) +
-      " margins char 10, screen " + right + ", char 4, screen " + top + " spacing char 8, char 4\n";
+      std::to_string(layout.columns) +
+      (spec.title.empty() ? "" : " title " + gnuplot_string(spec.title)) + " margins screen " +
+      exact(layout.left()) + ", screen " + exact(layout.right()) + ", screen " +
+      exact(layout.bottom()) + ", screen " + exact(layout.top()) + " spacing char 7, char 4\n";
   for (std::size_t i = 0; i < sheet.panels.size(); ++i) text += panel_commands(sheet, layout, i);
-  text +=
-      "# The key of all panels.\nreset\nset border 0\nunset tics\nset margins 0, 0, 0, 0\n"
-      "set origin " +
-      right + ", 0\nset key at screen " + right + ", screen " + top +
-      " left top Left reverse\nplot [0:1][0:1] NaN notitle";
+  text += "# The key of all panels.\nreset\nset border 0\nunset tics\nset margins 0, 0, 0, 0\n" +
+          key_place(layout) + "plot [0:1][0:1] NaN notitle";
   for (const std::string& entry : sheet.key) text += ", \\\n  keyentry " + entry;
   text += "\nunset multiplot\n";
   for (std::size_t at; (at = text.find("@CSV@")) != std::string::npos;)
@@ -111,18 +163,19 @@ PlotFiles write_plot(const PlotSpec& spec, const Sheet& sheet,
   make_folder(folder);
   const auto path = [&](const char* extension) { return folder / (spec.file + extension); };
   PlotFiles files{path(".svg"), path(".pdf"), path(".gp"), path(".csv"), {}};
-  const Layout layout(sheet);
+  const Layout layout(sheet, spec.size, !spec.title.empty());
   write_file(files.csv, sheet.csv);
   write_file(files.gp, script(spec, sheet, layout));
   const auto size = [&](double scale, const char* unit) {
-    return exact(static_cast<double>(layout.width) * scale) + unit + "," +
-           exact(static_cast<double>(layout.height) * scale) + unit;
+    return exact(layout.width * scale) + unit + "," + exact(layout.height * scale) + unit;
   };
   run_gnuplot(files.gp,
               "svg noenhanced size " + size(1, "") + " font 'sans-serif,13' background '#ffffff'",
               files.svg);
   run_gnuplot(files.gp,
-              "pdfcairo noenhanced size " + size(0.01, "in") + " font 'sans,13' fontscale 0.72",
+              "pdfcairo noenhanced size " + size(layout.pixel / 72, "in") +
+                  " font 'sans,13' fontscale " + exact(layout.pixel) +
+                  (layout.below ? " linewidth 0.8 pointscale 0.7 dashlength 0.8" : ""),
               files.pdf);
   return files;
 } catch (const InputError& error) {

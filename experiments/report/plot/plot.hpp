@@ -22,10 +22,18 @@ std::span<const PlotKind> plot_kinds();
 /// Throws InputError with a suggestion if there is no such kind.
 const PlotKind& find_plot_kind(std::string_view name);
 
+/// How large a figure is on paper; 0: as it comes. With a width the key stands below the panels.
+struct FigureSize {
+  double width = 0, height = 0;  ///< mm
+  double font = 0;               ///< pt
+};
+
 /// What to plot; empty parts are the kind's own.
 struct PlotSpec {
   std::string kind, x, y, along, title;
-  std::string file;  ///< without extension; "": from kind, x and y
+  std::string file;    ///< without extension; "": from kind, x and y
+  std::string remark;  ///< stands in the script
+  FigureSize size = {};
 };
 
 /// What stands in one panel of a figure: the records of one scene, or its series over time.

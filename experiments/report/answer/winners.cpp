@@ -1,0 +1,307 @@
+#include "experiments/report/answer/winners.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/model/solver.hpp"
+#include "core/model/text.hpp"
+#include "experiments/report/answer/answer.hpp"
+#include "experiments/system/distinct.hpp"
+#include "experiments/timing/hardly_moves.hpp"
+
+namespace taut::report {
+
+namespace {
+
+/// "1000 N/m" of "Hooke springs: structural 1000 N/m, shear 1000 N/m, bend 100 N/m", for bend links
+/// have another part; "": the links are rigid.
+std::string links_text(const Record& r) {
+  const ResolvedSetting* links = find_setting(r.resolved_settings, "links");
+  if (!links || links->compared() == "rigid") return "";
+  const std::string_view text = links->text;
+  std::set<std::string> all;
+  for (const std::string& part : parts_of(text.substr(text.find(": ") + 1), ',')) {
+    if (part.find("bend") != part.npos) continue;
+    const auto at = part.find_last_of("0123456789");
+    const auto from = at == part.npos ? at : part.find_last_of(' ', at);
+    all.insert(from == part.npos ? part : part.substr(from + 1));
+  }
+  if (text.starts_with("compliance"))
+    return all == std::set<std::string>{"0"} ? "" : "a compliance of " + join(all, ", ") + " m/N";
+  return join(all, ", ");
+}
+
+/// Of one scene: what is timed, and what of it counts.
+class SceneWinners {
+ public:
+  SceneWinners(const SceneBench& bench, const ReportInput& input, CaseList& list)
+      : bench_(with_shared_parameters(bench)), input_(input), list_(list) {
+    candidates_ = candidates_of(bench_, input);
+  }
+
+  WinnerRow row() {
+    WinnerRow row{bench_.cases.empty() ? bench_.scene : bench_.cases.front().record.scene,
+                  bench_.scene,
+                  {},
+                  {}};
+    for (const BenchedCase& c : bench_.cases)
+      row.motion_judged = row.motion_judged || is_motion_judged(c.record);
+    for (const double level : kErrorLevels) row.cells.push_back(cell(level));
+    return row;
+  }
+
+ private:
+  Contender contender(std::size_t at) {
+    const Record& r = bench_.cases[at].record;
+    return {r.solver,
+            setting_text(bench_, at),
+            arithmetic(r, input_.vectors),
+            links_text(r),
+            candidates_[at].cost,
+            candidates_[at].error,
+            list_.key(r),
+            is_upper_bound(bench_, candidates_, at)};
+  }
+
+  WinnerCell cell(double level) {
+    WinnerCell cell;
+    std::vector<std::size_t> best;  // of each solver
+    for (const std::string& solver : solvers_of(bench_))
+      if (const auto at = best_for({.error = level}, candidates_, solver)) best.push_back(*at);
+    std::ranges::sort(best, {}, [&](std::size_t i) { return candidates_[i].cost.mid; });
+    pass_over(cell, level,
+              best.empty() ? std::numeric_limits<double>::infinity()
+                           : candidates_[best.front()].cost.mid);
+    if (best.empty()) {
+      cell.why = why_none();
+      return cell;
+    }
+    const std::size_t first = best.front();
+    for (const std::size_t at : best) {
+      const auto times = at == first ? std::optional(Interval{1, 1, 1}) : bench_.ratio(at, first);
+      const bool told = at != first && times && !is_upper_bound(bench_, candidates_, at) &&
+                        is_difference(judge(*times, bench_.control));
+      if (!told)
+        cell.cheapest.push_back(contender(at));
+      else if (!cell.next)
+        cell.next = contender(at), cell.times = *times;
+    }
+    return cell;
+  }
+
+  /// Solvers whose cheaper settings reach the error by what does not count.
+  void pass_over(WinnerCell& cell, double level, double cost) const {
+    for (const std::string& solver : solvers_of(bench_)) {
+      std::optional<std::size_t> cheapest;
+      for (std::size_t i = 0; i < candidates_.size(); ++i) {
+        const Candidate& one = candidates_[i];
+        if (one.solver != solver || !(one.hardly_moves || one.not_accepted)) continue;
+        if (!(one.error <= level) || !(one.cost.mid < cost)) continue;
+        if (!cheapest || one.cost.mid < candidates_[*cheapest].cost.mid) cheapest = i;
+      }
+      if (cheapest) cell.passed_over.emplace_back(solver, candidates_[*cheapest].failure);
+    }
+  }
+
+  /// "at best 0.12 % (XPBD)"
+  std::string why_none() const {
+    const auto at = best_for({.budget = std::numeric_limits<double>::infinity()}, candidates_, "");
+    if (at)
+      return "at best " + quantity(kErrorMetric).text(candidates_[*at].error) + " (" +
+             solver_title(candidates_[*at].solver) + ")";
+    return candidates_.empty() ? "nothing was timed" : candidates_.front().failure;
+  }
+
+  SceneBench bench_;
+  const ReportInput& input_;
+  CaseList& list_;
+  std::vector<Candidate> candidates_;
+};
+
+/// Who wins, by solver, and where.
+struct Wins {
+  std::string solver;
+  std::vector<const WinnerCell*> cells;
+
+  /// Those with the least and the most over the next.
+  std::vector<const WinnerCell*> ends() const {
+    std::vector<const WinnerCell*> opposed = cells;
+    std::erase_if(opposed, [](const WinnerCell* cell) { return !cell->next; });
+    std::ranges::sort(opposed, {}, [](const WinnerCell* cell) { return cell->times.mid; });
+    if (opposed.size() > 1) opposed = {opposed.front(), opposed.back()};
+    return opposed;
+  }
+};
+
+/// "is cheapest in 3 of 20 cells, by 1.2 to 4 times"
+void add_wins(std::vector<Said>& sentence, const Wins& wins, const std::string& of) {
+  sentence.push_back({solver_title(wins.solver) + " is cheapest in "});
+  sentence.push_back({std::to_string(wins.cells.size()), wins.cells.front()->cheapest[0].key});
+  if (!of.empty()) {
+    sentence.push_back({" of "});
+    sentence.push_back({of, "", true});
+    sentence.push_back({of == "1" ? " cell" : " cells"});
+  }
+  const auto ends = wins.ends();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    sentence.push_back({i == 0 ? ", by " : " to "});
+    sentence.push_back({significant(ends[i]->times.mid), ends[i]->cheapest[0].key});
+  }
+  if (!ends.empty()) sentence.push_back({" times"});
+}
+
+}  // namespace
+
+WinnerMap winners_of(const ReportInput& input, CaseList& list) {
+  WinnerMap map;
+  if (!input.bench) return map;
+  list.use(kErrorMetric);
+  for (const SceneBench& scene : input.bench->scenes) {
+    map.rows.push_back(SceneWinners(scene, input, list).row());
+    map.noise = std::max(map.noise, spread(scene.control));
+  }
+  return map;
+}
+
+std::vector<std::vector<Said>> sentences_of(const WinnerMap& map) {
+  std::vector<Wins> wins;
+  std::vector<const WinnerCell*> alike, empty;
+  std::size_t all = 0;
+  for (const WinnerRow& row : map.rows)
+    for (const WinnerCell& cell : row.cells) {
+      ++all;
+      if (cell.cheapest.empty())
+        empty.push_back(&cell);
+      else if (cell.cheapest.size() > 1)
+        alike.push_back(&cell);
+      else if (const auto at = std::ranges::find(wins, cell.cheapest[0].solver, &Wins::solver);
+               at != wins.end())
+        at->cells.push_back(&cell);
+      else
+        wins.push_back({cell.cheapest[0].solver, {&cell}});
+    }
+  if (all == 0) return {};
+  std::ranges::stable_sort(wins, std::greater{}, [](const Wins& one) { return one.cells.size(); });
+  std::vector<Said> first, second;
+  if (wins.empty()) {
+    first = {{"No solver can be told to be cheapest in any of "}, {std::to_string(all), "", true}};
+    first.push_back({all == 1 ? " cell." : " cells."});
+  } else {
+    add_wins(first, wins[0], std::to_string(all));
+    first.push_back({"."});
+  }
+  const auto separate = [&] {
+    if (!second.empty()) second.push_back({"; "});
+  };
+  for (std::size_t i = 1; i < wins.size(); ++i) {
+    separate();
+    add_wins(second, wins[i], "");
+  }
+  if (!alike.empty()) {
+    separate();
+    second.push_back({std::to_string(alike.size()), alike[0]->cheapest[0].key});
+    second.push_back({alike.size() == 1 ? " cell has several that noise cannot tell apart"
+                                        : " cells have several that noise cannot tell apart"});
+  }
+  if (!empty.empty()) {
+    separate();
+    second.push_back({std::to_string(empty.size()), "", true});
+    second.push_back(
+        {empty.size() == 1 ? " cell is reached by nobody" : " cells are reached by nobody"});
+  }
+  std::vector<std::vector<Said>> sentences{first};
+  if (second.empty()) return sentences;
+  second.push_back({"."});
+  sentences.push_back(second);
+  return sentences;
+}
+
+std::string text_of(const std::vector<Said>& sentence) {
+  return join(sentence, "", [](const Said& one) { return one.text; });
+}
+
+std::string line_of(const WinnerRow& row, std::size_t level) {
+  const WinnerCell& cell = row.cells.at(level);
+  const std::string head =
+      row.title + " at " + quantity(kErrorMetric).text(kErrorLevels[level], 1) + ": ";
+  if (cell.cheapest.empty()) return head + "nobody, " + cell.why;
+  const auto said = [](const Contender& one) {
+    return solver_title(one.solver) + " " + one.setting + ", " + one.arithmetic +
+           (one.links.empty() ? "" : ", springs of " + one.links) + ": " +
+           (one.bound ? "at most " : "") + shown(kFrameCost, one.cost.mid);
+  };
+  std::string text = head + join(cell.cheapest, "; not to be told from it: ", said);
+  if (cell.next)
+    text += "; " + significant(cell.times.mid) + " (" + significant(cell.times.low) + " to " +
+            significant(cell.times.high) + ") times cheaper than " +
+            solver_title(cell.next->solver);
+  return text;
+}
+
+std::string certainty_text(double noise) {
+  return "Cheaper means, in every table: the 95\u00A0% interval of the ratio of two costs, sampled "
+         "in turns, leaves out 1, and the ratio is beyond " +
+         shown(kShare, kTolerance, 1) +
+         " and beyond what two runs of identical code differed by on the same scene, at most " +
+         shown(kShare, noise) + ".";
+}
+
+namespace {
+
+std::string meaning_of(const std::string& arithmetic) {
+  const bool single = arithmetic.starts_with("float");
+  const auto times = arithmetic.find(" × ");
+  const std::string lanes =
+      times == std::string::npos ? "one number" : std::string(arithmetic.substr(times + 4, 2));
+  return std::string(single ? "single precision" : "double precision") +
+         (times == std::string::npos
+              ? ""
+              : ", " + lanes.substr(0, lanes.find(' ')) + " numbers in one instruction");
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<const Record*>& records,
+                                                          const std::string& vectors) {
+  std::map<std::string, std::string> orders, arithmetics, parameters;
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> seen;
+  bool works = false;
+  for (const Record* r : records) {
+    const Work work = work_of(*r);
+    works = works || (work.substeps > 0 && work.sweeps > 0);
+    const std::string own = arithmetic(*r, vectors);
+    arithmetics[own.substr(0, own.find(" ("))] = meaning_of(own);
+    if (const ResolvedSetting* order = find_setting(r->resolved_settings, kLinkOrder))
+      orders[order->compared()] = order->text.substr(0, order->text.find(';'));
+    for (const std::string& name : labelled_parameters(r->solver))
+      if (const auto at = r->params.find(name); at != r->params.end())
+        seen[{r->solver, name}].insert(at->second);
+  }
+  for (const SolverEntry* entry : solvers())
+    for (const ParamSpec& spec : entry->params) {
+      const auto at = seen.find({std::string(entry->name), std::string(spec.name)});
+      if (at == seen.end() || at->second.size() < 2 || spec.kind == ParamSpec::Kind::choice)
+        continue;
+      parameters[std::string(spec.name)] =
+          std::string(spec.help) + (spec.unit.empty() ? "" : " [" + std::string(spec.unit) + "]");
+    }
+  std::vector<std::pair<std::string, std::string>> terms;
+  if (works)
+    terms.emplace_back("2 × 8",
+                       "each time step is cut into 2 substeps of 8 sweeps; of a solver that solves "
+                       "all links at once, of 8 iterations");
+  terms.insert(terms.end(), arithmetics.begin(), arithmetics.end());
+  for (const auto& [order, text] : orders)
+    if (!order.empty())
+      terms.emplace_back(order, order == text
+                                    ? "order in which links are visited: those of a colour "
+                                      "share no vertex"
+                                    : "order in which links are visited: " + text);
+  terms.insert(terms.end(), parameters.begin(), parameters.end());
+  return terms;
+}
+
+}  // namespace taut::report

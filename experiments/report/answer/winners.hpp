@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/report/answer/case_list.hpp"
+#include "experiments/report/input.hpp"
+
+namespace taut::report {
+
+/// One timed setting that reaches an error.
+struct Contender {
+  std::string solver;
+  std::string setting;     ///< "1 × 10, coloured"
+  std::string arithmetic;  ///< "float × 8 (avx2)"
+  std::string links;       ///< what its links are made of, if they are not rigid: "1000 N/m"
+  Interval cost;           ///< CPU s per simulated s
+  double error = 0;
+  std::string key;     ///< of its case, short
+  bool bound = false;  ///< no cheaper setting of the solver was tried: its cost is at most this
+};
+
+/// Who reaches an error on a scene at the least cost.
+struct WinnerCell {
+  /// The cheapest, and those of other solvers that cannot be told from it; empty: none reaches it.
+  std::vector<Contender> cheapest;
+  std::optional<Contender> next;  ///< the cheapest of the others, of another solver
+  Interval times;                 ///< its cost over that of the cheapest; if there is a next
+  std::string why;                ///< where none reaches it
+  /// Solvers that reach the error at less cost, and why that does not count.
+  std::vector<std::pair<std::string, std::string>> passed_over;
+
+  bool won() const { return cheapest.size() == 1 && next; }
+};
+
+struct WinnerRow {
+  std::string scene, title;
+  bool motion_judged = false;     ///< against a reference in motion
+  std::vector<WinnerCell> cells;  ///< of each of kErrorLevels
+};
+
+/// A piece of a sentence: what a number leads to.
+struct Said {
+  std::string text;
+  std::string key = {};  ///< of a case; "": it leads nowhere
+  bool of_map = false;   ///< it counts cells of the map
+};
+
+/// Who wins where: a row for each scene of a bench. A setting counts if its case completed, its
+/// cloth moves where the scene has a reference in motion, and it keeps what its scene asks for
+/// (ReportInput::not_accepted). Cases that use what another solver of the scene lacks are left out.
+struct WinnerMap {
+  std::vector<WinnerRow> rows;
+  double noise = 0;  ///< how far identical code differed from itself, at most, as a share
+};
+WinnerMap winners_of(const ReportInput&, CaseList&);
+
+/// What the map says in all: two sentences at most, true without a condition; none of no map.
+std::vector<std::vector<Said>> sentences_of(const WinnerMap&);
+/// Their text.
+std::string text_of(const std::vector<Said>&);
+
+/// "2.3 times cheaper than XPBD", "0.07 ms a frame": of one cell, a line; "" of an empty map.
+std::string line_of(const WinnerRow&, std::size_t level);
+
+/// How sure a ratio of costs is: one statement for the page.
+std::string certainty_text(double noise);
+
+/// Abbreviations that stand in settings and in arithmetics of these cases, and what they mean.
+std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<const Record*>&,
+                                                          const std::string& vectors);
+
+}  // namespace taut::report

@@ -1,0 +1,59 @@
+#include "experiments/report/answer/winners.hpp"
+
+#include <iterator>
+
+#include "experiments/report/model/parts.hpp"
+
+namespace taut::report {
+
+namespace {
+
+Json json_of(const Contender& one) {
+  Json json{{"solver", one.solver}, {"setting", one.setting}, {"arithmetic", one.arithmetic},
+            {"cost", one.cost},     {"error", one.error},     {"case", one.key}};
+  add_if(json, "links", one.links);
+  if (one.bound) json["at_most"] = true;
+  return json;
+}
+
+Json json_of(const WinnerCell& cell) {
+  Json json = Json::object();
+  for (const Contender& one : cell.cheapest) json["cheapest"].push_back(json_of(one));
+  if (cell.next) json["next"] = json_of(*cell.next), json["times"] = cell.times;
+  add_if(json, "why", cell.why);
+  for (const auto& [solver, why] : cell.passed_over)
+    json["passed_over"].push_back({{"solver", solver}, {"why", why}});
+  return json;
+}
+
+Json json_of(const std::vector<Said>& sentence) {
+  Json json = Json::array();
+  for (const Said& one : sentence) {
+    Json part{{"text", one.text}};
+    add_if(part, "case", one.key);
+    if (one.of_map) part["map"] = true;
+    json.push_back(std::move(part));
+  }
+  return json;
+}
+
+}  // namespace
+
+Json json_of_winners(const ReportInput& input, CaseList& list) {
+  const WinnerMap map = winners_of(input, list);
+  if (map.rows.empty()) return {};
+  Json json{{"metric", kErrorMetric},
+            {"levels", std::vector<double>(std::begin(kErrorLevels), std::end(kErrorLevels))},
+            {"frame", kFrame},
+            {"certainty", certainty_text(map.noise)}};
+  for (const WinnerRow& row : map.rows) {
+    Json one{{"scene", row.scene}, {"title", row.title}, {"motion_judged", row.motion_judged}};
+    for (const WinnerCell& cell : row.cells) one["cells"].push_back(json_of(cell));
+    json["rows"].push_back(std::move(one));
+  }
+  for (const std::vector<Said>& sentence : sentences_of(map))
+    json["sentences"].push_back(json_of(sentence));
+  return json;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,70 @@
+'use strict';
+// Who wins where: the map of the cheapest solvers, error over cost beside it, what both say in a sentence, and the
+// meaning of every abbreviation.
+
+/** What the abbreviations in a text mean, a line each. */
+function explain(text) {
+  const plain = text.replaceAll('\u00A0', ' ');
+  return (model.terms ?? []).filter(({term}) => plain.includes(term) || (/^\d+ × \d+$/.test(term) && /\d+ × \d+/.test(plain) && !/^(float|double)/.test(plain)))
+      .map(({term, meaning}) => `${term}: ${meaning}`).join('\n');
+}
+const explained = (text, props = {}) => el('small', {...props, title: explain(text)}, text.replaceAll(' × ', '\u00A0×\u00A0'));
+
+/** All abbreviations, below what has them. */
+const termList = () => model.terms?.length ? el('p', {className: 'note terms'}, model.terms.map(({term, meaning}, i) =>
+  [i ? '; ' : '', el('b', {}, term.replaceAll(' ', '\u00A0')), ` ${meaning}`]), '.') : null;
+
+/** A number of a sentence leads to its case, or to the map that it counts cells of. */
+const saidPart = (part) => part.case ? caseLink(part.case, part.text) : part.map ? choice({at: 'winners'}, {}, part.text) : part.text;
+const sentences = () => (model.winners?.sentences ?? []).map((parts) => el('p', {className: 'finding'}, parts.map(saidPart)));
+
+const frameCost = {unit: 'ms', scale: 1e3 * (model.winners?.frame ?? 1)};
+const plainArithmetic = (text) => text.replace(/ \(\w+\)/g, '');
+
+/** A setting that reaches the error: who, over whom by how much, at what cost, at which setting, in which arithmetic, of which links. */
+function contender(one, over) {
+  const cost = (one.at_most ? '≤ ' : '') + shown(one.cost[1], frameCost, 2);
+  return el('div', {className: 'contender'}, named(one.solver), over,
+    el('div', {className: 'price'}, caseLink(one.case, cost), ' ', explained(one.setting)),
+    explained([plainArithmetic(one.arithmetic), one.links && `springs of ${one.links}`].filter(Boolean).join(', '), {className: 'how'}));
+}
+
+function winnerCell(cell) {
+  if (!cell.cheapest) return el('td', {className: 'none'}, '–', el('small', {}, ' ', cell.why));
+  const {cheapest, next, times} = cell, passed = cell.passed_over ?? [];
+  const over = cheapest.length === 1 && (next ? el('div', {className: 'over', title:
+    `${shown(next.cost[1], frameCost, 2)} by ${solverOf(next.solver).title}, ${next.setting}: ` +
+    `${number(times[0])} to ${number(times[2])} times as much`}, el('b', {}, `${number(times[1], 2)}×`),
+    ` cheaper than ${short(solverOf(next.solver).title, 24)}`) : el('div', {className: 'over'}, 'no other reaches it'));
+  return el('td', {}, cheapest.map((one) => contender(one, over)),
+    cheapest.length > 1 && el('small', {}, 'noise cannot tell them apart'),
+    passed.length > 0 && el('small', {className: 'passed', title: passed.map(({solver, why}) => `${solverOf(solver).title}: ${why}`).join('\n')},
+      `not counted: ${passed.map(({solver}) => solverOf(solver).title).join(', ')}`));
+}
+
+/** The map: a row for each scene, a column for each error. */
+function winnersCard() {
+  const {rows, levels, certainty} = model.winners, error = metric(model.winners.metric);
+  const unjudged = rows.filter((row) => !row.motion_judged).map((row) => row.title);
+  const line = (row) => {
+    const node = el('tr', {}, el('th', {scope: 'row'}, scenes.has(row.scene) ? choice({scene: row.scene, at: 'scenes'}, {}, row.title) : row.title,
+      !row.motion_judged && el('small', {}, 'motion not judged')), row.cells.map(winnerCell));
+    state.watch(() => node.classList.toggle('chosen', chosenScene() === row.scene));
+    return node;
+  };
+  return el('div', {className: 'card winners', id: 'winners'},
+    el(model.differences ? 'h3' : 'h2', {}, `Cheapest for an ${error.title} of at most ...`),
+    scrolling('The cheapest solver of each error on each scene', el('tr', {}, el('th', {scope: 'col'}, 'scene'),
+      levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))), rows.map(line)),
+    note('Each cell: the solver, how many times cheaper it is than the next solver, CPU time of a frame of 1/60\u00A0s, setting, arithmetic, and the stiffness of links that are not rigid. ',
+      'Nothing counts that fails, passes through a body, or goes less than half of its way', unjudged.length > 0 && ` (on ${unjudged.join(', ')} there is no reference in motion: not judged)`, '. ', certainty));
+}
+
+/** The first screen of what was timed. */
+function winnersPart() {
+  if (!model.winners) return null;
+  const costs = (model.charts ?? []).filter((chart) => chart.kind === 'cost');
+  const nameOf = (spec) => short(spec.scene, 30);
+  return [...sentences(), el('div', {className: 'first'}, winnersCard(),
+    costs.length ? chartFigure(costs, costs[0].title, nameOf) : null)];
+}
