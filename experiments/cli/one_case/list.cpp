@@ -188,8 +188,7 @@ int run(const Options& options) {
     std::vector<std::string> known = kinds();
     for (const SolverEntry* entry : all_solvers()) known.emplace_back(entry->name);
     if (std::ranges::find(known, options.what) == known.end())
-      throw InputError("unknown kind or solver '" + options.what + "'" +
-                       suggestion(options.what, known));
+      throw InputError("unknown kind '" + options.what + "'" + suggestion(options.what, known));
   }
   print(all, options.format);
   return kPass;

@@ -3,6 +3,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/case/question.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/format.hpp"

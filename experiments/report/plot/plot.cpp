@@ -85,7 +85,7 @@ struct Layout {
       key_columns = 1 + static_cast<std::size_t>(
                             std::max(0.0, (width - entry) / (kSample + kGnuplotsLetter * letters)));
     } else {
-      width = (panels > 1 ? 310 * static_cast<double>(columns) : 680) + entry;
+      width = (panels > 1 ? 310 * static_cast<double>(columns) : 680) + 40 + entry;
     }
     rows = (panels + columns - 1) / columns;
     key_rows = (sheet.titles.size() + key_columns - 1) / key_columns;
