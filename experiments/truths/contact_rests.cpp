@@ -181,8 +181,8 @@ TAUT_TRUTH(steps_in_contact, 7, 9,
       for (const std::string solver : {"implicit:iterations=100", "pd:iterations=6000",
                                        "admm:iterations=6000", "vbd:iterations=6000"}) {
         if (!can_run(findings, solver, s)) continue;
-        findings.below(solver, what, "m",
-                       max_distance(Simulation(s, solver, 1).state().x, exact.x), 1e-8);
+        findings.below(solver, what, "m", max_distance(Simulation(s, solver, 1).state().x, exact.x),
+                       1e-8);
       }
     }
 }

@@ -2,6 +2,7 @@
 // alone: what the links and inertia leave over at a vertex is what the collider has to push with.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -124,6 +125,31 @@ TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
         EXPECT_GT(after(one.few), 1e-6) << where;
       }
     }
+}
+
+/// All vertices stick to a rough slope; nothing is left to move once they lie there.
+TEST(ContactConditions, LetASheetRestOnARoughSlope) {
+  for (const int n : {9, 15}) {  // few contacts, and many
+    Scene scene;
+    scene.name = "slope";
+    scene.mesh = make_sheet(
+        {.nu = n, .nv = n, .width = 0.5, .height = 0.5, .v = Vec3::UnitZ(), .mass = 0.1});
+    const double slope = 0.2;
+    const Eigen::Quaterniond tilt(Eigen::AngleAxisd(-slope, Vec3::UnitZ()));
+    for (Vec3& x : scene.mesh.rest) x = tilt * (x + Vec3(0, 0.006, 0));
+    scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
+    scene.links = grid_links(scene.mesh, {true, true, false});
+    scene.dt = 1.0 / 64;
+    scene.damping = 2;
+    scene.thickness = 0.005;
+    scene.colliders = {{.shape = Plane{tilt * Vec3::UnitY(), 0}, .motion = {}, .friction = 0.3}};
+    for (const std::string solver : {"implicit", "pd", "admm:links=elastic", "vbd"}) {
+      const std::string text = with(solver, "structural=1000,shear=1000,bend=0");
+      double fastest = 0;
+      for (const Vec3& v : simulate(scene, text, 128).v) fastest = std::max(fastest, v.norm());
+      EXPECT_LT(fastest, 1e-9) << solver << ", " << n << " x " << n;
+    }
+  }
 }
 
 TEST(ContactConditions, HoldForTheReference) {
