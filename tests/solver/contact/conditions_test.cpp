@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "core/model/angle.hpp"
@@ -127,26 +128,34 @@ TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
     }
 }
 
-/// All vertices stick to a rough slope; nothing is left to move once they lie there.
+/// A sheet that fell on a rough slope and lies there, pressed together by its weight: nothing is
+/// left to move.
 TEST(ContactConditions, LetASheetRestOnARoughSlope) {
-  for (const int n : {9, 15}) {  // few contacts, and many
+  const double slope = 0.2;
+  for (const int n : {9, 13}) {  // few contacts, and many
     Scene scene;
     scene.name = "slope";
-    scene.mesh = make_sheet(
-        {.nu = n, .nv = n, .width = 0.5, .height = 0.5, .v = Vec3::UnitZ(), .mass = 0.1});
-    const double slope = 0.2;
-    const Eigen::Quaterniond tilt(Eigen::AngleAxisd(-slope, Vec3::UnitZ()));
-    for (Vec3& x : scene.mesh.rest) x = tilt * (x + Vec3(0, 0.006, 0));
+    scene.mesh = make_sheet({.nu = n,
+                             .nv = n,
+                             .width = 0.5,
+                             .height = 0.5,
+                             .origin = {-0.26, 0.215, -0.27},
+                             .v = Vec3::UnitZ(),
+                             .mass = 0.1,
+                             .lumping = Lumping::area});
     scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
     scene.links = grid_links(scene.mesh, {true, true, false});
     scene.dt = 1.0 / 64;
-    scene.damping = 2;
     scene.thickness = 0.005;
-    scene.colliders = {{.shape = Plane{tilt * Vec3::UnitY(), 0}, .motion = {}, .friction = 0.3}};
-    for (const std::string solver : {"implicit", "pd", "admm:links=elastic", "vbd"}) {
-      const std::string text = with(solver, "structural=1000,shear=1000,bend=0");
+    scene.stiffness = {1000, 1000, std::numeric_limits<double>::infinity()};
+    scene.colliders = {
+        {.shape = Plane{{std::sin(slope), std::cos(slope), 0}, 0}, .motion = {}, .friction = 0.3}};
+    scene.start = simulate(scene, "implicit", 40);
+    scene.damping = 2;
+    scene.start = simulate(scene, "implicit", 200);
+    for (const std::string solver : {"implicit", "pd", "admm", "vbd"}) {
       double fastest = 0;
-      for (const Vec3& v : simulate(scene, text, 128).v) fastest = std::max(fastest, v.norm());
+      for (const Vec3& v : simulate(scene, solver, 60).v) fastest = std::max(fastest, v.norm());
       EXPECT_LT(fastest, 1e-9) << solver << ", " << n << " x " << n;
     }
   }
