@@ -1,10 +1,13 @@
 #include "experiments/baseline/check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <tuple>
+#include <utility>
 
 #include "core/model/text.hpp"
 #include "experiments/answer/number.hpp"
@@ -129,9 +132,11 @@ class Report {
                              largest_text(*m.largest, group_of_), m.relative(),
                              judged ? "less is better" : "", m.largest->id});
     }
+    // statuses first, then what moved most
     std::ranges::stable_sort(moved_.rows, {}, [](const std::vector<Cell>& row) {
-      const std::string group = row[2].text();
-      return group == "status" ? 0 : group == kOthers ? 2 : 1;
+      constexpr double kMost = std::numeric_limits<double>::infinity();
+      const double relative = std::abs(row[7].number());
+      return std::pair(row[2].text() != "status", std::isnan(relative) ? -kMost : -relative);
     });
     moved_.most = kMostRows;
   }

@@ -98,6 +98,8 @@ class Check(CommandLine):
         self.assertRegex(out, r"other values +2 +2 +0 .*energy\.kinetic")
         self.assertRegex(out, r"study +moved +4 +\d+ +6 ")
         self.assertIn('taut baseline update ./study.toml --why "..."', out)
+        changes = [abs(m["relative"]) for m in rows_of(json.loads(self.check(1, "--json")), "moved")]
+        self.assertEqual(changes, sorted(changes, reverse=True), "the largest change first")
         self.edit("bullet", lambda rows: rows[:1] + [rows[1] | {"status": "exploded", "reason": "energy"}])
         out = self.check(1)
         self.assertLess(out.index("exploded (energy) -> ok"), out.index("RMS stretch"), "no change of a value is worse than a status")
