@@ -381,8 +381,9 @@ TAUT_VERB(frontier) = {
         "  taut frontier --all jakobsen bullet\n"
         "Exit: 0 found; 1 a frontier of --all moved; 4 nothing was answered or compared",
     .answer =
-        "of kind stable theory looked_for cases ran picture unstable growth above; "
+        "of kind stable acceptable theory looked_for cases ran picture unstable growth above; "
         "probes: value status step case; "
+        "frontiers: solver stable stable_end acceptable acceptable_end; "
         "parameters: solver parameter unit good bad symptom at_start theory law lacks from to "
         "downwards cases beyond_scene beyond_solver; "
         "beyond: solver parameter override; "

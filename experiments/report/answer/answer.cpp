@@ -181,7 +181,7 @@ class Questions {
            (steps.empty() ? "" : ", time step " + range_text(steps, quantity("dt"))) +
            ". Means are geometric where all values are positive; no stretch of cloth that goes "
            "less than " +
-           shown(kShare, kLeastMotion, 1) + " of the way is in one.";
+           shown(kShare, kLeastMotion, 1) + " of the way, as far as that is judged, is in one.";
   }
 
   /// The cases at the same substeps and sweeps, scene by scene. They cost unequally, so nobody is

@@ -57,7 +57,9 @@ function winnersCard() {
     scrolling('The cheapest solver of each error on each scene', el('tr', {}, el('th', {scope: 'col'}, 'scene'),
       levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))), rows.map(line)),
     note('Each cell: the solver, how many times cheaper it is than the next solver, CPU time of a frame of 1/60\u00A0s, setting, arithmetic, and the stiffness of links that are not rigid. ',
-      'Nothing counts that fails, passes through a body, or goes less than half of its way', unjudged.length > 0 && ` (on ${unjudged.join(', ')} there is no reference in motion: not judged)`, '. ', certainty));
+      'Nothing counts that fails, passes through a body or sinks into it by more than 0.1\u00A0% of the cloth\u2019s diagonal, goes less than half of its way, or is off its way by more than a quarter of it',
+      unjudged.length > 0 && ` (on ${unjudged.join(', ')} there is no reference in motion: not judged, and cloth that lags keeps its links there)`, '. ',
+      'Only settings that were timed compete: a rival whose next one just misses the error is out. ', certainty));
 }
 
 /** The first screen of what was timed. */
