@@ -46,8 +46,10 @@ std::vector<Candidate> candidates_of(const SceneBench& bench, const ReportInput&
   std::vector<Candidate> all = bench.candidates(kErrorMetric);
   for (std::size_t i = 0; i < all.size(); ++i)
     if (const auto why = input.not_accepted.find(bench.cases[i].record.key);
-        why != input.not_accepted.end() && all[i].failure.empty())
-      all[i].failure = why->second, all[i].not_accepted = true;
+        why != input.not_accepted.end() && all[i].failure.empty()) {
+      all[i].failure = why->second;
+      all[i].not_accepted = true;
+    }
   return all;
 }
 
