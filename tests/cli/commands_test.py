@@ -740,6 +740,11 @@ class Verbs(CommandLine):
         small, large = (facts_of(self.answer("plan", "hang", "pd", "--set", f"cloth.grid=[{n}, {n}]"))["set_up"] for n in (8, 64))
         self.assertTrue(0 < 5 * small < large < 10, "the factor's: 64 times the vertices")
 
+    def test_a_long_plan_says_so_before_it_begins(self):
+        long = self.taut("plan", "hang", "jakobsen", "--set", "cloth.grid=[320, 320]").err
+        self.assertRegex(long, r"setting up 102400 vertices and \d+ links: it may take some seconds per million")
+        self.assertNotIn("setting up", self.taut("plan", "hang", "jakobsen").err)
+
     def test_scaling_at_an_error_finds_the_fewest_sweeps(self):
         bench = self.answer("bench", "scaling", "--error", "2%", "--preset", "quick", "--samples", "1")
         sizes = rows_of(bench, "sizes")
