@@ -43,7 +43,10 @@ std::vector<Finding> findings_of(const TruthEntry& truth, const VerifyRequest& r
   }
   Finding f;
   f.subject = request.solvers.empty() ? "taut" : request.solvers.front();
-  f.quantity = "the check ends", f.unit = "1", f.expected = 1, f.verdict = TruthVerdict::broken;
+  f.quantity = "the check ends";
+  f.unit = "1";
+  f.expected = 1;
+  f.verdict = TruthVerdict::broken;
   f.why = (end ? end->text() : "it took too long") + (said.empty() ? "" : ": " + said);
   return {f};
 }

@@ -27,11 +27,18 @@ struct VertexModel {
   }
   /// Before what reads the whole Hessian: adds `isotropic` to its diagonal.
   [[gnu::always_inline]] void fold() {
-    xx += isotropic, yy += isotropic, zz += isotropic;
+    xx += isotropic;
+    yy += isotropic;
+    zz += isotropic;
     isotropic = T(0);
   }
   [[gnu::always_inline]] void scale_hessian(T s) {
-    xx = s * xx, yy = s * yy, zz = s * zz, xy = s * xy, xz = s * xz, yz = s * yz;
+    xx = s * xx;
+    yy = s * yy;
+    zz = s * zz;
+    xy = s * xy;
+    xz = s * xz;
+    yz = s * yz;
   }
   [[gnu::always_inline]] Vec3T<T> hessian_times(const Vec3T<T>& v) const {
     return {xx * v.x + (xy * v.y + xz * v.z), xy * v.x + (yy * v.y + yz * v.z),

@@ -115,7 +115,8 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   const int panels = std::max(2, static_cast<int>(runs + film.refused.size()));
   const int columns = PageLayout::columns_of(static_cast<int>(runs));
   const int rows = (static_cast<int>(runs) + columns - 1) / columns;
-  options.width = film.studied ? 960 : 704, options.height = film.studied ? 400 : 320;
+  options.width = film.studied ? 960 : 704;
+  options.height = film.studied ? 400 : 320;
   options.crf = film.studied ? 28 : 30;
   options.quality.finest_sheet = 33;  // quads of three to eight pixels
   options.width = options.width / PageLayout::columns_of(std::min(panels, 3)) * columns / 2 * 2;

@@ -31,9 +31,10 @@ std::string setting_text(const SceneBench&, std::size_t at);
 /// accept (ReportInput::not_accepted) meet no target.
 std::vector<Candidate> candidates_of(const SceneBench&, const ReportInput&);
 
-/// Of a solver whose settings that reach the error do not count, why that is: "hardly moves: 5 % of
-/// the way"; else "".
-std::string only_uncounted(const std::vector<Candidate>&, const std::string& solver, double error);
+/// If the settings of a solver that reach the error do not count: a cell of these words, with the
+/// state and the reason, such as "hardly moves: 5 % of the way".
+std::optional<Cell> only_uncounted(const std::vector<Candidate>&, const std::string& solver,
+                                   double error, const std::string& words);
 
 /// Whether a cheaper setting of the same solver may reach what case `at` reaches: none was tried,
 /// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is then

@@ -53,12 +53,14 @@ std::vector<Candidate> candidates_of(const SceneBench& bench, const ReportInput&
   return all;
 }
 
-std::string only_uncounted(const std::vector<Candidate>& candidates, const std::string& solver,
-                           double error) {
+std::optional<Cell> only_uncounted(const std::vector<Candidate>& candidates,
+                                   const std::string& solver, double error,
+                                   const std::string& words) {
   for (const Candidate& one : candidates)
     if (one.solver == solver && one.error <= error && (one.hardly_moves || one.not_accepted))
-      return one.failure;
-  return "";
+      return Cell::lacking(one.hardly_moves ? Cell::State::hardly_moves : Cell::State::none, words)
+          .with(one.failure);
+  return {};
 }
 
 bool is_upper_bound(const SceneBench& bench, const std::vector<Candidate>& candidates,
@@ -93,11 +95,8 @@ struct Timed {
   /// These words of a solver no setting of which reaches the error, and why: "at best 0.12 %".
   Cell not_reached(const std::string& words, const std::string& solver) const {
     if (!has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
-    if (const std::string why = only_uncounted(candidates, solver, kPricedError); !why.empty())
-      return Cell::lacking(
-                 why.starts_with("hardly moves") ? Cell::State::hardly_moves : Cell::State::none,
-                 words)
-          .with(why);
+    if (const auto uncounted = only_uncounted(candidates, solver, kPricedError, words))
+      return *uncounted;
     const Cell cell = Cell::lacking(Cell::State::none, words);
     const auto at = best({.budget = std::numeric_limits<double>::infinity()}, solver);
     if (!at) return cell.with("no case completed");

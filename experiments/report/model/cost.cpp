@@ -61,12 +61,10 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
     for (const std::string& solver : solvers_of(scene.bench)) {
       const auto at = best_for({.error = level}, scene.candidates, solver);
       if (!at) {
-        const std::string why = only_uncounted(scene.candidates, solver, level);
-        const bool to_the_end = scene.bench.searched_to_the_end(solver);
-        row.push_back(Cell::lacking(why.starts_with("hardly moves") ? Cell::State::hardly_moves
-                                                                    : Cell::State::none,
-                                    to_the_end ? "never reached" : "not reached")
-                          .with(why));
+        const std::string words =
+            scene.bench.searched_to_the_end(solver) ? "never reached" : "not reached";
+        row.push_back(only_uncounted(scene.candidates, solver, level, words)
+                          .value_or(Cell::lacking(Cell::State::none, words)));
         continue;
       }
       row.push_back(scene.of(*at, Cell(scene.candidates[*at].cost)));
