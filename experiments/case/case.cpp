@@ -1,5 +1,7 @@
 #include "experiments/case/case.hpp"
 
+#include <cstdlib>
+
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
@@ -19,6 +21,13 @@ std::string brief(std::string text) {
 
 }  // namespace
 
+std::string this_build() {
+  const char* given = std::getenv("TAUT_BUILD");
+  if (given && *given) return given;
+  static const std::string kOwn = "taut-" + program_digest().substr(0, 10);
+  return kOwn;
+}
+
 const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
   std::string address = spec.scene;
   for (const std::string& text : spec.overrides) address += '\n' + text;
@@ -32,7 +41,7 @@ const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
 }
 
 Case CaseMaker::make(const CaseSpec& spec) {
-  Case one{spec, nullptr, {}, {}, {}};
+  Case one{spec, nullptr, {}, {}, {}, {}};
   std::vector<Diagnostic> wrong;
   const auto collect = [&](const auto& read) {
     try {
@@ -57,7 +66,8 @@ Case CaseMaker::make(const CaseSpec& spec) {
   one.key = case_key(*loaded.scene, loaded.digest, one.choice);
   one.id = loaded.scene->name;
   for (const std::string& text : spec.overrides) one.id += ' ' + brief(text);
-  one.id += ' ' + one.choice.brief();
+  one.id += ' ' + one.choice.called();
+  one.build = one.choice.entry->build.empty() ? this_build() : one.choice.entry->build;
   return one;
 }
 

@@ -85,6 +85,10 @@ struct StudyScene {
 /// Throws InputError if what follows the colon is no list of key=value, each key once.
 StudyScene parse_scene(const std::string& text);
 
+/// The study with its external programs called a build of this name: their results are addressed by
+/// it, in place of what is known of their files. Throws InputError as parse_solver() does.
+Study of_build(Study, const std::string& build);
+
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.
 std::vector<Case> cases_of(const Study&);

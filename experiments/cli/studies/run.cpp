@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <iterator>
 #include <map>
 
@@ -7,6 +8,7 @@
 #include "experiments/command_line/page.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
+#include "experiments/results/builds.hpp"
 #include "experiments/steps/one_step.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/main_job.hpp"
@@ -23,7 +25,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> studies, values, steps;
-  std::string preset, shard, only, out;
+  std::string preset, shard, only, out, build;
   int jobs = 1;
   Limits limits;
   bool no_report = false, json = false, verbose = false;
@@ -36,6 +38,7 @@ std::string command_line(const Options& options) {
   if (!options.shard.empty()) text += " --shard " + options.shard;
   if (!options.only.empty()) text += " --only " + options.only;
   for (const std::string& step : options.steps) text += " --dt " + step;
+  if (!options.build.empty()) text += " --build-id " + shell_word(options.build);
   return text;
 }
 
@@ -55,7 +58,9 @@ Study at_time_steps(Study study, const std::vector<std::string>& steps) {
 std::vector<Study> load_studies(const Options& options) {
   std::vector<Study> studies;
   read_all(options.studies, [&](const std::string& name) {
-    studies.push_back(at_time_steps(load_study_to_plot(name, options.preset), options.steps));
+    Study study = at_time_steps(load_study_to_plot(name, options.preset), options.steps);
+    if (!options.build.empty()) study = of_build(study, build_named(options.build).id);
+    studies.push_back(std::move(study));
   });
   return studies;
 }
@@ -229,6 +234,10 @@ int run(Options options) {
     if (options.preset.empty()) options.preset = job.preset;
   }
   const Shard shard = Shard::parse(options.shard);
+  if (!options.build.empty()) {
+    build_named(options.build);
+    setenv("TAUT_BUILD", options.build.c_str(), 1);  // this_build()
+  }
   const std::vector<Study> studies = load_studies(options);
   const std::vector<StudyCases> cases = all_cases(studies);
   if (std::ranges::all_of(cases, [](const StudyCases& one) { return one.cases.empty(); })) {
@@ -281,6 +290,11 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--only", options.only, "failed: run stored failures again, nothing else")
       ->check(CLI::IsMember({"failed"}));
   add_results(app, options.out);
+  app.add_option(
+      "--build-id", options.build,
+      "Which build this is of taut and of the external programs, for taut history: ID or "
+      "ID@TIME, as 1.2.0@2026-05-04; programs' results are addressed by it in place of "
+      "their files");
   add_limits(app, options.limits);
   app.add_option("--dt", options.steps,
                  "Time step [s] in place of those of the study, as 1/30; repeat it to compare two, "
