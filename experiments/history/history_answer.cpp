@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "core/model/text.hpp"
 #include "experiments/answer/number.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
@@ -182,6 +184,8 @@ std::string short_build(const std::string& id) {
 }
 
 std::vector<SteppedValue> stepped_values(const History& history) {
+  std::set<std::string_view> roles;
+  for (const ValueSpec* value : values_with_role()) roles.insert(value->name);
   std::vector<SteppedValue> all;
   std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> place;
   for (const HistoryStep& step : history.steps) {
@@ -193,8 +197,14 @@ std::vector<SteppedValue> stepped_values(const History& history) {
   for (SteppedValue& one : all) {
     one.sentence = what_happened(history, *one.largest) + where(history, *one.largest);
     if (one.cases > 1)
-      one.sentence += "; with it " + std::to_string(one.cases - 1) + " other cases";
+      one.sentence += "; and of " + std::to_string(one.cases - 1) +
+                      (one.cases == 2 ? " other case" : " other cases");
   }
+  // statuses, costs, values that answer a question, and the others
+  std::ranges::stable_sort(all, {}, [&](const SteppedValue& one) {
+    const HistoryStep& step = *one.largest;
+    return step.value == "status" ? 0 : step.of_time() ? 1 : roles.contains(step.value) ? 2 : 3;
+  });
   return all;
 }
 

@@ -18,7 +18,8 @@ struct SteppedValue {
   std::size_t cases = 0;
   std::string sentence;
 };
-/// The largest first.
+/// Statuses, costs, values that answer a question (a role), then the others; of each the largest
+/// first.
 std::vector<SteppedValue> stepped_values(const History&);
 
 /// Sentences, and tables of steps, of builds, of gaps and, of `value`, of rows and of all that was

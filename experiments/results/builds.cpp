@@ -22,7 +22,7 @@ std::string with_separators(const std::string& stamp) {
 }  // namespace
 
 Build build_named(const std::string& text) {
-  static const std::regex kTime(
+  static const std::regex kTimeOfBuild(
       "[0-9]{4}-[01][0-9]-[0-3][0-9](T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z)?");
   constexpr std::size_t kLongest = 150;
   const std::size_t at = text.find('@');
@@ -34,7 +34,7 @@ Build build_named(const std::string& text) {
                      "comma or '@'");
   if (at == std::string::npos) return build;
   build.made = text.substr(at + 1);
-  if (!std::regex_match(build.made, kTime))
+  if (!std::regex_match(build.made, kTimeOfBuild))
     throw InputError("build '" + text +
                      "': expected a time after '@' as 2026-05-04 or 2026-05-04T10:11:12Z");
   return build;
@@ -67,6 +67,29 @@ std::vector<Build> builds_of(const Store& store, const std::string& study) {
   while (row.next())
     all.push_back(
         {row.text(0), row.text(1), row.integer(2), row.text(3), row.text(4), row.text(5)});
+  return all;
+}
+
+bool has_all_results(const Store& store, const std::string& study, const std::string& build) {
+  Database* database = store.reading();
+  if (!database) return false;
+  Database::Rows row = database->rows(
+      "SELECT count(*), count(cases.key) FROM ran LEFT JOIN cases USING (key) WHERE study = ? AND "
+      "build = ?",
+      study, build);
+  row.next();
+  return row.integer(0) > 0 && row.integer(0) == row.integer(1);
+}
+
+std::vector<std::pair<std::string, std::string>> ran_by(const Store& store,
+                                                        const std::string& study,
+                                                        const std::string& build) {
+  std::vector<std::pair<std::string, std::string>> all;
+  Database* database = store.reading();
+  if (!database) return all;
+  Database::Rows row = database->rows(
+      "SELECT id, key FROM ran WHERE study = ? AND build = ? ORDER BY id", study, build);
+  while (row.next()) all.emplace_back(row.text(0), row.text(1));
   return all;
 }
 

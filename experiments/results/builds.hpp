@@ -34,6 +34,12 @@ void note_ran(Store&, const std::string& study, const Build&, const std::string&
 /// Those of a study, in their order.
 std::vector<Build> builds_of(const Store&, const std::string& study);
 
+/// Whether a build ran cases of a study, and each of them is stored.
+bool has_all_results(const Store&, const std::string& study, const std::string& build);
+/// Names and addresses of the cases of a study that a build ran.
+std::vector<std::pair<std::string, std::string>> ran_by(const Store&, const std::string& study,
+                                                        const std::string& build);
+
 /// How a step of one build compares with that of another in cost; timed in turns.
 struct BuildRatio {
   std::string id;                                         ///< of the case

@@ -29,7 +29,7 @@ experiments/timing       | (core/(model|reference)|experiments/(answer|system|ca
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
-experiments/history      | (core/(model|io)|experiments/(answer|system|case|results|study|timing|baseline|history))/
+experiments/history      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|baseline|history))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
 experiments/advise       | (core/model|experiments/(system|case|results|timing|advise))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
