@@ -22,8 +22,8 @@ std::string brief(std::string text) {
 }  // namespace
 
 std::string this_build() {
-  const char* given = std::getenv("TAUT_BUILD");
-  if (given && *given) return given;
+  for (const char* name : {"TAUT_BUILD_ID", "TAUT_COMMIT"})
+    if (const char* given = std::getenv(name); given && *given) return given;
   static const std::string kOwn = "taut-" + program_digest().substr(0, 10);
   return kOwn;
 }

@@ -22,8 +22,9 @@ struct Case {
   std::vector<std::string> remarks = {};  ///< what was skipped of the scene's files
 };
 
-/// Which build of taut this is: what $TAUT_BUILD says, as "ID" or "ID@TIME" (`./taut` says the
-/// commit where nothing is changed), else "taut-" and ten digits of program_digest().
+/// Which build of taut this is: what $TAUT_BUILD_ID says, as "ID" or "ID@TIME", else $TAUT_COMMIT
+/// (`./taut` says the commit where nothing is changed), else "taut-" and ten digits of
+/// program_digest().
 std::string this_build();
 
 /// Makes cases; a scene that many of them share is read once.

@@ -36,9 +36,9 @@ void read_rows(Database& database, History& history) {
   for (std::size_t i = 0; i < history.builds.size(); ++i) place[history.builds[i].id] = i;
   std::map<std::string, std::shared_ptr<const HistoryPoint>> known;  // of one row, by digest
   Database::Rows one = database.rows(
-      "SELECT id, build, ran.key, case_id, result_digest, status, reason, scene, solver FROM "
-      "(SELECT build, cases.*, ran.id AS id, ran.key AS key FROM ran LEFT JOIN cases ON cases.key "
-      "= ran.key WHERE study = ?) AS ran ORDER BY id",
+      "SELECT ran.id, build, ran.key, case_id, result_digest, status, reason, scene, solver FROM "
+      "ran "
+      "LEFT JOIN cases ON cases.key = ran.key WHERE study = ? ORDER BY ran.id",
       history.study);
   while (one.next()) {
     const auto at = place.find(one.text(1));
@@ -79,7 +79,7 @@ void add_value_steps(History& history, const Tolerances& tolerances) {
       if (row.points[was] == row.points[now]) continue;
       const HistoryPoint &a = *row.points[was], &b = *row.points[now];
       if (a.status != b.status)
-        history.steps.push_back({r, was, now, "status", 0, 0, a.status + " -> " + b.status,
+        history.steps.push_back({r, was, now, "status", 0, 0, a.status + " to " + b.status,
                                  std::numeric_limits<double>::infinity()});
       if (!a.completed || !b.completed) continue;
       for (const ComparedValue& one : compare_values(a.values, b.values, tolerances))
@@ -145,8 +145,10 @@ const BuildRatio* cost_step(const std::vector<BuildRatio>& all, const std::strin
 }
 
 std::size_t History::missing(std::size_t build) const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      rows, [&](const HistoryRow& row) { return !row.keys[build].empty() && !row.points[build]; }));
+  return static_cast<std::size_t>(std::ranges::count_if(rows, [&](const HistoryRow& row) {
+    if (!row.keys[build].empty()) return !row.points[build];
+    return build > 0 && build + 1 == builds.size() && !row.keys[build - 1].empty();
+  }));
 }
 
 std::size_t History::shared(std::size_t build) const {

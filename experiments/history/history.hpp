@@ -35,7 +35,7 @@ struct HistoryStep {
   std::size_t before = 0, now = 0;  ///< builds; those between them have no result of the case
   std::string value;                ///< "stretch.rms", "status", "cpu.per_step", "wall.per_step"
   double was = 0, is = 0;           ///< SI; of a cost 1 and the ratio
-  std::string text;                 ///< of a status: "ok -> exploded (energy)"
+  std::string text;                 ///< of a status: "ok to exploded (energy)"
   double relative = 0;              ///< relative_change()
   bool of_time() const { return value.ends_with(".per_step"); }
 };
@@ -49,7 +49,8 @@ struct History {
   std::size_t compared = 0;        ///< pairs of neighbouring results, costs included
 
   bool is_gap(std::size_t build) const { return !builds[build].gap.empty(); }
-  /// Cases that the build planned and has no result of.
+  /// Cases that the build planned and has no result of; of the last one also those that the one
+  /// before planned and it did not.
   std::size_t missing(std::size_t build) const;
   /// How many cases of a build have the address that the build before has for them.
   std::size_t shared(std::size_t build) const;

@@ -122,6 +122,10 @@ class Walker {
   std::string ran_in(Slot& s, const Build& commit) {
     if (!of_solver()) return ran_by_itself(s, commit);
     try {
+      for (const std::string& solver : study_.solvers)
+        if (const std::string why = silent(solver_in(solver, s.checkout->folder(), commit.id));
+            !why.empty())
+          return why;
       const CampaignProgress campaign =
           asked_.run({{study_.name, cases_in(s, commit)}}, store_, "taut history " + study_.name,
                      {.jobs = asked_.jobs, .limits = asked_.case_limits});
@@ -134,6 +138,12 @@ class Walker {
     }
     return s.checkout->changed();
   }
+  /// Why a program does not introduce itself, so that nobody knows which cases it would have.
+  static std::string silent(const std::string& solver) {
+    admit_solver(solver);
+    const std::string_view says = parse_solver(solver).entry->summary;
+    return says.starts_with("does not answer") ? "its solver " + std::string(says) : "";
+  }
   /// A reason of the store, not of the commit.
   bool full_disk(const InputError& error) const {
     return std::string_view(error.what()).find(store_.file().string()) != std::string_view::npos;
@@ -141,13 +151,13 @@ class Walker {
 
   /// A commit of taut: its own program runs the study into the same results folder.
   std::string ran_by_itself(Slot& s, const Build& commit) {
-    std::vector<std::string> words{"env",        "-u",
-                                   "TAUT_DATA",  "-u",
-                                   "TAUT_BUILD", s.checkout->folder() / asked_.taut,
-                                   "run",        asked_.study,
-                                   "--out",      fs::absolute(store_.root()),
-                                   "--build-id", commit.id + "@" + commit.made,
-                                   "-j",         std::to_string(asked_.jobs)};
+    std::vector<std::string> words{"env",         "-u",
+                                   "TAUT_DATA",   "-u",
+                                   "TAUT_COMMIT", s.checkout->folder() / asked_.taut,
+                                   "run",         asked_.study,
+                                   "--out",       fs::absolute(store_.root()),
+                                   "--build-id",  commit.id + "@" + commit.made,
+                                   "-j",          std::to_string(asked_.jobs)};
     if (!asked_.preset.empty()) words.insert(words.end(), {"--preset", asked_.preset});
     const Scratch scratch;
     Process process(words, {.errors_file = scratch.path() / "errors", .folder = {}, .limits = {}});

@@ -1,6 +1,7 @@
 #include "experiments/results/builds.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <regex>
 
 #include "core/model/input_error.hpp"
@@ -38,6 +39,11 @@ Build build_named(const std::string& text) {
     throw InputError("build '" + text +
                      "': expected a time after '@' as 2026-05-04 or 2026-05-04T10:11:12Z");
   return build;
+}
+
+Build given_build() {
+  const char* given = std::getenv("TAUT_BUILD_ID");
+  return given && *given ? build_named(given) : Build{};
 }
 
 void note_build(Store& store, const std::string& study, const Build& build) {

@@ -25,6 +25,10 @@ struct Build {
 /// is a date with or without a time of day (UTC).
 Build build_named(const std::string& text);
 
+/// What $TAUT_BUILD_ID says (`taut run --build-id`) of the programs that run studies: which build
+/// they are; no id: nothing. Throws InputError.
+Build given_build();
+
 /// Notes a build of a study, in place of what was known of it.
 void note_build(Store&, const std::string& study, const Build&);
 /// Notes that a build has a case of a study, under this name and address; a build that is not known

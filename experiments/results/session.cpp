@@ -63,7 +63,9 @@ void Store::begin_session(const std::string& command, const std::vector<StudyCas
   const auto build_of = [&](const Case& one) -> const Build& {
     const std::string text = one.build.empty() ? this_build() : one.build;
     const auto at = builds.find(text);
-    return at != builds.end() ? at->second : builds.emplace(text, build_named(text)).first->second;
+    if (at != builds.end()) return at->second;
+    const Build named = build_named(text), given = given_build();
+    return builds.emplace(text, given.id == named.id ? given : named).first->second;
   };
   database.transaction([&] {
     std::size_t cases = 0;

@@ -126,6 +126,7 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
 }
 
 Study of_build(Study study, const std::string& build) {
+  if (build.empty()) return study;
   for (std::string& solver : study.solvers) {
     admit_solver(solver);
     const SolverChoice choice = parse_solver(solver);

@@ -9,6 +9,7 @@
 #include "core/io/document.hpp"
 #include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
+#include "experiments/results/builds.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -534,7 +535,7 @@ Study load_study(const std::string& name_or_path, const std::string& preset) {
     throw InputError({{study.file, 0, 0,
                        "study '" + study.name + "' has no preset '" + preset + "'" +
                            suggestion(preset, study.presets)}});
-  return study;
+  return of_build(std::move(study), given_build().id);
 }
 
 }  // namespace taut

@@ -73,8 +73,9 @@ std::vector<StudyKey> study_keys();
 /// no line of its own.
 Diagnostic placed(const Study&, const std::string& scene, const Diagnostic& of_scene);
 
-/// Reads a study by name or path; `preset` replaces what it names, "" nothing. Throws InputError
-/// with every diagnostic at once, those of its scenes too, or if the study has no such preset.
+/// Reads a study by name or path, of_build() given_build(); `preset` replaces what it names, ""
+/// nothing. Throws InputError with every diagnostic at once, those of its scenes too, or if the
+/// study has no such preset.
 Study load_study(const std::string& name_or_path, const std::string& preset = "");
 
 /// One of Study::scenes, in its parts.
@@ -85,8 +86,9 @@ struct StudyScene {
 /// Throws InputError if what follows the colon is no list of key=value, each key once.
 StudyScene parse_scene(const std::string& text);
 
-/// The study with its external programs called a build of this name: their results are addressed by
-/// it, in place of what is known of their files. Throws InputError as parse_solver() does.
+/// The study with its external programs called a build of this name ("": as they are): their
+/// results are addressed by it, in place of what is known of their files. Throws InputError as
+/// parse_solver() does.
 Study of_build(Study, const std::string& build);
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is

@@ -58,9 +58,7 @@ Study at_time_steps(Study study, const std::vector<std::string>& steps) {
 std::vector<Study> load_studies(const Options& options) {
   std::vector<Study> studies;
   read_all(options.studies, [&](const std::string& name) {
-    Study study = at_time_steps(load_study_to_plot(name, options.preset), options.steps);
-    if (!options.build.empty()) study = of_build(study, build_named(options.build).id);
-    studies.push_back(std::move(study));
+    studies.push_back(at_time_steps(load_study_to_plot(name, options.preset), options.steps));
   });
   return studies;
 }
@@ -234,10 +232,8 @@ int run(Options options) {
     if (options.preset.empty()) options.preset = job.preset;
   }
   const Shard shard = Shard::parse(options.shard);
-  if (!options.build.empty()) {
-    build_named(options.build);
-    setenv("TAUT_BUILD", options.build.c_str(), 1);  // this_build()
-  }
+  if (!options.build.empty()) setenv("TAUT_BUILD_ID", options.build.c_str(), 1);
+  given_build();  // is one
   const std::vector<Study> studies = load_studies(options);
   const std::vector<StudyCases> cases = all_cases(studies);
   if (std::ranges::all_of(cases, [](const StudyCases& one) { return one.cases.empty(); })) {

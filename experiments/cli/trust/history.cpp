@@ -26,7 +26,7 @@ int exit_code(const History& history) {
 }
 
 void draw(const History& history, const Options& options) {
-  const std::filesystem::path file(options.plot);
+  const std::filesystem::path file = std::filesystem::absolute(options.plot);
   try {
     std::cerr
         << report::plot_history(history, options.metric, file.parent_path(), file.stem()).string()
