@@ -59,14 +59,15 @@ class Walker {
         store_(store),
         repository_(asked.repository),
         line_(repository_.line(asked.range)),
-        study_(load_study(asked.study, asked.preset)) {
-    walked_.study = study_.name;
-    digest_ =
-        sha256(join(std::vector<std::string>{study_.file.string(), asked.preset, asked.build,
-                                             asked.solver, asked.taut, read_text(study_.file)},
-                    "\n"));
-    for (const Build& known : builds_of(store, study_.name)) known_[known.id] = known;
-    if (!asked.solver.empty()) study_.solvers = {asked.solver};
+        file_(find_study(asked.study)),
+        name_(study_name(asked.study)) {
+    walked_.study = name_;
+    digest_ = sha256(join(std::vector<std::string>{file_.string(), asked.preset, asked.build,
+                                                   asked.solver, asked.taut, read_text(file_)},
+                          "\n"));
+    for (const Build& known : builds_of(store, name_)) known_[known.id] = known;
+    if (!of_solver())
+      load_study(asked.study, asked.preset);  // what is wrong with it is said at once
   }
 
   Walked run() {
@@ -108,11 +109,8 @@ class Walker {
   }
 
   std::vector<Case> cases_in(const Slot& s, const Build& commit) const {
-    Study study = study_;
-    for (std::string& solver : study.solvers)
-      solver = solver_in(solver, s.checkout->folder(), commit.id);
-    for (const std::string& solver : study.solvers) admit_solver(solver);
-    std::vector<Case> cases = cases_of(study);
+    std::vector<Case> cases = cases_of(load_study(
+        asked_.study, asked_.preset, {solver_in(asked_.solver, s.checkout->folder(), commit.id)}));
     for (Case& one : cases) one.build = commit.id + "@" + commit.made;
     if (!only_.empty()) std::erase_if(cases, [&](const Case& one) { return one.id != only_; });
     return cases;
@@ -122,20 +120,19 @@ class Walker {
   std::string ran_in(Slot& s, const Build& commit) {
     if (!of_solver()) return ran_by_itself(s, commit);
     try {
-      for (const std::string& solver : study_.solvers)
-        if (const std::string why = silent(solver_in(solver, s.checkout->folder(), commit.id));
-            !why.empty())
-          return why;
+      const std::string why = silent(solver_in(asked_.solver, s.checkout->folder(), commit.id));
+      if (!why.empty()) return why;
       const CampaignProgress campaign =
-          asked_.run({{study_.name, cases_in(s, commit)}}, store_, "taut history " + study_.name,
+          asked_.run({{name_, cases_in(s, commit)}}, store_, "taut history " + name_,
                      {.jobs = asked_.jobs, .limits = asked_.case_limits});
       if (campaign.interrupted) throw Interrupted();
     } catch (const EndedFromOutside&) {
       throw;
     } catch (const InputError& error) {
-      if (full_disk(error)) throw;
+      if (of_all(error)) throw;
       return error.what();
     }
+    any_ran_ = true;
     return s.checkout->changed();
   }
   /// Why a program does not introduce itself, so that nobody knows which cases it would have.
@@ -144,9 +141,12 @@ class Walker {
     const std::string_view says = parse_solver(solver).entry->summary;
     return says.starts_with("does not answer") ? "its solver " + std::string(says) : "";
   }
-  /// A reason of the store, not of the commit.
-  bool full_disk(const InputError& error) const {
-    return std::string_view(error.what()).find(store_.file().string()) != std::string_view::npos;
+  /// A reason that is not the commit's: of the results file, or of a study that no commit could
+  /// run.
+  bool of_all(const InputError& error) const {
+    const std::string said = error.what();
+    return said.find(store_.file().string()) != said.npos ||
+           (!any_ran_ && said.find(file_.string()) != said.npos);
   }
 
   /// A commit of taut: its own program runs the study into the same results folder.
@@ -175,7 +175,7 @@ class Walker {
   bool is_known(const Build& commit) const {
     const auto at = known_.find(commit.id);
     if (at == known_.end() || at->second.asked != digest_) return false;
-    return at->second.gap.empty() ? has_all_results(store_, study_.name, commit.id) : !asked_.again;
+    return at->second.gap.empty() ? has_all_results(store_, name_, commit.id) : !asked_.again;
   }
 
   /// Sees to it that the store has the commit's results; in this folder, if it needs one. With
@@ -188,7 +188,7 @@ class Walker {
       commit.gap = built_in(s, commit);
       if (commit.gap.empty() && !known) commit.gap = ran_in(s, commit);
       commit.asked = only_.empty() ? digest_ : "";
-      note_build(store_, study_.name, commit);
+      note_build(store_, name_, commit);
       known_[commit.id] = commit;
     }
     if (!commit.gap.empty()) asked_.say("gap: " + short_build(commit.id) + ": " + commit.gap);
@@ -213,7 +213,7 @@ class Walker {
       return all;
     }
     const fs::path program = s.checkout->folder() / asked_.taut;
-    for (const auto& [id, key] : ran_by(store_, study_.name, commit.id))
+    for (const auto& [id, key] : ran_by(store_, name_, commit.id))
       if (const auto record = store_.find(key)) add(id, *record, record->spec, program);
     return all;
   }
@@ -230,12 +230,12 @@ class Walker {
     const std::vector<TwoBuilds> found = time_two_builds(cases, asked_.timing);
     if (GracefulStop::requested()) throw Interrupted();
     for (const BuildRatio& one : ratios_of(found, before.id, now.id))
-      note_ratio(store_, study_.name, one);
+      note_ratio(store_, name_, one);
     return found;
   }
 
   bool has_ratio(const Build& before, const Build& now) const {
-    return std::ranges::any_of(taut::ratios_of(store_, study_.name), [&](const BuildRatio& r) {
+    return std::ranges::any_of(taut::ratios_of(store_, name_), [&](const BuildRatio& r) {
       return r.before == before.id && r.now == now.id && r.host == host_name();
     });
   }
@@ -305,7 +305,7 @@ class Walker {
     return nullptr;
   }
   History ends(const Build& other) const {
-    return history_of(store_, study_.name, tolerances_, {line_[0], other});
+    return history_of(store_, name_, tolerances_, {line_[0], other});
   }
 
   /// The case whose value differs most between the ends.
@@ -361,7 +361,10 @@ class Walker {
   Store& store_;
   Repository repository_;
   std::vector<Build> line_;
-  Study study_;
+  std::filesystem::path file_;  ///< of the study
+  std::string name_;            ///< its name
+  bool any_ran_ = false;        ///< a commit has run the study
+
   Tolerances tolerances_;
   std::string digest_;                  ///< of what is asked
   std::map<std::string, Build> known_;  ///< by id

@@ -74,9 +74,12 @@ std::vector<StudyKey> study_keys();
 Diagnostic placed(const Study&, const std::string& scene, const Diagnostic& of_scene);
 
 /// Reads a study by name or path, of_build() given_build(); `preset` replaces what it names, ""
-/// nothing. Throws InputError with every diagnostic at once, those of its scenes too, or if the
-/// study has no such preset.
-Study load_study(const std::string& name_or_path, const std::string& preset = "");
+/// nothing; `solvers` stand in place of its own, which are not looked at. Throws InputError with
+/// every diagnostic at once, those of its scenes too, or if the study has no such preset.
+Study load_study(const std::string& name_or_path, const std::string& preset = "",
+                 const std::vector<std::string>& solvers = {});
+/// Its name, without reading it. Throws InputError: there is no such study.
+std::string study_name(const std::string& name_or_path);
 
 /// One of Study::scenes, in its parts.
 struct StudyScene {

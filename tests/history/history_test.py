@@ -362,10 +362,11 @@ class Builds(Repository):
             store.executemany("insert into numbers values (?, ?, ?)", [(n, m, 1.0 + c) for _, c, n in every for m in names])
         store.close()
         best = 99.0
-        for _ in range(3):
-            start = time.perf_counter()
+        for _ in range(3):  # CPU time: other tests run beside it
+            start = os.times()
             ended = self.taut("history", "./study.toml", "--out", "out")
-            best = min(best, time.perf_counter() - start)
+            end = os.times()
+            best = min(best, end.children_user + end.children_system - start.children_user - start.children_system)
         self.assertIn("1000", ended.out)
         print(f"{builds} builds of {cases} cases with {values} values: {best:.2f} s", file=sys.stderr)
         self.assertLess(best, 2)

@@ -41,7 +41,7 @@ int history(Options options) {
   Walked walked;
   if (!options.junit.empty()) test_writable(options.junit);
   if (options.repository.empty()) {
-    walked.study = load_study(options.study).name;
+    walked.study = study_name(options.study);
   } else {
     const BaselineOptions how = baseline_options();
     options.run = how.run, options.say = how.say;
