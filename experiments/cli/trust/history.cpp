@@ -109,7 +109,7 @@ TAUT_VERB(history) = {
     .group = VerbGroup::trust,
     .summary = "Which build, or which commit, changed what a study measures",
     .example =
-        "taut run iterations --build-id 1.1.0@2026-05-04 && taut history iterations\n"
+        "taut history iterations\n"
         "  taut history ./mine.toml --git . --commits v1.0..HEAD --solver 'python3 mine.py'\n"
         "  taut history ./mine.toml --git . --commits v1.0..HEAD --build make --solver ./mine "
         "--bisect stretch.rms\n"

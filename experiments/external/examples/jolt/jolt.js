@@ -67,11 +67,12 @@ function start(Jolt) {
         shared.mEdgeConstraints.push_back(edge);
         Jolt.destroy(edge);
       }
+      if (scene.colliders.length > 0) shared.mVertexRadius = scene.thickness;  // until 0.36; since 0.37 it is the creation's
       shared.Optimize();
       const creation = new Jolt.SoftBodyCreationSettings(shared, new Jolt.RVec3(0, 0, 0), Jolt.Quat.prototype.sIdentity(), 0);
       Object.assign(creation, {mNumIterations: params.substeps, mUpdatePosition: false, mLinearDamping: 0, mVertexRadius: 0,
         mAllowSleeping: false, mMaxLinearVelocity: 1e6});
-      if (scene.colliders.length > 0) Object.assign(creation, {mVertexRadius: scene.thickness, mFriction: scene.colliders[0].friction});
+      if (scene.colliders.length > 0) creation.mVertexRadius = scene.thickness, creation.mFriction = scene.colliders[0].friction;
       for (const id of live.splice(0)) bodies.RemoveBody(id), bodies.DestroyBody(id);
       this.body = bodies.CreateSoftBody(creation);
       live.push(this.body.GetID());
