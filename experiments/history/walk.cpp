@@ -181,10 +181,11 @@ class Walker {
   /// Sees to it that the store has the commit's results; in this folder, if it needs one. With
   /// `stands` it is built there even if they are known. Whether it has any.
   bool ensure(Build& commit, std::size_t where, bool stands = false) {
-    const bool known = only_.empty() && is_known(commit);
+    const bool known = is_known(commit);
     if (known) commit.gap = known_.at(commit.id).gap;
     if (!known || (stands && commit.gap.empty())) {
       Slot& s = slot(where);
+      if (!known) note_build(store_, name_, commit);  // its time and place, if this is interrupted
       commit.gap = built_in(s, commit);
       if (commit.gap.empty() && !known) commit.gap = ran_in(s, commit);
       commit.asked = only_.empty() ? digest_ : "";

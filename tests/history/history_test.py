@@ -245,6 +245,21 @@ class BadInput(Repository):
         self.assertEqual((self.folder / "mine").read_text(), "not yet committed\n")
         self.assertEqual(git(self.folder, "log", "--format=%s"), "of the user")
 
+    def test_a_disk_that_is_nearly_full_is_said_before_and_while_it_builds(self):
+        self.repository({}, commits=2)
+        place = self.folder / "out"
+        place.mkdir()
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=230m", "tmpfs", place], capture_output=True).returncode != 0:
+            self.skipTest("only root mounts a small disk")
+        try:
+            for fills in ("head -c 100000000 /dev/zero >big; sleep 100", "true"):
+                ended = self.history("--build", fills, commits="HEAD~1..HEAD", expect=2)
+                self.assertRegex(ended.err, r"MB are left on this disk; a build needs 200")
+            next(place.glob("checkouts/*/big")).unlink()
+            self.history(commits="HEAD~1..HEAD")
+        finally:
+            subprocess.run(["umount", place], check=True)
+
     def test_hooks_of_the_repository_are_not_started(self):
         self.repository({}, commits=2)
         for name in ("post-checkout", "reference-transaction", "post-index-change"):

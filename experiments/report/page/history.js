@@ -7,7 +7,7 @@ function sparkline({values, steps = []}, title) {
   let [low, high] = d3.extent(known);
   if (low === high) [low, high] = [low - 1, high + 1];
   const x = d3.scaleLinear([0, Math.max(1, values.length - 1)], [pad, width - pad]), y = d3.scaleLinear([low, high], [height - pad, pad]);
-  const line = d3.line((_, i) => x(i), y).defined((v) => v !== null);
+  const line = d3.line().x((_, i) => x(i)).y((v) => y(v)).defined((v) => v !== null);
   const svg = d3.create('svg').attr('class', 'sparkline').attr('viewBox', `0 0 ${width} ${height}`).attr('width', width).attr('height', height)
       .attr('role', 'img').attr('aria-label', title);
   svg.append('path').attr('d', line(values)).attr('fill', 'none').attr('stroke', 'currentColor');
@@ -15,6 +15,8 @@ function sparkline({values, steps = []}, title) {
     svg.append('circle').attr('cx', x(at)).attr('cy', values[at] === null ? height / 2 : y(values[at])).attr('r', 3.5).attr('class', 'stepped');
   return svg.node();
 }
+
+const shownSentences = 5;
 
 /** Both builds of a step: how the case ended, and each value that changed. */
 function stepDetails(step) {
@@ -34,7 +36,8 @@ function historyStudy({study, metric: name, builds, rows, sentences, earlier}) {
   return el('div', {className: 'card', id: `history-${study}`}, el('h3', {}, study),
     note(`${count(builds.length, 'build')} from ${builds[0].made.slice(0, 10)} to ${builds.at(-1).made.slice(0, 10)}` +
          (earlier ? `, ${earlier} earlier ones are in the results file` : '') + (gaps.length ? `, ${count(gaps.length, 'gap')}` : '') + '.'),
-    sentences?.length ? el('ul', {}, sentences.map((text) => item(text))) : el('p', {}, 'No value stepped.'),
+    sentences?.length ? el('ul', {}, sentences.slice(0, shownSentences).map((text) => item(text))) : el('p', {}, 'No value stepped.'),
+    sentences?.length > shownSentences ? el('details', {}, el('summary', {}, 'What else stepped'), el('ul', {}, sentences.slice(shownSentences).map((text) => item(text)))) : null,
     tableOf(`${quantity.title} from build to build`, ['case', titled(quantity), 'first', 'last', 'stepped at'], lines),
     gaps.length ? folded('Builds without results', el('ul', {}, gaps.map((b) => item(el('code', {}, b.id), `: ${b.gap}`)))) : null);
 }

@@ -3,7 +3,8 @@
 # Usage: releases.sh FOLDER [OPTION OF taut history ...]
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-releases='0.28.0 2024-10-21
+releases='0.6.0 2023-10-08
+0.28.0 2024-10-21
 0.29.0 2024-11-03
 0.30.0 2024-11-27
 0.31.0 2024-12-30
