@@ -25,7 +25,7 @@ experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|c
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/(study|results)/[a-z_]+.hpp
-experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|results|study|timing))/
+experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|case|results|study|timing))/
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
@@ -36,8 +36,8 @@ experiments/truths       | (core/(model|reference)|experiments/(answer|system|me
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
-experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(picture|film)|report))/
-experiments/report       | (core/model|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|history|truths|report))/
+experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(image|picture|film)|report))/
+experiments/report       | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|history|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|steps|report/chart))/|experiments/report/input
 experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|history|report/(chart|plot)))/
