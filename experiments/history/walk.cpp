@@ -82,10 +82,17 @@ class Walker {
  private:
   bool of_solver() const { return !asked_.solver.empty(); }
   bool of_cost() const { return asked_.bisect.ends_with(".per_step"); }
+  bool timed() const { return asked_.speed || of_cost(); }
+  fs::path kept_program(const Build& commit) const {
+    return store_.root() / "builds" / commit.id / "taut";
+  }
 
   // ---- one commit
 
+  /// Of a solver that is timed two stand side by side; of taut a copy of the program is enough.
   Slot& slot(std::size_t n) {
+    if (!of_solver()) n = 0;
+
     if (!slots_[n].checkout)
       slots_[n].checkout = std::make_unique<Checkout>(
           repository_,
@@ -104,8 +111,11 @@ class Walker {
     if (GracefulStop::requested()) throw Interrupted();
     if (why.empty() && !of_solver() && !fs::exists(s.checkout->folder() / asked_.taut))
       why = "its build leaves no " + asked_.taut;
-    if (why.empty()) s.commit = commit.id;
-    return why;
+    if (!why.empty()) return why;
+    if (!of_solver() && timed())
+      keep_build(store_.root(), commit.id, s.checkout->folder() / asked_.taut);
+    s.commit = commit.id;
+    return {};
   }
 
   std::vector<Case> cases_in(const Slot& s, const Build& commit) const {
@@ -183,6 +193,7 @@ class Walker {
   bool ensure(Build& commit, std::size_t where, bool stands = false) {
     const bool known = is_known(commit);
     if (known) commit.gap = known_.at(commit.id).gap;
+    if (!of_solver() && fs::exists(kept_program(commit))) stands = false;
     if (!known || (stands && commit.gap.empty())) {
       Slot& s = slot(where);
       if (!known) note_build(store_, name_, commit);  // its time and place, if this is interrupted
@@ -213,7 +224,7 @@ class Walker {
         if (const auto record = store_.find(one)) add(one.id, *record, one.spec, {});
       return all;
     }
-    const fs::path program = s.checkout->folder() / asked_.taut;
+    const fs::path program = kept_program(commit);
     for (const auto& [id, key] : ran_by(store_, name_, commit.id))
       if (const auto record = store_.find(key)) add(id, *record, record->spec, program);
     return all;
@@ -250,7 +261,7 @@ class Walker {
       const bool paired = asked_.speed && last && !has_ratio(*last, commit);
       if (!ensure(commit, asked_.speed ? 1 - where : 0, paired)) continue;
       if (paired) {
-        if (slot(where).commit != last->id) built_in(slot(where), *last);
+        if (of_solver()) built_in(slot(where), *last);
         time(where, *last, 1 - where, commit);
       }
       if (asked_.speed) where = 1 - where;

@@ -79,11 +79,11 @@ std::vector<TwoBuilds> time_two_builds(const std::vector<CaseOfTwo>& cases,
   return all;
 }
 
-fs::path keep_build(const fs::path& results, const std::string& id) {
+fs::path keep_build(const fs::path& results, const std::string& id, const fs::path& taut) {
   const fs::path folder = results / "builds" / slug(build_named(id).id);
   make_folder(folder);
   for (const char* name : {"taut", "taut-f32"}) {
-    const fs::path program = sibling_program(name);
+    const fs::path program = taut.empty() ? sibling_program(name) : taut.parent_path() / name;
     std::error_code error;
     if (!is_program(program)) continue;
     fs::copy_file(program, folder / (std::string(name) + ".new"),

@@ -35,9 +35,11 @@ struct TwoBuilds {
 /// of many cases some look different by chance.
 std::vector<TwoBuilds> time_two_builds(const std::vector<CaseOfTwo>&, const TimingOptions&);
 
-/// Keeps this program, with that of Bullet in single precision, in <results>/builds/<id>, and gives
-/// that folder. Throws InputError: no such name for a build, or the disk refuses.
-std::filesystem::path keep_build(const std::filesystem::path& results, const std::string& id);
+/// Keeps this program, or `taut`, with that of Bullet in single precision beside it, in
+/// <results>/builds/<id>, and gives that folder. Throws InputError: no such name for a build, or
+/// the disk refuses.
+std::filesystem::path keep_build(const std::filesystem::path& results, const std::string& id,
+                                 const std::filesystem::path& taut = {});
 
 /// Where the programs of another build lie: a folder, or the id of a kept one. Throws InputError
 /// that names what there is.
