@@ -137,9 +137,9 @@ const BuildRatio* cost_step(const std::vector<BuildRatio>& all, const std::strin
   const BuildRatio* found = nullptr;
   for (const BuildRatio& one : all) {
     if (one.id != id || one.before != before || one.now != now) continue;
-    const Certainty sure =
-        judge({one.low, one.ratio, one.high}, {one.control_low, one.control, one.control_high});
-    if (is_difference(sure) && (!found || one.clock == "cpu")) found = &one;
+    const bool differs = beyond_both({one.low, one.ratio, one.high},
+                                     {one.control_low, one.control, one.control_high});
+    if (differs && (!found || one.clock == "cpu")) found = &one;
   }
   return found;
 }

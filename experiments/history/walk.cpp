@@ -337,8 +337,8 @@ class Walker {
     const std::vector<TwoBuilds> found = time(0, line_[0], 1, last);
     const bool wall = asked_.bisect.starts_with("wall");
     for (const TwoBuilds& one : found) {
-      if (!one.failure.empty() || !is_difference(wall ? judge(one.wall, one.wall_control)
-                                                      : judge(one.cpu, one.cpu_control)))
+      if (!one.failure.empty() ||
+          !(wall ? beyond_both(one.wall, one.wall_control) : beyond_both(one.cpu, one.cpu_control)))
         continue;
       if (!most || std::abs(cost_of(one)) > std::abs(cost_of(*most))) most = &one;
     }

@@ -44,27 +44,25 @@ TwoBuilds time_once(const CaseOfTwo& one, TimingOptions options) {
 
 std::string verdict_of(const TwoBuilds& one) {
   if (!one.failure.empty()) return "not timed: " + one.failure;
-  const Certainty sure = one.certainty();
-  if (!is_difference(sure)) return std::string(to_string(sure));
+  if (!one.differs())
+    return spread(one.cpu_control) > kTolerance ? "no difference that can be told"
+                                                : "no difference";
   const Interval& ratio = one.by_wall() ? one.wall : one.cpu;
-  return std::string(to_string(sure)) + (ratio.mid > 1 ? ": dearer" : ": cheaper") +
+  return std::string(ratio.mid > 1 ? "dearer" : "cheaper") +
          (one.by_wall() ? " in wall time alone" : "");
 }
 
 }  // namespace
 
 bool TwoBuilds::by_wall() const {
-  return failure.empty() && !is_difference(judge(cpu, cpu_control)) &&
-         is_difference(judge(wall, wall_control));
+  return failure.empty() && !beyond_both(cpu, cpu_control) && beyond_both(wall, wall_control);
 }
 
-Certainty TwoBuilds::certainty() const {
-  return by_wall() ? judge(wall, wall_control) : judge(cpu, cpu_control);
+bool TwoBuilds::differs() const {
+  return failure.empty() && (beyond_both(cpu, cpu_control) || beyond_both(wall, wall_control));
 }
 
-bool TwoBuilds::slower() const {
-  return failure.empty() && is_difference(certainty()) && (by_wall() ? wall : cpu).mid > 1;
-}
+bool TwoBuilds::slower() const { return differs() && (by_wall() ? wall : cpu).mid > 1; }
 
 std::vector<TwoBuilds> time_two_builds(const std::vector<CaseOfTwo>& cases,
                                        const TimingOptions& options) {
@@ -72,8 +70,12 @@ std::vector<TwoBuilds> time_two_builds(const std::vector<CaseOfTwo>& cases,
   std::vector<TwoBuilds> all;
   for (const CaseOfTwo& one : cases) {
     all.push_back(time_once(one, options));
-    if (all.back().failure.empty() && is_difference(all.back().certainty()))
-      all.back() = time_once(one, options);
+    if (all.back().differs()) {
+      const bool was_slower = all.back().slower();
+      TwoBuilds again = time_once(one, options);
+      if (again.differs() && again.slower() != was_slower) again.failure = "too noisy to be timed";
+      all.back() = std::move(again);
+    }
     if (options.progress) options.progress(all.size(), cases.size());
   }
   return all;

@@ -24,11 +24,11 @@ struct TwoBuilds {
   std::string failure;  ///< why there are no times; "": there are
   Interval cpu, cpu_control, wall, wall_control;
 
-  /// CPU time, or if that has not changed wall time: of a program that waits.
-  Certainty certainty() const;
+  /// It costs another CPU time, or if not that another wall time (of a program that waits), beyond
+  /// interval and control.
+  bool differs() const;
   bool by_wall() const;
-  /// The build is dearer than it was, beyond interval and control.
-  bool slower() const;
+  bool slower() const;  ///< it differs, and is dearer than it was
 };
 
 /// Case by case. What looks like a difference is timed again, and is one only if it is seen twice:
