@@ -2,6 +2,7 @@
 // say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -263,8 +264,9 @@ TEST(Chosen, CostsOfTwoFoldersAreComparedSolverBySolver) {
   const Json cpu = values["rows"].back();
   EXPECT_EQ((Json{cpu[0], cpu[1], cpu[2], cpu[3]}), (Json{"CPU time of a step", 3.0, 1.0, 1.0}));
   EXPECT_NEAR(cpu[4].get<double>(), -0.5, 1e-12);
-  EXPECT_NE(values["notes"].back()["note"].get<std::string>().find("not timed together"),
-            std::string::npos);
+  EXPECT_TRUE(std::ranges::any_of(values["notes"], [](const Json& note) {
+    return note.value("note", "").find("not timed together") != std::string::npos;
+  }));
 }
 
 // Three builds of which the last stepped; the one in between has no result of the case.
