@@ -63,13 +63,16 @@ py::array points_of(py::handle value, const std::string& what, py::ssize_t dimen
   const py::array array = py::array::ensure(value);
   if (!array) {
     PyErr_Clear();
-    throw InputError(what + ": a " + type_of(value) + " that is no array; must be " + wanted);
+    throw InputError(what + ": a " + type_of(value) + "; must be an array " + wanted);
   }
   const char kind = array.dtype().kind();
+  if (kind == 'O' && !py::isinstance<py::array>(value))
+    throw InputError(what + ": a " + type_of(value) + "; must be an array " + wanted);
   const std::string dtype = py::cast<std::string>(py::str(array.dtype()));
-  if (floats ? dtype != "float32" && dtype != "float64" : kind != 'f' && kind != 'i' && kind != 'u')
+  if (floats ? kind != 'f' || (array.itemsize() != 4 && array.itemsize() != 8)
+             : kind != 'f' && kind != 'i' && kind != 'u')
     throw InputError(what + ": an array of " + dtype + "; must be of float64" +
-                     (floats ? " or float32" : "") + ", [" + wanted + "]");
+                     (floats ? " or float32" : "") + ", " + wanted);
   if (array.ndim() != dimensions || array.shape(dimensions - 1) != 3 ||
       (count && array.shape(dimensions - 2) != *count))
     throw InputError(what + ": an array of shape " + shape_of(array) + "; must be " + wanted);
@@ -152,7 +155,11 @@ struct SourcedScene {
     if (file.empty())
       throw InputError("this scene is a solver's: make other ones of the scene that you gave");
     SourcedScene other = *this;
-    other.overrides.insert(other.overrides.end(), more.begin(), more.end());
+    for (const std::string& one : more) {
+      const std::string key = one.substr(0, one.find('=') + 1);
+      std::erase_if(other.overrides, [&](const std::string& old) { return old.starts_with(key); });
+      other.overrides.push_back(one);
+    }
     const py::gil_scoped_release others_run;
     other.scene = std::make_shared<const Scene>(read(other.overrides));
     return other;
@@ -170,9 +177,10 @@ SourcedScene scene_from(py::handle source, const py::dict& settings, const std::
     scene.text = std::exchange(scene.source, name);
     scene.file = name + ".toml";
   } else {
-    scene.file = find_scene(py::isinstance<py::str>(source) || scene.source.ends_with(".toml")
-                                ? scene.source
-                                : "./" + scene.source);
+    const bool is_path = !py::isinstance<py::str>(source);
+    scene.file =
+        find_scene(is_path && scene.source.find('/') == std::string::npos ? "./" + scene.source
+                                                                          : scene.source);
   }
   return scene.replaced(overrides_of(settings));
 }
@@ -349,14 +357,15 @@ RunResult score(const py::object& scene, const py::object& positions, const py::
                 bool allow_nan) {
   const SourcedScene given = timed_scene(scene, py::none(), py::none());
   const bool is_file = py::isinstance<py::str>(positions) || py::hasattr(positions, "__fspath__");
-  const py::object in_order = py::module_::import("numpy").attr("ascontiguousarray");
-  py::array array, at_rest;
-  if (!is_file)
-    array = in_order(points_of(
-        positions, "positions", 3, given.scene->mesh.size(),
-        "(frames, " + std::to_string(given.scene->mesh.size()) + ", 3) for this scene", true));
-  else
-    array = py::reinterpret_steal<py::array>(py::handle());
+  py::array array = py::reinterpret_steal<py::array>(py::handle());
+  Doubles at_rest;
+  if (!is_file) {
+    const std::string n = std::to_string(given.scene->mesh.size());
+    array = points_of(positions, "positions", 3, given.scene->mesh.size(),
+                      "(frames, " + n + ", 3) for this scene", true);
+    array = array.attr("astype")(array.itemsize() == 4 ? "float32" : "float64",
+                                 py::arg("order") = "C", py::arg("copy") = false);
+  }
   if (!is_file && array.shape(0) < 2)
     throw InputError("positions: " + std::to_string(array.shape(0)) +
                      " frames; a motion has two at least, the start and what follows");
@@ -629,12 +638,23 @@ py::list list_scenes() {
 
 // ---- The module
 
-/// pybind11 keeps its types once for the process.
-void need_main_interpreter() {
-  if (PyInterpreterState_Get() == PyInterpreterState_Main()) return;
-  throw py::import_error(
-      "taut works in the main interpreter of a process, not in a sub-interpreter");
+/// pybind11 keeps its types once for the process, and waits for itself where another interpreter
+/// asks.
+bool in_main_interpreter() {
+  if (PyInterpreterState_Get() == PyInterpreterState_Main()) return true;
+  PyErr_SetString(PyExc_ImportError,
+                  "taut works in the main interpreter of a process, not in a sub-interpreter");
+  return false;
 }
+
+/// Without pybind11, whose exceptions wait for themselves there, too.
+PyMethodDef kPlainFunctions[] = {{"need_main_interpreter",
+                                  [](PyObject*, PyObject*) -> PyObject* {
+                                    if (!in_main_interpreter()) return nullptr;
+                                    Py_RETURN_NONE;
+                                  },
+                                  METH_NOARGS, nullptr},
+                                 {nullptr, nullptr, 0, nullptr}};
 
 PyObject* g_input_error = nullptr;
 
@@ -810,13 +830,10 @@ void define_run(py::module_& m) {
           "What a results file keeps of it, as `taut case --json` prints it: a dict.");
 }
 
-}  // namespace
-
-PYBIND11_MODULE(_taut, m) {
-  need_main_interpreter();
+void define_module(py::module_& m) {
   py::options options;
   options.disable_function_signatures();
-  m.def("need_main_interpreter", need_main_interpreter);
+  PyModule_AddFunctions(m.ptr(), kPlainFunctions);
   m.def("set_data_folder", set_data_folder);
   m.def("register_solver", register_solver);
 
@@ -857,4 +874,20 @@ PYBIND11_MODULE(_taut, m) {
   set_solver_source({.names = python_solver_names, .find = find_python_solver});
 }
 
+}  // namespace
 }  // namespace taut::python
+
+/// PYBIND11_MODULE, which has no place for the first question.
+extern "C" PYBIND11_EXPORT PyObject* PyInit__taut();
+extern "C" PYBIND11_EXPORT PyObject* PyInit__taut() {
+  if (!taut::python::in_main_interpreter()) return nullptr;
+  PYBIND11_CHECK_PYTHON_VERSION
+  PYBIND11_ENSURE_INTERNALS_READY
+  static PyModuleDef definition;
+  auto m = py::module_::create_extension_module("_taut", nullptr, &definition);
+  try {
+    taut::python::define_module(m);
+    return m.ptr();
+  }
+  PYBIND11_CATCH_INIT_EXCEPTIONS
+}

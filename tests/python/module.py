@@ -1,5 +1,6 @@
 """For the tests of the Python module: `import taut` of the build that is named first, and its command line."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -28,6 +29,7 @@ class Case(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         self.folder = pathlib.Path(scratch.name)
+        self.addCleanup(os.chdir, os.getcwd())
 
     def taut(self, *words, expect=0):
         done = subprocess.run([BUILD / "taut", *map(str, words)], cwd=self.folder, text=True, capture_output=True, timeout=250)
@@ -37,7 +39,7 @@ class Case(unittest.TestCase):
     def python(self, text, expect=0, **more):
         """A program of its own that imports taut."""
         done = subprocess.run([sys.executable, "-c", f"import sys\nsys.path.insert(0, {str(BUILD / 'python')!r})\n{text}"],
-                              cwd=self.folder, text=True, capture_output=True, timeout=250, **more)
+                              cwd=self.folder, text=True, capture_output=True, timeout=60, **more)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
 

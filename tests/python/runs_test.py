@@ -8,6 +8,7 @@ import gc
 import json
 import math
 import os
+import pathlib
 import resource
 import signal
 import threading
@@ -32,7 +33,7 @@ class Runs(module.Case):
                 for field in ("digest", "values", "status", "params", "resolved_settings", "projections", "dt", "steps", "vertices", "links"):
                     self.assertEqual(run.record[field], record[field], field)
                 self.assertEqual({k: None if math.isnan(v) else v for k, v in run.values.items()}, record["values"])
-                rows = [[float(row[key]) for key in ("x", "y", "z", "vx", "vy", "vz")] for row in csv.DictReader((self.folder / "end.csv").open())]
+                rows = [[float(row[key]) for key in ("x", "y", "z", "vx", "vy", "vz")] for row in csv.DictReader((self.folder / "end.csv").read_text().splitlines())]
                 self.assertTrue(numpy.array_equal(numpy.hstack([run.x_end, run.v_end]), rows))
 
     def test_the_key_is_the_one_of_the_results_file(self):
@@ -60,7 +61,7 @@ class Runs(module.Case):
         self.assertLess(abs(numpy.sqrt((structural ** 2).mean(axis=1)) - whole.series["stretch.rms"]).max(), 1e-12)
         none = taut.simulate(scene, every=0)
         self.assertEqual((none.x.shape, none.t.shape, none.series), ((0, 64, 3), (0,), {}))
-        self.assertEqual((none.values, none.record["digest"]), (whole.values, whole.record["digest"]))
+        self.assertEqual((none.record["values"], none.record["digest"]), (whole.record["values"], whole.record["digest"]))
 
     def test_a_numerical_failure_is_a_status(self):
         run = taut.simulate(taut.scene(module.SMALL), "mass-spring:structural=1e9,substeps=1")
@@ -70,8 +71,6 @@ class Runs(module.Case):
         self.assertTrue(all(map(math.isnan, run.values.values())))
         self.assertEqual(len(run.t), run.record["status"]["step"], "frames up to the last stable one")
         self.assertTrue(numpy.isfinite(run.x).all())
-        unable = taut.simulate("ball", "mass-spring:contact=no-such") if False else taut.simulate("jam", "bullet-deformable")
-        self.assertIn(unable.status, ("unsupported", "ok", "extreme", "exploded"))
         friction = taut.simulate("incline", "bullet:friction=refuse")
         self.assertEqual((friction.status, friction.x.shape[0], friction.x_end.shape), ("unsupported", 0, (0, 3)))
         self.assertIn("friction", friction.verdict)
@@ -124,7 +123,7 @@ class Runs(module.Case):
         self.assertEqual(taut.simulate(taut.scene(module.SMALL)).status, "ok")
 
     def test_no_memory_grows(self):
-        scene = taut.scene(module.SMALL, {"cloth.grid": [24, 24]})
+        scene = taut.scene(module.SMALL, {"cloth.grid": [12, 12]})
 
         @taut.solver("lazy")
         class Lazy:
@@ -137,7 +136,7 @@ class Runs(module.Case):
         taut.solver("raising")(type("Raising", (Lazy,), {"step": raises}))
 
         def once():
-            run = taut.simulate(scene, "jakobsen:substeps=1")  # 33 frames of 576 vertices: 456 kB
+            run = taut.simulate(scene, "jakobsen:substeps=1")  # 33 frames of 144 vertices: 114 kB
             taut.score(scene, run.x)
             taut.simulate(scene, "lazy", duration="1/64")
             for wrong in ("jakobsen:nothing=1", "raising"):
@@ -146,14 +145,14 @@ class Runs(module.Case):
 
         def resident():
             gc.collect()
-            return int(open("/proc/self/statm").read().split()[1]) * resource.getpagesize()
+            return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
 
         for _ in range(100):
             once()
         before = resident()
         for _ in range(1000):
             once()
-        self.assertLess((resident() - before) / 1000, 2000, "bytes a round; a frame has 13824")
+        self.assertLess((resident() - before) / 1000, 1000, "bytes a round; a frame has 3456")
 
 
 if __name__ == "__main__":

@@ -16,14 +16,13 @@ import os
 import pathlib
 import sqlite3
 
-try:
-    import numpy as _numpy  # what this module's arrays are made of  # noqa: F401
-except ImportError as missing:
-    raise ImportError("taut needs numpy: apt install python3-numpy, or an environment that has it", name="numpy") from missing
-
 from . import _taut
 
 _taut.need_main_interpreter()
+try:
+    import numpy as _numpy  # what the arrays here are made of  # noqa: F401
+except ModuleNotFoundError as missing:
+    raise ImportError("taut needs numpy: apt install python3-numpy, or an environment that has it", name="numpy") from missing
 if (_data := pathlib.Path(__file__).parent / "data").is_dir():  # of an installed package; in a build the source tree's
     _taut.set_data_folder(_data)
 
