@@ -8,16 +8,12 @@ import matplotlib.pyplot as plt
 import taut
 
 MINE = """
-summary = "A sheet on two pins, and a ball below it"
+summary = "A sheet on two pins"
 [cloth]
 grid = [16, 16]
-size = [1.0, 1.0]
+size = [1.0, 0.7]
 mass = 0.2
 pins = ["top-left", "top-right"]
-[[collider]]
-type = "ball"
-center = [0.5, -0.6, 0.1]
-radius = 0.2
 [time]
 dt = "1/60"
 duration = 3.0

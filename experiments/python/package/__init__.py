@@ -67,8 +67,10 @@ def results(folder=None):
 
     Columns: experiments/results/README.md. Raises InputError: there is no results file.
     """
-    import pandas  # its import costs more than all else here
-
+    try:
+        import pandas  # which costs more than all else here
+    except ModuleNotFoundError as missing:
+        raise ImportError("taut.results needs pandas: apt install python3-pandas", name="pandas") from missing
     path = pathlib.Path(folder or pathlib.Path(os.environ.get("TAUT_RESULTS") or "results", "runs"))
     file = path / "results.db" if path.is_dir() else path
     if not file.is_file():
