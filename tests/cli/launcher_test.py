@@ -28,7 +28,7 @@ add_custom_target(taut-f32)
 option(TAUT_PYTHON "" OFF)
 if(TAUT_PYTHON)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
-  add_custom_target(taut_python COMMAND mkdir -p python/taut COMMAND cp ${PROJECT_SOURCE_DIR}/experiments/taut.py python/taut/__init__.py
+  add_custom_target(taut_python COMMAND mkdir -p python/taut COMMAND cp ${PROJECT_SOURCE_DIR}/experiments/taut_module python/taut/__init__.py
                     COMMAND touch python/taut/_taut.toy.so)
 endif()
 if(TAUT_TESTS)
@@ -88,7 +88,7 @@ class Launcher(unittest.TestCase):
             shutil.copy2(REPOSITORY / name, self.clone)
         (self.clone / "CMakeLists.txt").write_text(CMAKE)
         (self.clone / "core/main.cpp").write_text(MAIN)
-        (self.clone / "experiments/taut.py").write_text("version = 1\n")
+        (self.clone / "experiments/taut_module").write_text("version = 1\n")
         self.tools = self.folder / "tools"
         self.tools.mkdir()
         for name in ["cmake", "ninja", "ctest"]:
@@ -236,7 +236,7 @@ class Launcher(unittest.TestCase):
         self.started()
         again = self.call("python", "-c", "import taut; print(taut.version)", cwd=self.folder)
         self.assertEqual((again.out, again.err, self.started()), ("1\n", "", []))
-        (self.clone / "experiments/taut.py").write_text("version = 2\n")
+        (self.clone / "experiments/taut_module").write_text("version = 2\n")
         self.assertIn(f"version 2 [] {self.clone}/results\n", self.call("python", str(script), cwd=self.folder).out)
         self.call("--no-install", "python", "-c", "pass", MISSING="python3-matplotlib")
         script.write_text("import matplotlib\n")
