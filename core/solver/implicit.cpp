@@ -310,12 +310,12 @@ class NewtonPass final : public Pass<double> {
     if (contacts_) contacts_->restart();
   }
 
+  Points<double>* target() override { return &y_; }
+
   void begin(Particles<double>& p, double t, double h) override {
-    y_.resize(p.size());
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      y_[i] = p.x[i];
+    y_ = p.x;
+    for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
-    }
     if (contacts_) contacts_->begin(t, h);
     clamped_ = first_ = true;
     ended_at_.clear();
@@ -341,8 +341,8 @@ class NewtonPass final : public Pass<double> {
   }
 
   std::vector<PassCost> cost() const override {
-    const std::size_t bytes = y_.size() * sizeof(Vec3) + springs_.size() * sizeof(Spring) +
-                              bending_.size() * sizeof(BendingElement);
+    const std::size_t bytes =
+        y_.bytes() + springs_.size() * sizeof(Spring) + bending_.size() * sizeof(BendingElement);
     return {{.pass = "spring Hessians", .items = springs_.size(), .bytes = bytes},
             {.pass = hessian_.factored() ? "LDLT" : "conjugate gradients",
              .items = hessian_.factored() ? hessian_.factor_entries() : to_index(hessian_.size()),
@@ -593,7 +593,7 @@ class NewtonPass final : public Pass<double> {
   std::vector<double> contact_stiffness_;  ///< [n] N/m, k; empty: no contact
   bool clamped_ = true, first_ = true;
   double enough_ = 0, enough_at_first_ = 0;  ///< N, of |g| in this substep
-  std::vector<Vec3> y_;                      ///< m, where they would go without links
+  Points<double> y_;                         ///< m, where they would go without links
   std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere
 };
 

@@ -91,13 +91,11 @@ class ProjectivePass final : public Pass<Real> {
   const Layout& layout() const { return system_.layout(); }
 
   void restart() override { system_.restart(); }
+  Points<Real>* target() override { return &system_.target(); }
 
   void begin(Particles<Real>& p, double t, double h) override {
     anderson_.begin();
-    if (anderson_.on()) {
-      y_ = positions(p);
-      energy_ = std::numeric_limits<double>::infinity();
-    }
+    energy_ = std::numeric_limits<double>::infinity();
     system_.begin(p, t, h);
   }
 
@@ -133,7 +131,8 @@ class ProjectivePass final : public Pass<Real> {
     double now = bending_energy(system_.bending(), x);
     for (std::size_t i = 0; i < x.size(); ++i)
       if (p.w[i] > 0)
-        now += (x[i] - y_[i]).squaredNorm() / (2 * h * h * static_cast<double>(p.w[i]));
+        now += (x[i] - system_.target()[i].template cast<double>()).squaredNorm() /
+               (2 * h * h * static_cast<double>(p.w[i]));
     for (const auto& [a, b, rest, k] : system_.springs()) {
       const double c = (x[b] - x[a]).norm() - rest;
       now += k / 2 * c * c;
@@ -151,8 +150,8 @@ class ProjectivePass final : public Pass<Real> {
   GlobalSystem<Real> system_;
   std::vector<SpringSlot<Real>> slots_;
   Anderson anderson_;
-  std::vector<Vec3> y_, last_image_;  ///< m; with Anderson acceleration
-  double energy_ = 0;                 ///< J, of the last iterate
+  std::vector<Vec3> last_image_;  ///< m; with Anderson acceleration
+  double energy_ = 0;             ///< J, of the last iterate
 };
 
 template <class Real>
