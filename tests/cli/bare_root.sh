@@ -11,7 +11,7 @@ build=$(readlink -f "$1")
 if [[ ${2:-} == --whole ]]; then study= tests=()
 else
   study=regression
-  tests=(-R '^(browser|cluster.container|documents|external_test|format|install_test|launcher_test|layers$|pictures_test|VideoTest|Plots)')
+  tests=(-R '^(browser|cluster.container|documents|external_test|format|install_test|launcher_test|layers$|pictures_test|python\.|VideoTest|Plots)')
 fi
 not_here() { echo "bare_root: not run: $1"; exit 77; }
 
