@@ -343,7 +343,8 @@ const SolverEntry kPositions = {
     .resolved_settings =
         [](const Scene& scene, const Params& params) {
           return MotionFile(scene, options_of(params)).settings(scene);
-        }};
+        },
+    .declared_step = implicit_euler_of_a_frame};
 
 const SolverEntry* recorded(const std::string& name, std::string_view params) {
   static std::mutex mutex;
