@@ -30,6 +30,7 @@ experiments/timing       | (core/(model|io|reference)|experiments/(answer|system
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
+experiments/history      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|baseline|history))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
 experiments/advise       | (core/model|experiments/(system|case|results|timing|advise))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
@@ -37,11 +38,11 @@ experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
 experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(image|picture|film)|report))/
-experiments/report       | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|truths|report))/
+experiments/report       | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|history|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|steps|report/chart))/|experiments/report/input
 experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
-experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|truths|report/(chart|answer|model)))/|experiments/report/input
+experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|history|report/(chart|plot)))/
+experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|history|truths|report/(chart|answer|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
@@ -140,6 +141,7 @@ experiments/results/planted.cpp|"experiments/study/study.hpp"
 experiments/study/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/study/cluster/planted.cpp|"experiments/study/frontier/parameter_frontier.hpp"
 experiments/study/frontier/planted.cpp|"experiments/study/cluster/cluster.hpp"
+experiments/history/planted.cpp|"experiments/report/input.hpp"
 experiments/timing/planted.cpp|"core/solver/simd/kernels.hpp"
 experiments/steps/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/timing/bench/planted.cpp|"experiments/results/store.hpp"

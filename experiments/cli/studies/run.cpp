@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <map>
 
 #include "core/model/text.hpp"
@@ -5,6 +6,7 @@
 #include "experiments/command_line/main_job_end.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/plot/plot.hpp"
+#include "experiments/results/builds.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/study_table.hpp"
 #include "experiments/system/distinct.hpp"
@@ -16,7 +18,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> studies, values, steps;
-  std::string preset, shard, only, out;
+  std::string preset, shard, only, out, build;
   int jobs = 1;
   Limits limits;
   bool no_report = false, json = false, verbose = false;
@@ -29,6 +31,7 @@ std::string command_line(const Options& options) {
   if (!options.shard.empty()) text += " --shard " + options.shard;
   if (!options.only.empty()) text += " --only " + options.only;
   for (const std::string& step : options.steps) text += " --dt " + step;
+  if (!options.build.empty()) text += " --build-id " + shell_word(options.build);
   return text;
 }
 
@@ -131,6 +134,8 @@ int run(Options options) {
     if (options.preset.empty()) options.preset = job.preset;
   }
   const Shard shard = Shard::parse(options.shard);
+  if (!options.build.empty()) setenv("TAUT_BUILD_ID", options.build.c_str(), 1);
+  given_build();  // is one
   const std::vector<Study> studies = load_studies(options);
   const std::vector<StudyCases> cases = all_cases(studies);
   if (std::ranges::all_of(cases, [](const StudyCases& one) { return one.cases.empty(); })) {
@@ -188,6 +193,11 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--only", options.only, "failed: run stored failures again, nothing else")
       ->check(CLI::IsMember({"failed"}));
   add_results(app, options.out);
+  app.add_option(
+      "--build-id", options.build,
+      "Which build this is of taut and of the external programs, for taut history: ID or "
+      "ID@TIME, as 1.2.0@2026-05-04; programs' results are addressed by it in place of "
+      "their files");
   add_limits(app, options.limits);
   app.add_option("--dt", options.steps,
                  "Time step [s] in place of those of the study, as 1/30; repeat it to compare two, "
