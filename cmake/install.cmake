@@ -31,8 +31,8 @@ if(TAUT_PYTHON)
                      \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python_package}/data\" SYMBOLIC)" COMPONENT python)
 endif()
 
-# The library: taut::model, taut::io, taut::solver, taut::metrics, taut::case and what they need.
-set(libraries case metrics system io solver model fingerprint)
+# The library: taut::model, taut::io, taut::solver, taut::reference, taut::metrics, taut::case and what they need.
+set(libraries case metrics reference system io solver model fingerprint)
 foreach(library IN LISTS libraries)
   set_target_properties(taut_${library} PROPERTIES EXPORT_NAME ${library})
   target_include_directories(taut_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

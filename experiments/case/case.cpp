@@ -1,5 +1,6 @@
 #include "experiments/case/case.hpp"
 
+#include <cstdlib>
 #include <utility>
 
 #include "core/io/scene_io.hpp"
@@ -21,16 +22,24 @@ std::string brief(std::string text) {
 
 Case completed(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice,
                const std::string& scene_digest) {
-  Case one{spec, std::move(scene), std::move(choice), {}, {}};
+  Case one{spec, std::move(scene), std::move(choice), {}, {}, {}};
   one.spec.solver = one.choice.canonical();
   one.key = case_key(*one.scene, scene_digest, one.choice);
   one.id = one.scene->name;
   for (const std::string& text : spec.overrides) one.id += ' ' + brief(text);
-  one.id += ' ' + one.choice.brief();
+  one.id += ' ' + one.choice.called();
+  one.build = one.choice.entry->build.empty() ? this_build() : one.choice.entry->build;
   return one;
 }
 
 }  // namespace
+
+std::string this_build() {
+  for (const char* name : {"TAUT_BUILD_ID", "TAUT_COMMIT"})
+    if (const char* given = std::getenv(name); given && *given) return given;
+  static const std::string kOwn = "taut-" + program_digest().substr(0, 10);
+  return kOwn;
+}
 
 const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
   std::string address = spec.scene;

@@ -288,7 +288,8 @@ SolverEntry player(std::function<ComputedFrames(const Params&)> open) {
           .resolved_settings =
               [open](const Scene& scene, const Params& params) {
                 return ComputedMotion(scene, open(params)).settings(scene);
-              }};
+              },
+          .declared_step = implicit_euler_of_a_frame};
 }
 
 std::vector<std::string> fitted(const LoadScene& load, std::vector<std::string> overrides,

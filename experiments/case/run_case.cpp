@@ -24,13 +24,23 @@ class SceneMetrics {
   void observe(const Snapshot& moment) {
     for (auto& [entry, metric] : watching_) metric->observe(moment);
   }
-  bool follow_path() const {
-    return std::any_of(watching_.begin(), watching_.end(),
-                       [](const Watching& w) { return w.entry->follows_path; });
+  void declare(const DeclaredStep& step) {
+    for (auto& [entry, metric] : watching_) metric->declare(step);
+  }
+  bool follow_path(int step) const {
+    return std::any_of(watching_.begin(), watching_.end(), [&](const Watching& w) {
+      return w.entry->follows_path && w.metric->follows(step);
+    });
   }
   void observe_within(const Snapshot& moment) {
     for (auto& [entry, metric] : watching_)
-      if (entry->follows_path) metric->observe_within(moment);
+      if (entry->follows_path && metric->follows(moment.step)) metric->observe_within(moment);
+  }
+  /// Which are those of a run that was seen to its end.
+  void add_remarks(ResolvedSettings& settings) const {
+    for (const auto& [entry, metric] : watching_)
+      if (const std::string remark = metric->remark(); !remark.empty())
+        settings.emplace_back(entry->values.front().name, remark);
   }
 
   std::vector<std::string> series_columns() const {
@@ -125,8 +135,10 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   if (options.timed) run.cpu_seconds = 0;
   State state;
   bool stable = true;
-  if (scene_metrics.follow_path())
+  scene_metrics.declare(declared_step(*choice.entry, scene, choice.params));
+  if (options.measure)
     solver->visit_substeps([&](double t) {
+      if (!scene_metrics.follow_path(step)) return;
       solver->store(state);
       scene_metrics.observe_within({step, t, state});
     });
@@ -149,6 +161,7 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   if (stable) detector.finish();
   record.status = detector.status();
   record.values = scene_metrics.values(stable);
+  scene_metrics.add_remarks(record.resolved_settings);
   record.digest = digest(run.last);
 }
 

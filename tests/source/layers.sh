@@ -14,10 +14,10 @@ core/solver/simd         | core/solver/simd/
 core/solver/layout       | core/(model|solver/(simd|layout))/
 core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|thread_pool))
 core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_pool))
-core/reference           | core/(model|reference)/
+core/reference           | core/(model|reference)/|core/solver/panel_factor\.hpp
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
-experiments/metrics      | core/model/(bending|crossings|index|scene|triangle)\.hpp|experiments/metrics/
+experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|triangle)|reference/step_error)\.hpp|experiments/metrics/
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
@@ -26,22 +26,23 @@ experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|c
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/(study|results)/[a-z_]+.hpp
-experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|results|study|timing))/
+experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|case|results|study|timing))/
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
+experiments/history      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|baseline|history))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
 experiments/advise       | (core/model|experiments/(system|case|results|timing|advise))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
-experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(picture|film)|report))/
-experiments/report       | (core/model|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|truths|report))/
+experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(image|picture|film)|report))/
+experiments/report       | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|history|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|steps|report/chart))/|experiments/report/input
 experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
-experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|truths|report/(chart|answer|model)))/|experiments/report/input
+experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|history|report/(chart|plot)))/
+experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|history|truths|report/(chart|answer|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
@@ -140,6 +141,7 @@ experiments/results/planted.cpp|"experiments/study/study.hpp"
 experiments/study/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/study/cluster/planted.cpp|"experiments/study/frontier/parameter_frontier.hpp"
 experiments/study/frontier/planted.cpp|"experiments/study/cluster/cluster.hpp"
+experiments/history/planted.cpp|"experiments/report/input.hpp"
 experiments/timing/planted.cpp|"core/solver/simd/kernels.hpp"
 experiments/steps/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/timing/bench/planted.cpp|"experiments/results/store.hpp"

@@ -3,7 +3,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/motion_file.hpp"
-#include "experiments/render/film/recorded_runs.hpp"
+#include "experiments/render/film/drawing.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -20,6 +20,8 @@ struct Options {
 
 int run(const Options& o) {
   if (o.solvers.size() > 3) throw InputError("--solver: three to draw beside, at most");
+  if (!o.picture.empty() && !o.picture.ends_with(".png"))
+    throw InputError("--picture " + o.picture + ": what is drawn here ends in .png");
   check_solvers(o.solvers);
   const std::string solver = external::solver_text(o.motion);
   admit_solver(solver);
@@ -41,7 +43,9 @@ int run(const Options& o) {
     RunRequest both{
         .scene = o.scene, .overrides = one.spec.overrides, .solvers = {one.spec.solver}};
     both.solvers.insert(both.solvers.end(), o.solvers.begin(), o.solvers.end());
-    draw_end(both, o.picture, [](const std::string& news) { progress() << news << '\n'; });
+    const RunSet set =
+        record_runs(both, [](const std::string& news) { progress() << news << '\n'; });
+    draw(set, {.times = {set.scene.duration()}}, o.picture, Countdown("still"));
     answer.add({"picture"}, o.picture);
   }
   print(answer, o.format);
