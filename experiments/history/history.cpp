@@ -102,12 +102,20 @@ std::size_t build_of(const History& history, const std::string& id) {
   return at == history.builds.end() ? kNone : static_cast<std::size_t>(at - history.builds.begin());
 }
 
-/// Of two builds that were timed in turns.
+/// Whether no build between the two has a result of the case: a bisection times others, too.
+bool are_neighbours(const HistoryRow& row, std::size_t before, std::size_t now) {
+  for (std::size_t i = before + 1; i < now; ++i)
+    if (row.points[i]) return false;
+  return before < now;
+}
+
+/// Of two neighbours that were timed in turns.
 void add_cost_steps(History& history) {
   for (const BuildRatio& one : history.ratios) {
     const std::size_t row = row_of(history, one.id), before = build_of(history, one.before),
                       now = build_of(history, one.now);
     if (row == kNone || before == kNone || now == kNone) continue;
+    if (!are_neighbours(history.rows[row], before, now)) continue;
     ++history.compared;
     if (cost_step(history.ratios, one.id, one.before, one.now) == &one)
       history.steps.push_back(

@@ -58,6 +58,7 @@ class EveryVerb(CommandLine):
     def prepare(self):
         self.study(solvers=["jakobsen", "bullet"], rest="axes.iterations = [1, 4]\n")
         self.study("sizes.toml", rest=SWEPT)
+        self.taut("run", "./study.toml", env=os.environ | {"TAUT_COMMIT": "before"})  # history compares two builds
         self.taut("run", "./study.toml")
         self.taut("baseline", "update", "./study.toml", "--why", "to have one")
         self.taut("cluster", "submit", *(word.replace("N", "0") for word in ASKED["cluster submit"]))
