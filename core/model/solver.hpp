@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/model/declared_step.hpp"
 #include "core/model/params.hpp"
 #include "core/model/scene.hpp"
 
@@ -148,6 +149,7 @@ struct SolverEntry {
   /// Why it would misread this scene, a sentence each; empty: it can.
   std::function<std::vector<std::string>(const Scene&, const Params&)> unsupported;
   std::function<ResolvedSettings(const Scene&, const Params&)> resolved_settings;
+  DeclaredStep (*declared_step)(const Scene&, const Params&) = nullptr;  ///< null: none is
   /// Which program can run this choice: "taut", "taut-f32", or "" for either. Null: either.
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.
@@ -172,6 +174,17 @@ inline constexpr ParamSpec kMaterial = ParamSpec::choice(
 inline bool takes_stiffness(const Scene& scene, const Params& params) {
   return scene.stiffness != kRigid && params.is("material", "scene");
 }
+
+/// The spring constants of the solver's links, the scene's or its own parameters'; infinite: rigid.
+Stiffness stiffness_of(const Scene&, const Params&);
+
+/// SolverEntry::declared_step of a solver that approximates implicit Euler of each substep, with
+/// its links and contact of vertices.
+DeclaredStep implicit_euler(const Scene&, const Params&);
+/// The same of positions with a frame a step, of which nobody knows how they were made.
+DeclaredStep implicit_euler_of_a_frame(const Scene&, const Params&);
+/// What the entry declares.
+DeclaredStep declared_step(const SolverEntry&, const Scene&, const Params&);
 
 /// Constraint projections in one step: sum of items x repeats over the passes that project.
 std::size_t projections_per_step(const Solver&);

@@ -43,6 +43,9 @@ class CaseMaker {
   std::map<std::string, Loaded> scenes_;
 };
 
+/// A case of a scene that was read already: of `spec` come its name and overrides.
+Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene>, SolverChoice);
+
 /// One case on its own.
 inline Case make_case(const CaseSpec& spec) { return CaseMaker().make(spec); }
 

@@ -235,6 +235,7 @@ void Program::introduce(std::string_view given) {
             .unsupported = [this](const Scene& s, const Params& p) { return unsupported(s, p); },
             .resolved_settings = [this](const Scene& s,
                                         const Params& p) { return resolved_settings(s, p); },
+            .declared_step = implicit_euler_of_a_frame,
             .implementation = implementation_,
             .build = build_,
             .place = told_ ? "cmd|folder|build" : ""};

@@ -14,13 +14,14 @@ core/solver/simd         | core/solver/simd/
 core/solver/layout       | core/(model|solver/(simd|layout))/
 core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|thread_pool))
 core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_pool))
-core/reference           | core/(model|reference)/
+core/reference           | core/(model|reference)/|core/solver/panel_factor\.hpp
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
-experiments/metrics      | core/model/(bending|crossings|index|scene|triangle)\.hpp|experiments/metrics/
+experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|triangle)|reference/step_error)\.hpp|experiments/metrics/
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
+experiments/python       | (core/(model|io)|experiments/(metrics|case|python))/|experiments/system/data.hpp
 experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|case|results))/
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
@@ -46,6 +47,7 @@ experiments/report/model | (core/model|experiments/(answer|system|metrics|case|t
 # what is included | files that may include it
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
+pybind11/|Python.h      | ^experiments/python/.*
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
@@ -127,6 +129,9 @@ experiments/metrics/planted.cpp|"core/model/solver.hpp"
 experiments/metrics/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/case/planted.cpp|"bullet_ref/read_back.hpp"
 experiments/external/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/python/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/python/planted.cpp|"experiments/results/store.hpp"
+experiments/case/planted.cpp|<pybind11/numpy.h>
 core/solver/simd/planted.hpp|"core/solver/layout/particles.hpp"
 core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
