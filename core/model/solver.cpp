@@ -147,8 +147,12 @@ std::string with(std::string_view solver, std::string_view more) {
   return text.append(more);
 }
 
-std::string SolverChoice::canonical() const { return with(entry->name, params.canonical()); }
+std::string SolverChoice::canonical() const { return with_params(false, ""); }
 
-std::string SolverChoice::brief() const { return with(entry->name, params.brief()); }
+std::string SolverChoice::brief() const { return with_params(true, ""); }
+
+std::string SolverChoice::with_params(bool only_changed, std::string_view but) const {
+  return with(entry->name, only_changed ? params.brief(but) : params.canonical(but));
+}
 
 }  // namespace taut

@@ -159,6 +159,10 @@ struct SolverEntry {
   LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
   /// Digest of what a solver outside this program is made of; "": it is part of this program.
   std::string_view implementation = "";
+  /// Which state of its sources such a solver is, for people; "": that of this program.
+  std::string_view build = "";
+  /// Parameters that only say where such a solver lies: `implementation` says which it is.
+  std::string_view place = "";
 };
 
 /// A parameter of solvers whose links may comply.
@@ -220,11 +224,16 @@ struct SolverChoice {
   std::string canonical() const;
   /// The same, but only the parameters that differ from their defaults: for people.
   std::string brief() const;
+  /// Both without the parameters of the entry's `place`: what a result is addressed by, and what it
+  /// is called.
+  std::string addressed() const { return with_params(false, entry->place); }
+  std::string called() const { return with_params(true, entry->place); }
   /// Substeps of a step, and sweeps of a substep, by the entry's AccuracyParameters: at least 1.
   int substeps() const { return count(entry->accuracy.substeps); }
   int sweeps() const { return count(entry->accuracy.sweeps); }
 
  private:
+  std::string with_params(bool only_changed, std::string_view but) const;
   int count(std::string_view parameter) const {
     return parameter.empty() ? 1 : std::max(1, params.integer(parameter));
   }

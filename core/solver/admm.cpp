@@ -61,6 +61,8 @@ class AdmmPass final : public Pass<Real> {
     forget();
   }
 
+  Points<Real>* target() override { return &system_.target(); }
+
   void begin(Particles<Real>& p, double t, double h) override {
     system_.begin(p, t, h);
     if (!keep_) forget();

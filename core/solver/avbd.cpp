@@ -45,6 +45,7 @@ class AugmentedPass final : public Pass<Real> {
   }
 
   const Layout& layout() const { return blocks_.groups().layout(); }
+  Points<Real>* target() override { return &blocks_.target(); }
 
   void restart() override {
     blocks_.restart();

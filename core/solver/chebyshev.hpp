@@ -48,6 +48,7 @@ class ChebyshevPass final : public Pass<Real> {
     std::swap(from_, before_);
   }
   void end(Particles<Real>& p, double t, double h) override { pass_->end(p, t, h); }
+  Points<Real>* target() override { return pass_->target(); }
 
   std::vector<PassCost> cost() const override {
     std::vector<PassCost> costs = pass_->cost();

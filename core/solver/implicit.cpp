@@ -341,14 +341,14 @@ class NewtonPass final : public Pass<double> {
     before_.clear();
   }
 
+  Points<double>* target() override { return &y_; }
+
   void begin(Particles<double>& p, double t, double step) override {
-    y_.resize(p.size());
-    for (std::size_t i = 0; i < p.size(); ++i) y_[i] = p.x[i];
+    y_ = p.x;
     if (integrator_ != Integrator::euler) predict(p, step);
     const double h = own_step(step);
-    for (std::size_t i = 0; i < p.size(); ++i) {
+    for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
-    }
     if (contacts_) contacts_->begin(t, h);
     clamped_ = first_ = true;
     ended_at_.clear();
@@ -358,7 +358,7 @@ class NewtonPass final : public Pass<double> {
       if (p.w[i] > 0) p.x.set(i, y_[i]);
     first_ = false;
     touching_.clear();
-    at_first_ = in_norm_of_masses(gradient(y_, h));
+    at_first_ = in_norm_of_masses(gradient(positions(p), h));
   }
 
   void end(Particles<double>& p, double t, double h) override {
@@ -388,8 +388,8 @@ class NewtonPass final : public Pass<double> {
   }
 
   std::vector<PassCost> cost() const override {
-    const std::size_t bytes = y_.size() * sizeof(Vec3) + springs_.size() * sizeof(Spring) +
-                              bending_.size() * sizeof(BendingElement);
+    const std::size_t bytes =
+        y_.bytes() + springs_.size() * sizeof(Spring) + bending_.size() * sizeof(BendingElement);
     return {{.pass = "spring Hessians", .items = springs_.size(), .bytes = bytes},
             {.pass = hessian_.factored() ? "LDLT" : "conjugate gradients",
              .items = hessian_.factored() ? hessian_.factor_entries() : to_index(hessian_.size()),
@@ -418,19 +418,19 @@ class NewtonPass final : public Pass<double> {
     const double own = own_step(h);
     start_.resize(p.size());
     v_start_.resize(p.size());
-    pins_at_end_ = y_;
+    pins_at_end_ = positions(p);
     for (std::size_t i = 0; i < p.size(); ++i) {
       start_[i] = p.previous[i];
       v_start_[i] = (y_[i] - start_[i] - h * h * gravity_) / h;
       if (p.w[i] == 0) {
         if (integrator_ != Integrator::midpoint) continue;
-        y_[i] = (start_[i] + y_[i]) / 2;
-        p.x.set(i, y_[i]);
+        p.x.set(i, (start_[i] + y_[i]) / 2);
+        y_.set(i, p.x[i]);
       } else if (integrator_ == Integrator::midpoint) {
-        y_[i] = start_[i] + own * v_start_[i] + own * own * gravity_;
+        y_.set(i, start_[i] + own * v_start_[i] + own * own * gravity_);
       } else if (!before_.empty()) {
-        y_[i] = (4 * start_[i] - before_[i]) / 3 + own * (4 * v_start_[i] - v_before_[i]) / 3 +
-                own * own * gravity_;
+        y_.set(i, (4 * start_[i] - before_[i]) / 3 + own * (4 * v_start_[i] - v_before_[i]) / 3 +
+                      own * own * gravity_);
       }
     }
   }
@@ -501,7 +501,7 @@ class NewtonPass final : public Pass<double> {
   bool keeps() const { return !tension_.empty(); }
   double in_norm_of_masses(const Vector& g) const {
     double sum = 0;
-    for (std::size_t i = 0; i < y_.size(); ++i)
+    for (std::size_t i = 0; i < stiffness_.size(); ++i)
       if (const int c = hessian_.column(i); c >= 0)
         sum += g.segment<3>(c).squaredNorm() / hessian_.mass(i);
     return std::sqrt(sum);
@@ -752,7 +752,7 @@ class NewtonPass final : public Pass<double> {
   std::vector<double> contact_stiffness_;  ///< [n] N/m, k; empty: no contact
   bool clamped_ = true, first_ = true;
   double enough_ = 0, enough_at_first_ = 0;  ///< N, of |g| in this substep
-  std::vector<Vec3> y_;                      ///< m, where they would go without links
+  Points<double> y_;                         ///< m, where they would go without links
   std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere
 };
 

@@ -37,10 +37,9 @@ Simd simd_of(const Params& params) {
   return widest();
 }
 
-ContactSettings contact_settings(const Params& params, bool solved) {
+ContactSettings contact_settings(const Params& params) {
   return {.response = params.one_of("contact", kResponses),
           .faces = params.is("faces", "on"),
-          .solved = solved,
           .self = params.one_of("self", kSelfCollision),
           .simd = simd_of(params)};
 }
@@ -117,11 +116,12 @@ class Loop final : public Solver {
       if (const std::vector<Tether> tethers = make_tethers(scene); !tethers.empty())
         constraints_.push_back(
             std::make_unique<TetherPass<Real>>(scene, tethers, links.tethers, simd_));
+    Pass<Real>* const solving = links.contacts ? links.pass.get() : nullptr;
     if (links.pass) constraints_.push_back(std::move(links.pass));
     if (scene.bending && !links.bends) constraints_.push_back(make_bending_pass<Real>(scene, w));
     pins_ = Pins(scene, *p_.layout);
-    contact_ =
-        make_contact<Real>(scene, *p_.layout, contact_settings(params, links.contacts), pool_);
+    contact_ = make_contact<Real>(scene, *p_.layout, contact_settings(params), solving, pool_);
+    contact_begins_ = solving != nullptr;
   }
 
   /// The published TimeStep(), substeps times with dt / substeps.
@@ -132,8 +132,11 @@ class Loop final : public Solver {
       if (accelerating_) ready_for(*accelerating_).accelerate(p_, t, h);
       apply(forces_, t, h);  // AccumulateForces
       verlet(t + h);         // Verlet
-      for (const auto* list : {&constraints_, &contact_.before, &contact_.sweep, &contact_.after})
-        for (auto& pass : *list) ready_for(*pass).begin(p_, t, h);
+      if (contact_begins_) begin(contact_.sweep, t, h);
+      begin(constraints_, t, h);
+      begin(contact_.before, t, h);
+      if (!contact_begins_) begin(contact_.sweep, t, h);
+      begin(contact_.after, t, h);
       apply(contact_.before, t, h);
       for (int k = 0; k < iterations_; ++k) {  // SatisfyConstraints
         apply(constraints_, t, h);
@@ -193,6 +196,9 @@ class Loop final : public Solver {
   void apply(PassList& passes, double t, double dt) {
     for (auto& pass : passes) ready_for(*pass).apply(p_, t, dt);
   }
+  void begin(PassList& passes, double t, double h) {
+    for (auto& pass : passes) ready_for(*pass).begin(p_, t, h);
+  }
   Pass<Real>& ready_for(Pass<Real>& pass) {
     if (!pass.queues()) pool_.finish();
     return pass;
@@ -243,6 +249,7 @@ class Loop final : public Solver {
   PassList constraints_;
   Pass<Real>* accelerating_ = nullptr;  ///< of constraints_
   ContactPasses<Real> contact_;
+  bool contact_begins_ = false;  ///< its forces of the last substep are part of y
 };
 
 bool in_float(const Params& params) {

@@ -212,12 +212,12 @@ class ProjectivePass final : public Pass<Real> {
   const Layout& layout() const { return system_.layout(); }
 
   void restart() override { system_.restart(); }
+  Points<Real>* target() override { return &system_.target(); }
 
   void begin(Particles<Real>& p, double t, double h) override {
     anderson_.begin();
     if (descent_.on()) {
       descent_.begin();
-      y_ = positions(p);
       for (std::size_t i = 0; i < p.size(); ++i)
         if (const int row = system_.row(i); row >= 0)
           for (std::size_t c = 0; c < 4; ++c) {
@@ -226,10 +226,7 @@ class ProjectivePass final : public Pass<Real> {
                 stiffness_[at] + 1 / (static_cast<double>(p.w[i]) * h * h);
           }
     }
-    if (anderson_.on()) {
-      y_ = positions(p);
-      energy_ = std::numeric_limits<double>::infinity();
-    }
+    energy_ = std::numeric_limits<double>::infinity();
     system_.begin(p, t, h);
   }
 
@@ -317,7 +314,8 @@ class ProjectivePass final : public Pass<Real> {
     double sum = bending_energy(system_.bending(), x);
     for (std::size_t i = 0; i < x.size(); ++i)
       if (p.w[i] > 0)
-        sum += (x[i] - y_[i]).squaredNorm() / (2 * h * h * static_cast<double>(p.w[i]));
+        sum += (x[i] - system_.target()[i].template cast<double>()).squaredNorm() /
+               (2 * h * h * static_cast<double>(p.w[i]));
     for (const auto& [a, b, rest, k] : system_.springs()) {
       const double c = (x[b] - x[a]).norm() - rest;
       sum += k / 2 * c * c;
@@ -342,10 +340,10 @@ class ProjectivePass final : public Pass<Real> {
   std::vector<SpringSlot<Real>> slots_;
   Anderson anderson_;
   Descent descent_;
-  Vector diagonal_;                   ///< [rows][4] N/m, of the matrix; of method=ncg
-  std::vector<double> stiffness_;     ///< [rows][4] N/m, its part of links and bending
-  std::vector<Vec3> y_, last_image_;  ///< m; with Anderson acceleration or another method
-  double energy_ = 0;                 ///< J, of the last iterate
+  Vector diagonal_;                ///< [rows][4] N/m, of the matrix; of method=ncg
+  std::vector<double> stiffness_;  ///< [rows][4] N/m, its part of links and bending
+  std::vector<Vec3> last_image_;   ///< m; with Anderson acceleration or another method
+  double energy_ = 0;              ///< J, of the last iterate
 };
 
 template <class Real>

@@ -41,6 +41,7 @@ class DescentPass final : public Pass<Real> {
         damping_(s.params.real("damping")) {}
 
   const Layout& layout() const { return blocks_.groups().layout(); }
+  Points<Real>* target() override { return &blocks_.target(); }
 
   void restart() override { blocks_.restart(); }
   void begin(Particles<Real>& p, double t, double h) override { blocks_.begin(p, t, h); }

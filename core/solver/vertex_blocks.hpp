@@ -61,6 +61,7 @@ class VertexBlocks {
 
   const VertexGroups& groups() const { return groups_; }
   std::vector<Slot>& slots() { return slots_; }
+  Points<Real>& target() { return y_; }  ///< Pass::target
 
   void restart() {
     y_ = {};

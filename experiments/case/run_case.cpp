@@ -127,8 +127,12 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
 
   DivergenceDetector detector(scene, record.step_cost, choice.substeps());
   SceneMetrics scene_metrics(scene, options.measure);
-  if (options.series_rows > 0) run.series.columns = scene_metrics.series_columns();
-  const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
+  const bool in_rows = options.every > 0 || options.series_rows > 0;
+  if (in_rows) run.series.columns = scene_metrics.series_columns();
+  const int stride = options.every > 0
+                         ? options.every
+                         : std::max(1, scene.steps / std::max(1, options.series_rows));
+  if (options.timed) run.cpu_seconds = 0;
   State state;
   bool stable = true;
   scene_metrics.declare(declared_step(*choice.entry, scene, choice.params));
@@ -139,13 +143,17 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
       scene_metrics.observe_within({step, t, state});
     });
   for (step = 0; step <= scene.steps; ++step) {
-    if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
+    if (step > 0) {
+      const double before = options.timed ? solver->cpu_seconds() : 0;
+      solver->step((step - 1) * scene.dt, scene.dt);
+      if (options.timed) run.cpu_seconds += solver->cpu_seconds() - before;
+    }
     solver->store(state);
     const Snapshot moment{step, step * scene.dt, state};
     stable = detector.observe(step, moment.t, state);
     if (!stable) break;
     scene_metrics.observe(moment);
-    if (options.series_rows > 0 && (step % stride == 0 || step == scene.steps))
+    if (in_rows && (step % stride == 0 || step == scene.steps))
       run.series.rows.push_back(scene_metrics.series_row(moment));
     if (options.watch) options.watch(moment);
     run.last = state;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/model/triangle.hpp"
+#include "core/solver/contact/contacts.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/layout/particles.hpp"
 
@@ -14,14 +15,25 @@ namespace taut {
 ///     dx_i = w_i b_i s n / sum of w_j b_j^2,
 ///
 /// so that the point moves by s n and momentum changes along n alone.
+///
+/// With a solver that has a target y, a face keeps the force F at its point from sweep to sweep and
+/// from substep to substep, as long as Signorini and Coulomb ask for it, were the corners free
+/// (settle() in contacts.hpp); its changes move y as they move x, so that links feel b F.
 template <class Real>
 class FaceContactPass final : public Pass<Real> {
  public:
-  /// The collider is no plane.
-  FaceContactPass(const Collider& collider, double thickness, std::vector<Triangle> faces)
-      : collider_(collider), thickness_(thickness), faces_(std::move(faces)) {}
+  /// The collider is no plane. solver: null, or that of the links, whose target moves as well.
+  FaceContactPass(const Collider& collider, double thickness, std::vector<Triangle> faces,
+                  Pass<Real>* solver)
+      : collider_(collider),
+        thickness_(thickness),
+        faces_(std::move(faces)),
+        solver_(solver),
+        held_(solver ? faces_.size() : 0) {}
 
-  void begin(Particles<Real>&, double t, double dt) override {
+  void restart() override { held_.assign(held_.size(), {}); }
+
+  void begin(Particles<Real>& p, double t, double dt) override {
     shape_ = shape_at(collider_, t + dt);
     motion_ = rigid_motion(collider_.motion, t, dt);
     if (Ball* ball = std::get_if<Ball>(&shape_)) {
@@ -37,23 +49,33 @@ class FaceContactPass final : public Pass<Real> {
       center_ = capsule->middle();
       reach_ = (capsule->to - capsule->from).norm() / 2 + capsule->radius;
     }
+    for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
+      if (held_[f].holds()) {
+        held_[f].force = turned(held_[f].force);
+        add_force(p.x, p, faces_[f], held_[f].weights, dt * dt * held_[f].force);
+      }
   }
 
-  void apply(Particles<Real>& p, double, double) override {
-    for (const Triangle& face : faces_) {
+  void apply(Particles<Real>& p, double, double dt) override {
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const Triangle& face = faces_[f];
       const Corners t{at(p.x, face[0]), at(p.x, face[1]), at(p.x, face[2])};
       const double side2 = std::max((t[1] - t[0]).squaredNorm(), (t[2] - t[0]).squaredNorm());
+      const bool holds = solver_ && held_[f].holds();
       // every point of the face is within a side of its first corner
-      if ((t[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2)) continue;
-      const Separation out = separation_of(shape_, t);
-      if (out.length > 0) push(p, face, out);
+      if (!holds && (t[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2)) continue;
+      Separation out = separation_of(shape_, t);
+      if (out.length <= 0 && holds) out = outside(t, held_[f].weights);
+      if (solver_ && (out.length > 0 || holds)) hold(p, face, out, dt, held_[f]);
+      if (!solver_ && out.length > 0) push(p, face, out);
     }
   }
 
   std::vector<PassCost> cost() const override {
-    return {{.pass = "faces on " + std::string(type_name(collider_.shape)),
-             .items = faces_.size(),
-             .bytes = sizeof(*this) + faces_.size() * sizeof(Triangle)}};
+    return {
+        {.pass = "faces on " + std::string(type_name(collider_.shape)),
+         .items = faces_.size(),
+         .bytes = sizeof(*this) + faces_.size() * sizeof(Triangle) + held_.size() * sizeof(Held)}};
   }
 
  private:
@@ -62,6 +84,11 @@ class FaceContactPass final : public Pass<Real> {
     double length = 0;           ///< m; <= 0: it is outside
     Vec3 normal = Vec3::Zero();  ///< unit
     TrianglePoint point;
+  };
+  /// What holds a face [N], and at which of its points.
+  struct Held {
+    Vec3 force = Vec3::Zero(), weights = Vec3::Zero();
+    bool holds() const { return !force.isZero(0); }
   };
 
   /// A point that is equally deep below several sides leaves between them, over their common edge
@@ -94,6 +121,60 @@ class FaceContactPass final : public Pass<Real> {
     return {deepest.depth, surface(shape, deepest.at.position).normal, deepest.at};
   }
 
+  /// Of a point of the face that the collider may have left.
+  Separation outside(const Corners& t, const Vec3& weights) const {
+    Separation out;
+    out.point = {weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2], weights};
+    const Surface nearest = surface(shape_, out.point.position);
+    out.length = -nearest.distance;
+    out.normal = nearest.normal;
+    return out;
+  }
+
+  Vec3 turned(const Vec3& force) const {
+    if (!motion_.moves) return force;
+    const Vec3T<double> f = vec3t<double>(force);
+    return {dot(motion_.turn[0], f), dot(motion_.turn[1], f), dot(motion_.turn[2], f)};
+  }
+
+  /// push: force times h^2 [N s^2].
+  static void add_force(Points<Real>& x, const Particles<Real>& p, const Triangle& face,
+                        const Vec3& weights, const Vec3& push) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double share = static_cast<double>(p.w[index(face[c])]) * weights[to_axis(c)];
+      x.add(index(face[c]), (share * push).template cast<Real>());
+    }
+  }
+
+  /// The force for `out`, in the place of the one that has held the face until now.
+  void hold(Particles<Real>& p, const Triangle& face, const Separation& out, double dt,
+            Held& held) const {
+    const Vec3& weights = out.point.weights;
+    double own = 0, of_held = 0;  // 1/kg
+    Vec3 previous = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double w = static_cast<double>(p.w[index(face[c])]), b = weights[to_axis(c)];
+      own += w * b * b;
+      of_held += w * b * held.weights[to_axis(c)];
+      previous += b * at(p.previous, face[c]);
+    }
+    if (own == 0) return;  // all that could move it are pins
+    TouchingVertex contact;
+    contact.normal = out.normal;
+    contact.offset = out.normal.dot(out.point.position) + out.length;
+    contact.from = point(motion_(vec3t<double>(previous)));
+    contact.friction = collider_.friction;
+    Vec3 free = out.point.position - dt * dt * of_held * held.force;
+    ContactForce force;
+    settle(contact, IsotropicCompliance{dt * dt * own}, force, free);
+    const Held now{contact.total(force), weights};
+    for (Points<Real>* points : {&p.x, solver_->target()}) {
+      add_force(*points, p, face, held.weights, -dt * dt * held.force);
+      add_force(*points, p, face, now.weights, dt * dt * now.force);
+    }
+    held = now;
+  }
+
   void push(Particles<Real>& p, const Triangle& face, const Separation& out) const {
     double sum = 0;
     Vec3 previous = Vec3::Zero();
@@ -119,6 +200,7 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   static std::size_t index(int vertex) { return static_cast<std::size_t>(vertex); }
+  static Eigen::Index to_axis(std::size_t corner) { return static_cast<Eigen::Index>(corner); }
   static Vec3 at(const Points<Real>& points, int vertex) {
     return points[index(vertex)].template cast<double>();
   }
@@ -126,7 +208,9 @@ class FaceContactPass final : public Pass<Real> {
   Collider collider_;
   double thickness_;
   std::vector<Triangle> faces_;
-  Shape shape_;  ///< at the end of the step, grown by the thickness
+  Pass<Real>* solver_;      ///< null: none with a target
+  std::vector<Held> held_;  ///< [faces]; empty without one
+  Shape shape_;             ///< at the end of the step, grown by the thickness
   Vec3 center_ = Vec3::Zero();
   double reach_ = 0;  ///< m, from its centre to its farthest point
   RigidMotion<double> motion_;

@@ -191,12 +191,13 @@ class HaltPass final : public Pass<Real> {
 
 template <class Real>
 void add_response(const Collider& collider, const Scene& scene, const Layout& layout,
-                  const ContactSettings& settings, ThreadPool& pool, ContactPasses<Real>& passes) {
+                  const ContactSettings& settings, bool solved, ThreadPool& pool,
+                  ContactPasses<Real>& passes) {
   const auto project = [&](bool continuous) {
     return std::make_unique<CollidePass<Real>>(collider, scene, layout, continuous, settings.simd,
                                                pool);
   };
-  auto& swept = settings.solved ? passes.after : passes.sweep;
+  auto& swept = solved ? passes.after : passes.sweep;
   switch (settings.response) {
     case Response::continuous:
       swept.push_back(project(true));
@@ -225,25 +226,27 @@ void add_response(const Collider& collider, const Scene& scene, const Layout& la
 
 template <class Real>
 ContactPasses<Real> make_contact(const Scene& scene, const Layout& layout,
-                                 const ContactSettings& settings, ThreadPool& pool) {
+                                 const ContactSettings& settings, Pass<Real>* solver,
+                                 ThreadPool& pool) {
   ContactPasses<Real> passes;
   if (scene.self_collision && settings.self == SelfCollisionMethod::grid)
-    passes.sweep.push_back(std::make_unique<SelfCollidePass<Real>>(scene, settings.simd, pool));
+    passes.sweep.push_back(
+        std::make_unique<SelfCollidePass<Real>>(scene, settings.simd, solver, pool));
   if (scene.self_collision && settings.self == SelfCollisionMethod::octree)
     passes.sweep.push_back(std::make_unique<OctreePass<Real>>(scene));
   for (const Collider& collider : scene.colliders)
     if (settings.faces && !std::holds_alternative<Plane>(collider.shape) &&
         !scene.mesh.triangles.empty())
-      passes.sweep.push_back(
-          std::make_unique<FaceContactPass<Real>>(collider, scene.thickness, scene.mesh.triangles));
+      passes.sweep.push_back(std::make_unique<FaceContactPass<Real>>(collider, scene.thickness,
+                                                                     scene.mesh.triangles, solver));
   for (const Collider& collider : scene.colliders)
-    add_response(collider, scene, layout, settings, pool, passes);
+    add_response(collider, scene, layout, settings, solver != nullptr, pool, passes);
   return passes;
 }
 
 template ContactPasses<float> make_contact(const Scene&, const Layout&, const ContactSettings&,
-                                           ThreadPool&);
+                                           Pass<float>*, ThreadPool&);
 template ContactPasses<double> make_contact(const Scene&, const Layout&, const ContactSettings&,
-                                            ThreadPool&);
+                                            Pass<double>*, ThreadPool&);
 
 }  // namespace taut

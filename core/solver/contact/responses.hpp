@@ -23,8 +23,7 @@ enum class SelfCollisionMethod { grid, octree, off };
 
 struct ContactSettings {
   Response response = Response::continuous;
-  bool faces = false;   ///< faces are kept out, too, not only vertices
-  bool solved = false;  ///< what the links' solver does in every sweep (Contacts) ends with once
+  bool faces = false;  ///< faces are kept out, too, not only vertices
   SelfCollisionMethod self = SelfCollisionMethod::grid;
   Simd simd = Simd::scalar;
 };
@@ -38,7 +37,10 @@ struct ContactPasses {
   List after;   ///< once a substep, after the sweeps
 };
 
+/// solver: that of the links if it has Contacts, else null. Vertices are then put out of colliders
+/// once, at the end, and self-collision and faces move its target, too.
 template <class Real>
-ContactPasses<Real> make_contact(const Scene&, const Layout&, const ContactSettings&, ThreadPool&);
+ContactPasses<Real> make_contact(const Scene&, const Layout&, const ContactSettings&,
+                                 Pass<Real>* solver, ThreadPool&);
 
 }  // namespace taut

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <vector>
 
@@ -28,12 +29,22 @@ namespace taut {
 /// the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at all. Those within 3/2
 /// diameters at rest are known once and for all and never searched for: they are nearly all that
 /// there is in a sheet that does not touch itself.
+///
+/// With a solver that has a target y, a pair keeps what parts it, a push c [m] from a to b, from
+/// sweep to sweep and from substep to substep. It is as long as needed, were a and b free:
+///
+///     c' = n max(0, least - n . (d - c)),    d = x_b - x_a,  n = d/|d|
+///
+/// and c' - c moves x and y alike, so that links feel m/h^2 c. At the end c is the multiplier of
+/// Signorini's conditions: nowhere is any link stiffer against a parting than masses alone are.
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
-  SelfCollidePass(const Scene& scene, Simd simd, ThreadPool& pool)
+  /// solver: null, or that of the links, whose target moves as well.
+  SelfCollidePass(const Scene& scene, Simd simd, Pass<Real>* solver, ThreadPool& pool)
       : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
         kernels_(kernels<Real>(simd)),
+        solver_(solver),
         pool_(pool),
         grid_(scene.start.x.size(), pool, simd),
         close_(3 * grid_.parts()),
@@ -43,18 +54,16 @@ class SelfCollidePass final : public Pass<Real> {
     find_close_at_rest(scene);
   }
 
-  void restart() override { searched_ = false; }
+  void restart() override {
+    searched_ = false;
+    forget_pairs();
+    kept_.clear();
+  }
 
-  void begin(Particles<Real>& p, double, double) override {
+  void begin(Particles<Real>& p, double, double h) override {
     if (!placed_) place(p);
-    const auto [step, search] = motion_boxes(p, searched_ ? searched_at_ : p.previous);
-    const auto motion = [&](const auto& box) { return largest_motion(p, p.previous, box); };
-    if (moved_more(p, p.previous, step, diameter_ / 8)) {
-      stride_ == 1 ? search_step<true>(p, motion(step)) : search_step<false>(p, motion(step));
-    } else if (!searched_ || moved_more(p, searched_at_, search, skin_ / 4)) {
-      search_steps(p, motion(step));
-      remember_places(p);
-    }
+    find_pairs(p);
+    if (solver_) stride_ == 1 ? begin_pushes<true>(p, h) : begin_pushes<false>(p, h);
   }
 
   void apply(Particles<Real>& p, double, double) override {
@@ -69,7 +78,8 @@ class SelfCollidePass final : public Pass<Real> {
       for (const Found& found : *lists) {
         pairs += found.pairs.size();
         bytes += sizeof found + found.pairs.capacity() * sizeof(Pair) +
-                 found.crossing.capacity() * sizeof(Crossing);
+                 found.crossing.capacity() * sizeof(Crossing) +
+                 found.pushes.capacity() * sizeof(Vec4T<Real>);
       }
     return {{.pass = "self-collide", .items = pairs, .bytes = bytes}};
   }
@@ -88,6 +98,11 @@ class SelfCollidePass final : public Pass<Real> {
   struct alignas(64) Found {
     std::vector<Pair> pairs;
     std::vector<Crossing> crossing;
+    std::vector<Vec4T<Real>> pushes;  ///< [pairs] m, c; empty without a solver's target
+  };
+  struct Push {
+    std::uint64_t pair;
+    std::array<Real, 3> by;  ///< m, of the one with the larger slot
   };
   /// Of some of the particles, and in which bounds they lie.
   struct alignas(64) Motions {
@@ -95,31 +110,51 @@ class SelfCollidePass final : public Pass<Real> {
     Real largest2;  ///< m^2
   };
 
+  void find_pairs(Particles<Real>& p) {
+    const auto [step, search] = motion_boxes(p, searched_ ? searched_at_ : p.previous);
+    const auto motion = [&](const auto& box) { return largest_motion(p, p.previous, box); };
+    if (moved_more(p, p.previous, step, diameter_ / 8)) {
+      stride_ == 1 ? search_step<true>(p, motion(step)) : search_step<false>(p, motion(step));
+    } else if (!searched_ || moved_more(p, searched_at_, search, skin_ / 4)) {
+      search_steps(p, motion(step));
+      remember_places(p);
+    }
+  }
+
   template <bool packed>
   void sweep(Points<Real>& x) {
-    for_found(&Found::crossing, [this, &x](const Crossing& pair) {
-      const Vec4T<Real> now = between<packed>(x, pair);
-      if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
-        separate<packed>(x, pair, pair.before);
+    for_found(&Found::crossing, [this, &x](const Found& found) {
+      for (const Crossing& pair : found.crossing) {
+        const Vec4T<Real> now = between<packed>(x, pair);
+        if (dot(now, pair.before) < 0 && passed(pair.before, now, pair.least))
+          separate<packed>(x, pair, pair.before);
+      }
     });
-    for_found(&Found::pairs, [this, &x](const Pair& pair) {
-      const Vec4T<Real> now = between<packed>(x, pair);
-      if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
-    });
+    if (solver_)
+      for_found(&Found::pairs, [this, &x, &y = *solver_->target()](Found& found) {
+        for (std::size_t k = 0; k < found.pairs.size(); ++k)
+          push<packed>(x, y, found.pairs[k], found.pushes[k]);
+      });
+    else
+      for_found(&Found::pairs, [this, &x](const Found& found) {
+        for (const Pair& pair : found.pairs) {
+          const Vec4T<Real> now = between<packed>(x, pair);
+          if (squared_norm(now) < pair.least * pair.least) separate<packed>(x, pair, now);
+        }
+      });
     pool_.finish();
   }
 
-  /// Queues f(pair) for all of these, those close at rest first: each list for itself and at the
-  /// same time lists that have no particle in common, so that threads change nothing.
+  /// Queues f(list) for all that have any of these pairs, those close at rest first: each list for
+  /// itself and at the same time lists that have no particle in common, so that threads change
+  /// nothing.
   template <class P, class F>
   void for_found(std::vector<P> Found::*pairs, const F& f) {
     const std::size_t parts = grid_.parts();
-    for (const auto* found : {&close_found_, &others_found_}) {
+    for (auto* found : {&close_found_, &others_found_}) {
       const auto empty = [&](const Found& list) { return (list.*pairs).empty(); };
       if (std::ranges::all_of(*found, empty)) continue;
-      const auto visit = [f, pairs, lists = found->data()](std::size_t n) {
-        for (const P& pair : lists[n].*pairs) f(pair);
-      };
+      const auto visit = [f, lists = found->data()](std::size_t n) { f(lists[n]); };
       pool_.queue(
           parts,
           [visit](std::size_t begin, std::size_t end) {
@@ -160,6 +195,72 @@ class SelfCollidePass final : public Pass<Real> {
     const Real push = (pair.least - gap) / length;
     move<packed>(x, pair.a, -pair.share * push * out);
     move<packed>(x, pair.b, (1 - pair.share) * push * out);
+  }
+
+  template <bool packed>
+  void part(Points<Real>& x, const Pair& pair, const Vec4T<Real>& by) const {
+    move<packed>(x, pair.a, -pair.share * by);
+    move<packed>(x, pair.b, (1 - pair.share) * by);
+  }
+
+  template <bool packed>
+  void push(Points<Real>& x, Points<Real>& y, const Pair& pair, Vec4T<Real>& held) const {
+    const Vec4T<Real> way = between<packed>(x, pair);
+    const Real length = std::sqrt(squared_norm(way)), held2 = squared_norm(held);
+    if (!(length > 0) || (length >= pair.least && held2 == 0)) return;
+    const Vec4T<Real> out = Real(1) / length * way;
+    const Vec4T<Real> now = std::max(Real(0), pair.least - length + dot(out, held)) * out;
+    const Vec4T<Real> change = now - held;
+    part<packed>(x, pair, change);
+    part<packed>(y, pair, change);
+    held = now;
+  }
+
+  /// The same for b and a.
+  static std::uint64_t name_of(const Pair& pair) {
+    const auto [less, more] = std::minmax(pair.a, pair.b);
+    return std::uint64_t{less} << 32 | more;
+  }
+
+  /// Before pairs are found anew.
+  void keep_pushes() {
+    kept_.clear();
+    for (const auto* lists : {&close_found_, &others_found_})
+      for (const Found& found : *lists)
+        for (std::size_t k = 0; k < found.pushes.size(); ++k)
+          if (squared_norm(found.pushes[k]) > 0) {
+            const Real sign = found.pairs[k].a < found.pairs[k].b ? 1 : -1;
+            const Vec4T<Real> by = sign * found.pushes[k];
+            kept_.push_back({name_of(found.pairs[k]), {by.v[0], by.v[1], by.v[2]}});
+          }
+    std::ranges::sort(kept_, {}, &Push::pair);
+  }
+
+  /// Those of the last substep act from the start; p.x is y.
+  template <bool packed>
+  void begin_pushes(Particles<Real>& p, double h) {
+    const Real scale = pushed_for_ > 0 ? static_cast<Real>(h * h / (pushed_for_ * pushed_for_)) : 1;
+    pushed_for_ = h;
+    for (auto* lists : {&close_found_, &others_found_})
+      for (Found& found : *lists) {
+        if (found.pushes.size() != found.pairs.size()) recall_pushes(found);
+        for (std::size_t k = 0; k < found.pairs.size(); ++k) {
+          if (squared_norm(found.pushes[k]) == 0) continue;
+          found.pushes[k] = scale * found.pushes[k];
+          part<packed>(p.x, found.pairs[k], found.pushes[k]);
+        }
+      }
+  }
+  void recall_pushes(Found& found) const {
+    found.pushes.assign(found.pairs.size(), Vec4T<Real>{});
+    if (kept_.empty()) return;
+    for (std::size_t k = 0; k < found.pairs.size(); ++k) {
+      const std::uint64_t name = name_of(found.pairs[k]);
+      const auto at = std::ranges::lower_bound(kept_, name, {}, &Push::pair);
+      if (at == kept_.end() || at->pair != name) continue;
+      const Real sign = found.pairs[k].a < found.pairs[k].b ? 1 : -1;
+      found.pushes[k].v = sign * typename Vec4T<Real>::V{at->by[0], at->by[1], at->by[2], 0};
+    }
   }
 
   void place(const Particles<Real>& p) {
@@ -216,8 +317,13 @@ class SelfCollidePass final : public Pass<Real> {
   }
 
   void forget_pairs() {
+    if (solver_) keep_pushes();
     for (auto* lists : {&close_found_, &others_found_})
-      for (Found& found : *lists) found.pairs.clear(), found.crossing.clear();
+      for (Found& found : *lists) {
+        found.pairs.clear();
+        found.crossing.clear();
+        found.pushes.clear();
+      }
     searched_ = false;
   }
 
@@ -314,6 +420,9 @@ class SelfCollidePass final : public Pass<Real> {
   Real diameter_;                             ///< m
   std::size_t stride_ = 1;                    ///< of the particles' layout
   const Kernels<Real>& kernels_;
+  Pass<Real>* solver_;      ///< null: none with a target
+  std::vector<Push> kept_;  ///< of the pairs before the last search
+  double pushed_for_ = 0;   ///< s, of which substep pushes are; 0: of none
   ThreadPool& pool_;
   NeighbourGrid<Real> grid_;
   /// Of each list of the grid at rest: at rest within kNearby diameters and not linked.

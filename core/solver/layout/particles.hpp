@@ -202,6 +202,10 @@ class Pass {
   /// Whether all of these touch particles only in what they queue (ThreadPool::queue): before those
   /// of any other pass, what is queued has to be finished.
   virtual bool queues() const { return false; }
+  /// Where the particles would go without links and contact [m], of a pass that solves towards it;
+  /// null: of any other. Contact that is projected after the pass moves it by what it moves
+  /// particles by, so that the links feel that force from the next iteration on.
+  virtual Points<Real>* target() { return nullptr; }
   /// Of one application, a line for each thing it does; the solver sets `repeats`.
   virtual std::vector<PassCost> cost() const = 0;
 };

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/model/angle.hpp"
+#include "core/model/triangle.hpp"
 #include "core/reference/implicit_step.hpp"
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
@@ -157,6 +158,200 @@ TEST(ContactConditions, LetASheetRestOnARoughSlope) {
       double fastest = 0;
       for (const Vec3& v : simulate(scene, solver, 60).v) fastest = std::max(fastest, v.norm());
       EXPECT_LT(fastest, 1e-9) << solver << ", " << n << " x " << n;
+    }
+  }
+}
+
+/// A sheet of 5 x 5, held along its sides, on which one of 3 x 3 has fallen, each of whose vertices
+/// is a ball on one of the first.
+Scene sheet_on_sheet() {
+  Scene scene;
+  scene.name = "sheet on sheet";
+  const auto add_sheet = [&](int n, const Vec3& origin, double mass) {
+    const int first = scene.mesh.size();
+    const auto link = [&](int i, int j, int k, int l) {
+      if (k < 0 || k >= n || l >= n) return;
+      const int a = first + j * n + i, b = first + l * n + k;
+      const double length = 0.1 * std::hypot(k - i, l - j);
+      scene.links.push_back({a, b, length, i == k || j == l ? Family::structural : Family::shear});
+    };
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        scene.mesh.rest.push_back(origin + Vec3(0.1 * i, 0, 0.1 * j));
+        scene.mesh.mass.push_back(mass);
+      }
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        link(i, j, i + 1, j);
+        link(i, j, i, j + 1);
+        link(i, j, i + 1, j + 1);
+        link(i, j, i - 1, j + 1);
+      }
+  };
+  add_sheet(5, Vec3::Zero(), 0.002);
+  add_sheet(3, {0.1001, 0.01001, 0.10005}, 0.001);
+  for (int i = 0; i < 25; ++i)
+    if (i % 5 == 0 || i % 5 == 4 || i < 5 || i >= 20) scene.pins.push_back(i);
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(34, Vec3::Zero())};
+  scene.dt = 1.0 / 64;
+  scene.self_collision = {.radius = 0.005};
+  scene.damping = 2;
+  scene.start = simulate(scene, "implicit:" + kSprings, 4);
+  scene.damping = 0;
+  return scene;
+}
+
+/// How far, in the motion of a vertex by its own inertia [m], x is from the conditions of contact
+/// without friction between vertices that touch one other at most.
+struct Violation {
+  double most = 0;
+  std::ptrdiff_t touching = 0;
+};
+Violation violation_of_pairs(const Scene& scene, const std::vector<Vec3>& x) {
+  const ElasticStep step(scene, {kStiffness, kStiffness, 0});
+  const Eigen::VectorXd left = step.gradient(x);
+  const std::vector<double> w = inverse_masses(scene);
+  const auto force_at = [&](std::size_t i) -> Vec3 {
+    return left.segment<3>(3 * static_cast<Eigen::Index>(i));
+  };
+  const double diameter = 2 * scene.self_collision->radius;
+  double worst = 0;
+  std::vector<bool> touched(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = i + 1; j < x.size(); ++j) {
+      const double gap = (x[j] - x[i]).norm() - diameter;
+      worst = std::max(worst, -gap);
+      if (gap > 1e-7) continue;
+      EXPECT_FALSE(touched[i] || touched[j]);
+      touched[i] = touched[j] = true;
+      const Vec3 normal = (x[j] - x[i]).normalized();
+      const double push = normal.dot(force_at(j));
+      const double per_force = scene.dt * scene.dt * std::max(w[i], w[j]);
+      worst = std::max(worst, -per_force * push);
+      worst = std::max(worst, per_force * (force_at(j) - push * normal).norm());
+      if (w[i] > 0) worst = std::max(worst, per_force * (force_at(i) + push * normal).norm());
+    }
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (!touched[i] && w[i] > 0)
+      worst = std::max(worst, scene.dt * scene.dt * w[i] * force_at(i).norm());
+  return {worst, std::ranges::count(touched, true)};
+}
+
+TEST(ContactConditions, HoldBetweenSheets) {
+  const Scene scene = sheet_on_sheet();
+  const std::vector<Converged> solvers{{"implicit", 2, 400},
+                                       {"pd", 10, 20000},
+                                       {"vbd", 10, 20000},
+                                       {"admm:links=elastic", 10, 20000}};
+  for (const Converged& one : solvers) {
+    const auto after = [&](int iterations) {
+      const std::string text =
+          with(one.solver, kSprings + ",iterations=" + std::to_string(iterations));
+      return violation_of_pairs(scene, after_one_step(scene, text).x);
+    };
+    EXPECT_LT(after(one.many).most, 1e-8) << one.solver;
+    EXPECT_GE(after(one.many).touching, 8) << one.solver;
+    EXPECT_GT(after(one.few).most, 1e-6) << one.solver;
+  }
+}
+
+/// A ball on the middle of a string that two pins hold: both weights pull at the string.
+TEST(ContactConditions, AStringFeelsTheBallThatLiesOnIt) {
+  constexpr double kHalf = 0.1, kMass = 0.003;
+  Scene scene;
+  scene.name = "ball on a string";
+  scene.mesh.rest = {{-kHalf, 0, 0}, {0, 0, 0}, {kHalf, 0, 0}, {0, 0.02, 0}};
+  scene.mesh.mass.assign(4, kMass);
+  scene.links = {{0, 1, kHalf, Family::structural}, {1, 2, kHalf, Family::structural}};
+  scene.pins = {0, 2};
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(4, Vec3::Zero())};
+  scene.dt = 1.0 / 64;
+  scene.damping = 5;
+  scene.stiffness = {kStiffness, kStiffness, kStiffness};
+  scene.self_collision = {.radius = 0.01};
+  // the sag s of equilibrium: 2 K (l - r) s/l = 2 m g
+  double low = 0, high = 0.05;
+  for (int n = 0; n < 200; ++n) {
+    const double s = (low + high) / 2, length = std::hypot(kHalf, s);
+    (kStiffness * (length - kHalf) * s / length < kMass * scene.gravity.norm() ? low : high) = s;
+  }
+  for (const std::string solver :
+       {"implicit:iterations=3", "pd:iterations=200", "admm:links=elastic,iterations=200",
+        "vbd:iterations=20", "mass-spring:substeps=50,precision=double"}) {
+    const State rest = simulate(scene, solver, 1000);
+    EXPECT_NEAR(rest.x[1].y(), -high, 1e-9) << solver;
+    EXPECT_NEAR(rest.x[3].y() - rest.x[1].y(), 0.02, 1e-9) << solver;
+  }
+}
+
+/// A face in a frame of three springs, whose middle has come to lie on a ball beside its centre.
+Scene face_on_ball(double friction) {
+  Scene scene;
+  scene.name = "face on a ball";
+  const Vec3 corners[] = {{-0.1, 0, -0.06}, {0.1, 0, -0.06}, {0, 0, 0.12}};
+  const auto link = [&](int a, int b) {
+    const Vec3 way = scene.mesh.rest[to_index(b)] - scene.mesh.rest[to_index(a)];
+    scene.links.push_back({a, b, way.norm(), Family::structural});
+  };
+  for (const double scale : {1.0, 2.0})
+    for (const Vec3& corner : corners) scene.mesh.rest.push_back(scale * corner);
+  scene.mesh.mass = {0.004, 0.003, 0.005, 0.001, 0.001, 0.001};
+  scene.mesh.triangles = {{0, 2, 1}};
+  scene.pins = {3, 4, 5};
+  for (int corner = 0; corner < 3; ++corner) {
+    link(corner, (corner + 1) % 3);
+    link(corner, corner + 3);
+  }
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(6, Vec3::Zero())};
+  scene.dt = 1.0 / 64;
+  scene.colliders = {{.shape = Ball{{0.01, -0.045, -0.02}, 0.04}, .friction = friction}};
+  scene.start = simulate(scene, "implicit:faces=on," + kSprings, 8);
+  return scene;
+}
+
+/// Of the force at the deepest point of the face, as of vertices in violation() above.
+double violation_of_face(const Scene& scene, const std::vector<Vec3>& x) {
+  const ElasticStep step(scene, {kStiffness, kStiffness, 0});
+  const Eigen::VectorXd left = step.gradient(x);
+  const std::vector<double> w = inverse_masses(scene);
+  const Ball& ball = std::get<Ball>(scene.colliders[0].shape);
+  const Deepest deepest = deepest_in(ball, {x[0], x[2], x[1]});
+  EXPECT_NEAR(deepest.depth, 0, 1e-4) << "or nothing was asked";
+  const double weights[] = {deepest.at.weights[0], deepest.at.weights[2], deepest.at.weights[1]};
+  const Vec3 normal = (deepest.at.position - ball.center).normalized();
+  Vec3 force = Vec3::Zero(), slip = Vec3::Zero();
+  for (std::size_t c = 0; c < 3; ++c) {
+    force += left.segment<3>(3 * static_cast<Eigen::Index>(c));
+    slip += weights[c] * (x[c] - scene.start.x[c]);
+  }
+  slip -= normal.dot(slip) * normal;
+  const double per_force = w[1] * scene.dt * scene.dt;
+  double worst = std::abs(deepest.depth);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Vec3 own = left.segment<3>(3 * static_cast<Eigen::Index>(c));
+    worst = std::max(worst, per_force * (own - weights[c] * force).norm());
+  }
+  const double push = normal.dot(force), most = scene.colliders[0].friction * push;
+  EXPECT_GT(push, 0.01);
+  const Vec3 rub = force - push * normal;
+  const double wrong =
+      slip.norm() > 1e-7 ? (rub + most * slip.normalized()).norm() : rub.norm() - most;
+  return std::max(worst, per_force * wrong);
+}
+
+TEST(ContactConditions, HoldForAFace) {
+  for (const double friction : {0.0, 0.1, 0.6}) {
+    const Scene scene = face_on_ball(friction);
+    const std::vector<Converged> solvers{
+        {"implicit", 2, 200}, {"pd", 5, 5000}, {"vbd", 5, 5000}, {"admm:links=elastic", 5, 5000}};
+    for (const Converged& one : solvers) {
+      const auto after = [&](int iterations) {
+        const std::string text =
+            with(one.solver, kSprings + ",faces=on,iterations=" + std::to_string(iterations));
+        return violation_of_face(scene, after_one_step(scene, text).x);
+      };
+      EXPECT_LT(after(one.many), 1e-8) << one.solver << ", friction " << friction;
+      EXPECT_GT(after(one.few), 1e-6) << one.solver << ", friction " << friction;
     }
   }
 }

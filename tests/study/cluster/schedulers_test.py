@@ -256,6 +256,11 @@ class Parallel(Schedulers):
         if not version or "GNU" not in version.stdout:
             self.skipTest("not installed: GNU parallel")
 
+    def goes_on(self, job):
+        if job.poll() is not None:
+            self.fail(f"ended with {job.returncode} before a task died\n{''.join(job.communicate())}\n{self.said()}")
+        return True
+
     def end(self, job):
         job.kill()
         for pid in self.tasks():
@@ -267,12 +272,13 @@ class Parallel(Schedulers):
     def test_a_task_dies_and_the_rest_is_resumed(self):
         ssh = self.folder / "ssh"  # a login without a daemon: what it is told, it does here
         ssh.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\nhost=$1; shift; [[ $1 != -- ]] || shift\necho "$host" >>' +
-                       f'{self.folder}/hosts.log\nexec bash -c "$*"\n')
+                       f'{self.folder}/hosts.log\nexport SHELL=/bin/bash  # as a login does; GNU parallel starts nothing without it, and exits 0\n'
+                       'exec bash -c "$*"\n')
         ssh.chmod(0o755)
         environment = {**os.environ, "PARALLEL_SSH": str(ssh), "JOBS": "1"}
         job = self.start(*self.submit("--on", "parallel", "--shards", 8, "--sshlogin", "1/near,1/far"), program=PROGRAM, env=environment)
         self.addCleanup(self.end, job)
-        victim = self.wait_for(lambda: len(self.sessions()) >= 2 and self.tasks())[0]
+        victim = self.wait_for(lambda: self.goes_on(job) and len(self.sessions()) >= 2 and self.tasks())[0]
         os.kill(victim, signal.SIGKILL)
         self.let_go()
         out, err = job.communicate()
