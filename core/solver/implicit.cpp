@@ -633,4 +633,8 @@ TAUT_SOLVER(implicit) = {
     .make = taut::solver::implicit::make,
     .unsupported = taut::unsupported_of_springs,
     .resolved_settings = taut::solver::implicit::resolved_settings,
-    .accuracy = {.substeps = "substeps", .sweeps = "iterations", .all_at_once = true}};
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .all_at_once = true,
+                 .stiffness = taut::kStiffnesses,
+                 .labelled = "substeps|iterations|structural"}};

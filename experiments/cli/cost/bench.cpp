@@ -115,10 +115,10 @@ TAUT_VERB(bench) = {
         "bullet:iterations=1,substeps=16\n  taut bench effects\n  taut bench scaling\n  "
         "taut bench --beside ../ShapeOp",
     .answer =
-        "machine host build; "
+        "machine host build times; "
         "scenes: scene control verdict; "
         "recommended: scene target solver setting error cost times answer; "
         "cases: scene case solver cost cpu wall peak_bytes error status times verdict remark; "
         "samples: scene case round cpu wall; "
-        "times; iterations: code each sweeps differs",
+        "iterations: code each sweeps differs",
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};
