@@ -271,6 +271,9 @@ TAUT_SOLVER(bullet_deformable) = {
     .make = taut::solver::bullet_deformable::make,
     .unsupported = taut::solver::bullet_deformable::unsupported,
     .resolved_settings = taut::solver::bullet_deformable::resolved_settings,
+    .declared_step = [](const taut::Scene&, const taut::Params&) -> taut::DeclaredStep {
+      return {.none = "Bullet's step is another"};
+    },
     .program = taut::bullet_ref::program,
     .accuracy = {.substeps = "substeps",
                  .stiffness = {"stiffness", "1000|4000|16000|64000|256000|1024000"},

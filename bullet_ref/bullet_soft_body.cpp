@@ -288,6 +288,9 @@ TAUT_SOLVER(bullet) = {
     .make = taut::solver::bullet_soft_body::make,
     .unsupported = taut::solver::bullet_soft_body::unsupported,
     .resolved_settings = taut::solver::bullet_soft_body::resolved_settings,
+    .declared_step = [](const taut::Scene&, const taut::Params&) -> taut::DeclaredStep {
+      return {.none = "Bullet's step is another"};
+    },
     .program = taut::bullet_ref::program,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",

@@ -3,7 +3,7 @@
 #   taut_write_fingerprint(OUT LAYER=FOLDER|... ... measurement=FOLDER|...)
 function(taut_write_fingerprint out)
   get_target_property(options taut_flags INTERFACE_COMPILE_OPTIONS)
-  list(FILTER options EXCLUDE REGEX "^-W|ggc-")  # warnings and garbage collection change no result
+  list(FILTER options EXCLUDE REGEX "^-W|ggc-|^-fvisibility")  # these change no result
   list(JOIN options " " options)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   string(CONCAT tools "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}; "

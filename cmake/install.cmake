@@ -17,8 +17,22 @@ install(DIRECTORY experiments/external/sdk
 install(DIRECTORY experiments/scenes experiments/studies experiments/templates experiments/beside results/references
         DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
 
-# The library: taut::model, taut::io, taut::solver, taut::metrics, taut::case and what they need.
-set(libraries case metrics system io solver model fingerprint)
+# The Python package; its data are the program's.
+if(TAUT_PYTHON)
+  set(python_package lib/python3/dist-packages/taut)
+  install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" --build \"${PROJECT_BINARY_DIR}\" --target taut_python
+                                OUTPUT_VARIABLE said ERROR_VARIABLE said RESULT_VARIABLE failed)
+                if(failed)
+                  message(FATAL_ERROR \"The Python module could not be built: \${said}\")
+                endif()" COMPONENT python)
+  install(TARGETS taut_python LIBRARY DESTINATION ${python_package} COMPONENT python)
+  install(FILES ${taut_python_FILES} DESTINATION ${python_package} COMPONENT python)
+  install(CODE "file(CREATE_LINK ../../../../${CMAKE_INSTALL_DATADIR}/taut
+                     \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python_package}/data\" SYMBOLIC)" COMPONENT python)
+endif()
+
+# The library: taut::model, taut::io, taut::solver, taut::reference, taut::metrics, taut::case and what they need.
+set(libraries case metrics reference system io solver model fingerprint)
 foreach(library IN LISTS libraries)
   set_target_properties(taut_${library} PROPERTIES EXPORT_NAME ${library})
   target_include_directories(taut_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -29,7 +43,8 @@ target_link_libraries(taut_model INTERFACE $<INSTALL_INTERFACE:taut::solver>)
 target_link_libraries(taut_metrics INTERFACE $<INSTALL_INTERFACE:taut::case>)
 
 # core/model/scene.hpp becomes <taut/model/scene.hpp>, also where headers include each other.
-set(headers core/io/mesh_io.hpp core/io/scene_io.hpp experiments/metrics/metric.hpp
+set(headers core/io/mesh_io.hpp core/io/positions/positions.hpp core/io/scene_io.hpp experiments/system/data.hpp
+            experiments/metrics/metric.hpp experiments/case/case.hpp experiments/case/computed_motion.hpp
             experiments/case/digest.hpp experiments/case/record.hpp experiments/case/record_io.hpp
             experiments/case/run_case.hpp experiments/case/trajectory.hpp)
 file(GLOB model CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} core/model/*.hpp)
@@ -62,6 +77,9 @@ install(FILES ${PROJECT_BINARY_DIR}/taut.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/
 
 set(CPACK_PACKAGE_CONTACT "The taut developers")
 set(CPACK_COMPONENTS_ALL program development)
+if(TAUT_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -73,6 +91,16 @@ set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "testbed for cloth solvers
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libosmesa6, gnuplot-nox, fonts-dejavu-core, ffmpeg")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-taut)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "testbed for cloth solvers, from Python
+ Scenes, runs as NumPy arrays, scores of arrays of other programs, results
+ as a pandas.DataFrame and solvers written in Python.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
+string(CONCAT CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "taut (= ${PROJECT_VERSION}), python3-numpy, "
+       "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_python})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtaut-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "testbed for cloth solvers, library
  Scenes, solvers, metrics and the run of one case, to be called from a

@@ -13,6 +13,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/io/text_file.hpp"
+#include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -342,11 +343,25 @@ void Section::wrong_type(const Value& value, const std::string& key, const std::
       value.place, "'" + key + "' in " + name_ + " must be " + wanted + ", not " + describe(value));
 }
 
+namespace {
+
+/// " in s" of "[time]" and "dt"; "" where no unit is known.
+std::string in_unit(const std::string& section, const std::string& key) {
+  const auto begin = section.find_first_not_of('['), end = section.find(']');
+  if (begin == 0 || end == section.npos) return "";
+  const std::string path = section.substr(begin, end - begin) + "." + key;
+  const auto known = std::ranges::find(scene_keys(), path, &SceneKey::path);
+  if (known == scene_keys().end() || known->unit.empty() || known->unit == "1") return "";
+  return " in " + std::string(known->unit);
+}
+
+}  // namespace
+
 std::optional<double> Section::judged(const Value& value, const std::string& key,
                                       const Range& range) {
   const auto number = as_number(value);
   if (!number) {
-    wrong_type(value, key, "a number or a fraction such as \"1/64\"");
+    wrong_type(value, key, "a number" + in_unit(name_, key) + " or a fraction such as \"1/64\"");
   } else if (!std::isfinite(*number)) {
     diagnostics_.report(value.place, "'" + key + "' in " + name_ + " must be finite");
   } else if (!range.holds(*number)) {

@@ -1,5 +1,6 @@
 #include "core/model/params.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <charconv>
 #include <cstdlib>
@@ -168,10 +169,12 @@ double Params::real(std::string_view name) const {
 }
 std::string_view Params::choice(std::string_view name) const { return value(name); }
 
-std::string Params::text(bool only_changed) const {
+std::string Params::text(bool only_changed, std::string_view but) const {
+  const std::vector<std::string> left_out = parts_of(but);
   std::string all;
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     std::string ignored;
+    if (std::ranges::count(left_out, specs_[i].name) > 0) continue;
     if (only_changed && values_[i] == canonical_value(specs_[i], specs_[i].default_value, ignored))
       continue;
     all += (all.empty() ? "" : ",") + std::string(specs_[i].name) + "=" +

@@ -66,15 +66,16 @@ class Params {
   /// Whose parameters they are.
   const std::string& owner() const { return owner_; }
 
-  /// "key=value,..." in declared order: all of them, or only those that differ from their defaults.
-  std::string canonical() const { return text(false); }
-  std::string brief() const { return text(true); }
+  /// "key=value,..." in declared order: all of them, or only those that differ from their defaults;
+  /// without those that `but` names, "cmd|build".
+  std::string canonical(std::string_view but = "") const { return text(false, but); }
+  std::string brief(std::string_view but = "") const { return text(true, but); }
   /// The value in canonical form; a text without quotes.
   std::string_view value(std::string_view name) const;
   std::span<const ParamSpec> specs() const { return specs_; }
 
  private:
-  std::string text(bool only_changed) const;
+  std::string text(bool only_changed, std::string_view but) const;
   std::size_t find(std::string_view name) const;
   std::string owner_;
   std::span<const ParamSpec> specs_;

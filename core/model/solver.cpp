@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <ctime>
 #include <iterator>
 
@@ -48,6 +49,44 @@ std::vector<const SolverEntry*> all_solvers() {
     all.push_back(&find_solver(name));
   }
   return all;
+}
+
+Stiffness stiffness_of(const Scene& scene, const Params& params) {
+  Stiffness all;
+  all.fill(std::numeric_limits<double>::infinity());
+  if (params.has(kMaterial.name) && takes_stiffness(scene, params)) return scene.stiffness;
+  for (const ParamSpec& spec : params.specs()) {
+    if (spec.name == "links" && params.is("links", "rigid")) return all;
+    for (const Family family : kFamilies)
+      if (spec.name == to_string(family)) {
+        double& k = all[static_cast<std::size_t>(family)];
+        const double value = params.real(spec.name);
+        if (spec.unit == "N/m") k = value;
+        if (spec.unit == "m/N" && value > 0) k = 1 / value;
+      }
+  }
+  return all;
+}
+
+DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
+  DeclaredStep step{.stiffness = stiffness_of(scene, params)};
+  if (params.has("substeps")) step.substeps = params.integer("substeps");
+  if (scene.self_collision && !(params.has("self") && params.is("self", "off")))
+    step.none = "self-collision is no part of it";
+  else if (!scene.colliders.empty() && params.has("faces") && params.is("faces", "on"))
+    step.none = "contact of faces is no part of it";
+  return step;
+}
+
+DeclaredStep implicit_euler_of_a_frame(const Scene& scene, const Params&) {
+  DeclaredStep step{.stiffness = scene.stiffness, .of = "a frame"};
+  if (scene.self_collision) step.none = "self-collision is no part of it";
+  return step;
+}
+
+DeclaredStep declared_step(const SolverEntry& entry, const Scene& scene, const Params& params) {
+  if (entry.declared_step) return entry.declared_step(scene, params);
+  return {.none = std::string(entry.name) + " declares no step"};
 }
 
 std::size_t projections_per_step(const Solver& solver) {
@@ -108,8 +147,12 @@ std::string with(std::string_view solver, std::string_view more) {
   return text.append(more);
 }
 
-std::string SolverChoice::canonical() const { return with(entry->name, params.canonical()); }
+std::string SolverChoice::canonical() const { return with_params(false, ""); }
 
-std::string SolverChoice::brief() const { return with(entry->name, params.brief()); }
+std::string SolverChoice::brief() const { return with_params(true, ""); }
+
+std::string SolverChoice::with_params(bool only_changed, std::string_view but) const {
+  return with(entry->name, only_changed ? params.brief(but) : params.canonical(but));
+}
 
 }  // namespace taut

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/model/declared_step.hpp"
 #include "core/model/params.hpp"
 #include "core/model/scene.hpp"
 
@@ -150,6 +151,7 @@ struct SolverEntry {
   /// Why it would misread this scene, a sentence each; empty: it can.
   std::function<std::vector<std::string>(const Scene&, const Params&)> unsupported;
   std::function<ResolvedSettings(const Scene&, const Params&)> resolved_settings;
+  DeclaredStep (*declared_step)(const Scene&, const Params&) = nullptr;  ///< null: none is
   /// Which program can run this choice: "taut", "taut-f32", or "" for either. Null: either.
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.
@@ -159,6 +161,10 @@ struct SolverEntry {
   LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
   /// Digest of what a solver outside this program is made of; "": it is part of this program.
   std::string_view implementation = "";
+  /// Which state of its sources such a solver is, for people; "": that of this program.
+  std::string_view build = "";
+  /// Parameters that only say where such a solver lies: `implementation` says which it is.
+  std::string_view place = "";
 };
 
 /// A parameter of solvers whose links may comply.
@@ -170,6 +176,17 @@ inline constexpr ParamSpec kMaterial = ParamSpec::choice(
 inline bool takes_stiffness(const Scene& scene, const Params& params) {
   return scene.stiffness != kRigid && params.is("material", "scene");
 }
+
+/// The spring constants of the solver's links, the scene's or its own parameters'; infinite: rigid.
+Stiffness stiffness_of(const Scene&, const Params&);
+
+/// SolverEntry::declared_step of a solver that approximates implicit Euler of each substep, with
+/// its links and contact of vertices.
+DeclaredStep implicit_euler(const Scene&, const Params&);
+/// The same of positions with a frame a step, of which nobody knows how they were made.
+DeclaredStep implicit_euler_of_a_frame(const Scene&, const Params&);
+/// What the entry declares.
+DeclaredStep declared_step(const SolverEntry&, const Scene&, const Params&);
 
 /// Constraint projections in one step: sum of items x repeats over the passes that project.
 std::size_t projections_per_step(const Solver&);
@@ -209,11 +226,16 @@ struct SolverChoice {
   std::string canonical() const;
   /// The same, but only the parameters that differ from their defaults: for people.
   std::string brief() const;
+  /// Both without the parameters of the entry's `place`: what a result is addressed by, and what it
+  /// is called.
+  std::string addressed() const { return with_params(false, entry->place); }
+  std::string called() const { return with_params(true, entry->place); }
   /// Substeps of a step, and sweeps of a substep, by the entry's AccuracyParameters: at least 1.
   int substeps() const { return count(entry->accuracy.substeps); }
   int sweeps() const { return count(entry->accuracy.sweeps); }
 
  private:
+  std::string with_params(bool only_changed, std::string_view but) const;
   int count(std::string_view parameter) const {
     return parameter.empty() ? 1 : std::max(1, params.integer(parameter));
   }

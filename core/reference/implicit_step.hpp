@@ -1,16 +1,13 @@
 #pragma once
 
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "core/model/declared_step.hpp"
 #include "core/model/scene.hpp"
 
 namespace taut::reference {
-
-/// Spring constants [N/m] by family; infinite: rigid links, 0: no link.
-using Stiffness = std::array<double, kFamilies.size()>;
 
 /// One step of implicit Euler from a state, as the minimisation that it is:
 ///

@@ -144,6 +144,7 @@ TAUT_SOLVER(admm) = {
     .make = taut::solver::admm::make,
     .unsupported = taut::loop::unsupported,
     .resolved_settings = taut::solver::admm::resolved_settings,
+    .declared_step = taut::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .all_at_once = true,

@@ -167,15 +167,31 @@ void GlobalSystem<Real>::begin(const Particles<Real>& p, double t, double h) {
   contact_->coupled.begin();
 }
 
-/// rows_ holds the forces of inertia and links; bending and contact join them.
+/// To rows_, which holds the forces of inertia and links.
 template <class Real>
-void GlobalSystem<Real>::solve_rows(Particles<Real>& p) {
-  if (mass_.empty()) return;
+void GlobalSystem<Real>::add_bending(const Particles<Real>& p) {
   for (const BendingElement& e : bending_) {
     const Vec3 pull =
         -e.stiffness * e.value([&](std::size_t v) { return p.x[v]; }).template cast<double>();
     for (std::size_t i = 0; i < e.size; ++i) rows_.add(to_index(e.vertex[i]), e.weight[i] * pull);
   }
+}
+
+template <class Real>
+void GlobalSystem<Real>::solve_forces(std::span<double> forces) {
+  if (mass_.empty()) return;
+  if (!positive_) {
+    std::ranges::fill(forces, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  factor_.solve_four(forces.data());
+}
+
+/// rows_ holds the forces of inertia and links; bending and contact join them.
+template <class Real>
+void GlobalSystem<Real>::solve_rows(Particles<Real>& p) {
+  if (mass_.empty()) return;
+  add_bending(p);
   if (contact_) {
     Contacts& contacts = *contact_->contacts;
     contacts.find(p, contact_->touching);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -54,11 +55,37 @@ class GlobalSystem {
   /// The substep [t, t + h] begins: p.x is y, pins are where they have to be.
   void begin(const Particles<Real>& p, double t, double h);
   Points<Real>& target() { return y_; }  ///< Pass::target
+  const Points<Real>& target() const { return y_; }
   /// Moves the vertices that are no pins. forces(sweep, begin, end): of groups [begin, end), where
   /// each link pulls with k (d - q). Places are NaN, which ends a case as exploded, if in double
   /// precision the matrix is not positive definite.
   template <class Forces>
   void solve(Particles<Real>& p, const Forces& forces) {
+    sweep(p, forces);
+    solve_rows(p);
+  }
+
+  // The same in its parts, without contact, for who goes another way than the solution's. Vectors
+  // have four numbers in each row, the last of them 0.
+
+  std::size_t rows() const { return mass_.size(); }
+  int row(std::size_t vertex) const { return row_[vertex]; }  ///< -1: a pin
+  /// Minus the gradient of the energy at p.x [N], into `out`.
+  template <class Forces>
+  void find_forces(const Particles<Real>& p, const Forces& forces, std::span<double> out) {
+    sweep(p, forces);
+    add_bending(p);
+    std::copy_n(rows_.data(), out.size(), out.begin());
+  }
+  /// The way [m] of the solution for these forces [N]; NaN: there is no factor.
+  void solve_forces(std::span<double> forces);
+
+  /// One application: the vectors of the links, named `local`, and the solution by the factor.
+  std::vector<PassCost> cost(std::string_view local, std::size_t bytes_of_local) const;
+
+ private:
+  template <class Forces>
+  void sweep(const Particles<Real>& p, const Forces& forces) {
     const ForceSweep<Real> sweep{.groups = groups_.data(),
                                  .x = p.x.data(),
                                  .y = y_.data(),
@@ -67,13 +94,8 @@ class GlobalSystem {
     pool_.run(
         groups_.size(), [&](std::size_t begin, std::size_t end) { forces(sweep, begin, end); },
         groups_.size() * kLanes >= ThreadPool::kWorthSharing / 4);
-    solve_rows(p);
   }
-
-  /// One application: the vectors of the links, named `local`, and the solution by the factor.
-  std::vector<PassCost> cost(std::string_view local, std::size_t bytes_of_local) const;
-
- private:
+  void add_bending(const Particles<Real>& p);
   void factor(double h);
   void solve_rows(Particles<Real>& p);
   void move(Particles<Real>& p);

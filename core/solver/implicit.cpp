@@ -13,6 +13,21 @@
 // one iteration without line search is the linearised step of Baraff, Witkin: Large Steps in Cloth
 // Simulation (SIGGRAPH 1998).
 //
+// With multipliers=keep each link has a tension f [N] that outlives the step. From x = y on,
+//
+//     H = M/h^2 + sum K u u^T + max(0, f)/|d| (I - u u^T),   f <- K (C + u.(p_b - p_a)),   x <- x +
+//     p
+//
+// for K C of an iterate is K times its error, which where K is large locks the motion across links,
+// and f, of the linear system's solution, is not. A step whose gradient, in the norm of 1/M, has
+// grown in the end is computed again as above.
+//
+// integrator=bdf2 and midpoint are steps of the same form, with another y and h:
+//
+//     BDF2      h' = 2h/3,  y = (4 x_t - x_t-1)/3 + h' (4 v_t - v_t-1)/3 + h'^2 g,
+//               v = (x - (4 x_t - x_t-1)/3)/h'; the first step is implicit Euler's
+//     midpoint  h' = h/2,   y = x_t + h' v_t + h'^2 g;   x <- 2x - x_t,  v = 2 (x - x_t)/h - v_t
+//
 // Contact is an augmented Lagrangian at each vertex that touches (Alart, Curnier, Computer Methods
 // in Applied Mechanics and Engineering 92, 1991): with the force of the last iteration, push along
 // the normal n and rub across it, and a stiffness k,
@@ -62,6 +77,14 @@ constexpr ParamSpec kOwn[] = {
     kStiffness[1],
     kStiffness[2],
     kMaterial,
+    ParamSpec::choice(
+        "integrator", "euler", "euler|bdf2|midpoint",
+        "implicit Euler, BDF2 or the implicit midpoint rule, which lose less; the last "
+        "two in free motion alone: without wind, damping and contact"),
+    ParamSpec::choice("multipliers", "off", "off|keep",
+                      "keep each link's tension from step to step, and with it what links resist "
+                      "across: three iterations are then enough, from the prediction on and "
+                      "without a line search, which ends steps that go astray"),
     ParamSpec::choice("line-search", "on", "on|off",
                       "halve steps until the energy falls; iterations=1,line-search=off is Baraff "
                       "and Witkin's step"),
@@ -292,6 +315,12 @@ class NewtonPass final : public Pass<double> {
       : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
         bending_(make_bending(s.scene)),
         line_search_(s.params.is("line-search", "on")),
+        iterations_(s.params.integer("iterations")),
+        integrator_(s.params.is("integrator", "bdf2")       ? Integrator::bdf2
+                    : s.params.is("integrator", "midpoint") ? Integrator::midpoint
+                                                            : Integrator::euler),
+        gravity_(s.scene.gravity),
+        tension_(s.params.is("multipliers", "keep") ? springs_.size() : 0),
         hessian_(springs_, bending_, s.w,
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
                                        s.w, [](double w) { return w > 0; })))),
@@ -309,28 +338,46 @@ class NewtonPass final : public Pass<double> {
 
   void restart() override {
     if (contacts_) contacts_->restart();
+    std::ranges::fill(tension_, 0);
+    before_.clear();
   }
 
   Points<double>* target() override { return &y_; }
 
-  void begin(Particles<double>& p, double t, double h) override {
+  void begin(Particles<double>& p, double t, double step) override {
     y_ = p.x;
+    if (integrator_ != Integrator::euler) predict(p, step);
+    const double h = own_step(step);
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
     if (contacts_) contacts_->begin(t, h);
     clamped_ = first_ = true;
     ended_at_.clear();
     set_tolerances(p, h);
+    if (!keeps()) return;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (p.w[i] > 0) p.x.set(i, y_[i]);
+    first_ = false;
+    touching_.clear();
+    at_first_ = in_norm_of_masses(gradient(positions(p), h));
   }
 
-  void apply(Particles<double>& p, double, double h) override {
+  void end(Particles<double>& p, double t, double h) override {
+    if (keeps() && went_astray(p, own_step(h))) go_again(p, t, h);
+    if (integrator_ != Integrator::euler) finish(p, h);
+  }
+
+  void apply(Particles<double>& p, double, double step) override {
+    const double h = own_step(step);
     std::vector<Vec3> x = positions(p);
     if (x == ended_at_) return;
     if (contacts_) contacts_->find(p, touching_);
     const bool first = std::exchange(first_, false);
     const Vector g = gradient(x, h);
     if (g.norm() <= (first ? enough_at_first_ : enough_) ||
-        !(first ? first_iteration(x, p, g, h) : iterate(x, g, h))) {
+        !(first                      ? first_iteration(x, p, g, h)
+          : keeps() && !keep_paused_ ? iterate_kept(x, g, h)
+                                     : iterate(x, g, h))) {
       // the minimum for these forces of contact; the end if theirs is no other one
       left_ = 0;
       if (!contacts_ || !update_contacts(p, h)) ended_at_ = std::move(x);
@@ -351,6 +398,68 @@ class NewtonPass final : public Pass<double> {
   }
 
  private:
+  void go_again(Particles<double>& p, double t, double h) {
+    keep_paused_ = true;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (p.w[i] > 0) p.x.set(i, p.previous[i]);
+    first_ = clamped_ = true;
+    ended_at_.clear();
+    for (int k = 0; k < iterations_; ++k) apply(p, t, h);
+    keep_paused_ = false;
+    std::ranges::fill(tension_, 0);
+  }
+
+  /// h' of a step of h.
+  double own_step(double h) const {
+    if (integrator_ == Integrator::midpoint) return h / 2;
+    return integrator_ == Integrator::bdf2 && !before_.empty() ? 2 * h / 3 : h;
+  }
+  /// y_, which is implicit Euler's, becomes the integrator's, and pins go where its h' ends.
+  void predict(Particles<double>& p, double h) {
+    const double own = own_step(h);
+    start_.resize(p.size());
+    v_start_.resize(p.size());
+    pins_at_end_ = positions(p);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      start_[i] = p.previous[i];
+      v_start_[i] = (y_[i] - start_[i] - h * h * gravity_) / h;
+      if (p.w[i] == 0) {
+        if (integrator_ != Integrator::midpoint) continue;
+        p.x.set(i, (start_[i] + y_[i]) / 2);
+        y_.set(i, p.x[i]);
+      } else if (integrator_ == Integrator::midpoint) {
+        y_.set(i, start_[i] + own * v_start_[i] + own * own * gravity_);
+      } else if (!before_.empty()) {
+        y_.set(i, (4 * start_[i] - before_[i]) / 3 + own * (4 * v_start_[i] - v_before_[i]) / 3 +
+                      own * own * gravity_);
+      }
+    }
+  }
+  /// Places and velocities at the end of the step; the loop takes a velocity from p.previous.
+  void finish(Particles<double>& p, double h) {
+    const double own = own_step(h);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (p.w[i] == 0) {
+        p.x.set(i, pins_at_end_[i]);
+        continue;
+      }
+      Vec3 x = p.x[i], v;
+      if (integrator_ == Integrator::midpoint) {
+        v = 2 * (x - start_[i]) / own - v_start_[i];
+        x = 2 * x - start_[i];
+      } else if (before_.empty()) {
+        v = (x - start_[i]) / h;
+      } else {
+        v = (x - (4 * start_[i] - before_[i]) / 3) / own;
+      }
+      p.x.set(i, x);
+      p.previous.set(i, x - h * v);
+    }
+    if (integrator_ != Integrator::bdf2) return;
+    before_ = start_;
+    v_before_ = v_start_;
+  }
+
   /// The step from x_t, linearised with the pins still there: their way to t + h is on the
   /// right-hand side, so that a frame that moves steadily is as one at rest. It is solved for x -
   /// y, so that rounding in stiff links moves no centre of mass; where a factor breaks down in
@@ -388,6 +497,47 @@ class NewtonPass final : public Pass<double> {
       if (!hessian_.solve(h, -g, direction)) return false;
     }
     return take(x, direction, g, h);
+  }
+
+  bool keeps() const { return !tension_.empty(); }
+  double in_norm_of_masses(const Vector& g) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < stiffness_.size(); ++i)
+      if (const int c = hessian_.column(i); c >= 0)
+        sum += g.segment<3>(c).squaredNorm() / hessian_.mass(i);
+    return std::sqrt(sum);
+  }
+  bool went_astray(const Particles<double>& p, double h) {
+    const double now = in_norm_of_masses(gradient(positions(p), h));
+    const double rounding = enough_ * std::sqrt(*std::ranges::max_element(p.w));
+    return !(now <= std::max(at_first_, rounding));
+  }
+  /// One iteration with the tensions that were kept; false: there is no factor.
+  bool iterate_kept(std::vector<Vec3>& x, const Vector& g, double h) {
+    linearise(x, true);
+    std::vector<double> excess(springs_.size());
+    for (std::size_t j = 0; j < springs_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 d = x[b] - x[a];
+      const double length = d.norm();
+      if (length == 0) continue;
+      excess[j] = length - rest;
+      const double across = std::max(0.0, tension_[j]) / length;
+      hessian_.block(j) = {across, stiffness - across, d / length};
+    }
+    Vector direction;
+    if (!hessian_.solve(h, -g, direction)) return false;
+    const auto way = [&](std::size_t v) -> Vec3 {
+      const int c = hessian_.column(v);
+      return c < 0 ? Vec3(Vec3::Zero()) : Vec3(direction.segment<3>(c));
+    };
+    for (std::size_t j = 0; j < springs_.size(); ++j) {
+      const Spring& s = springs_[j];
+      tension_[j] = s.stiffness * (excess[j] + hessian_.block(j).u.dot(way(s.b) - way(s.a)));
+    }
+    left_ = 0;
+    x = moved(x, direction, 1);
+    return true;
   }
 
   /// Moves x along the direction, by halves of it until the energy falls; false: it does not.
@@ -585,6 +735,15 @@ class NewtonPass final : public Pass<double> {
   std::vector<Spring> springs_;
   std::vector<BendingElement> bending_;
   bool line_search_;
+  int iterations_;
+  enum class Integrator { euler, bdf2, midpoint } integrator_;
+  Vec3 gravity_;                         ///< m/s^2
+  std::vector<Vec3> before_, v_before_;  ///< m, m/s, a step ago, of bdf2; empty: there was none
+  std::vector<Vec3> start_, v_start_;    ///< m, m/s, of this step; unless implicit Euler's
+  std::vector<Vec3> pins_at_end_;        ///< [n] m, of midpoint
+  std::vector<double> tension_;          ///< N, of springs, kept; empty: off
+  double at_first_ = 0;                  ///< N/sqrt(kg), of |g| at the prediction
+  bool keep_paused_ = false;
   Hessian hessian_;
   std::vector<double> stiffness_;          ///< N/m, of all links and bending at each vertex
   std::unique_ptr<Contacts> contacts_;     ///< null: none
@@ -597,6 +756,25 @@ class NewtonPass final : public Pass<double> {
   Points<double> y_;                         ///< m, where they would go without links
   std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere
 };
+
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons = unsupported_of_springs(scene, params);
+  if (params.is("integrator", "euler")) return reasons;
+  const std::string own = "integrator=" + std::string(params.choice("integrator"));
+  if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
+    reasons.push_back(own + " knows no contact: it would act at another time than the links");
+  if (scene.wind) reasons.push_back(own + " knows no wind");
+  if (scene.damping > 0) reasons.push_back(own + " knows no damping but its own");
+  return reasons;
+}
+
+DeclaredStep declared_step(const Scene& scene, const Params& params) {
+  DeclaredStep step = implicit_euler(scene, params);
+  if (!params.is("integrator", "euler"))
+    step.none = "it is a step of " +
+                std::string(params.is("integrator", "bdf2") ? "BDF2" : "the midpoint rule");
+  return step;
+}
 
 loop::Links<double> links(const loop::Setup& s) {
   return {.layout = Layout::packed(s.w.size()),
@@ -613,7 +791,11 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const std::size_t moving = to_index(scene.mesh.size()) - scene.pins.size();
   const ResolvedSettings own{
       {"links", describe_springs(scene, params)},
-      {"links solved", std::string("implicit Euler by Newton's method, ") +
+      {"links solved", std::string(params.is("integrator", "bdf2")       ? "BDF2"
+                                   : params.is("integrator", "midpoint") ? "the midpoint rule"
+                                                                         : "implicit Euler") +
+                           " by Newton's method, " +
+                           (params.is("multipliers", "keep") ? "tensions kept, " : "") +
                            (factors(params, moving) ? "sparse LDLT, analysed once as set-up"
                                                     : "conjugate gradients")},
       {"work unit", "Newton iterations, not projections"}};
@@ -631,8 +813,9 @@ TAUT_SOLVER(implicit) = {
     .source = "Baraff, Witkin 1998; Choi, Ko 2002",
     .params = taut::solver::implicit::kParams,
     .make = taut::solver::implicit::make,
-    .unsupported = taut::unsupported_of_springs,
+    .unsupported = taut::solver::implicit::unsupported,
     .resolved_settings = taut::solver::implicit::resolved_settings,
+    .declared_step = taut::solver::implicit::declared_step,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .all_at_once = true,

@@ -149,6 +149,7 @@ TAUT_SOLVER(jakobsen) = {
     .make = taut::solver::jakobsen::make,
     .unsupported = taut::solver::jakobsen::unsupported,
     .resolved_settings = taut::solver::jakobsen::resolved_settings,
+    .declared_step = taut::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .alternatives = taut::solver::jakobsen::kAlternatives,

@@ -183,6 +183,9 @@ TAUT_SOLVER(mass_spring) = {
     .make = taut::solver::mass_spring::make,
     .unsupported = taut::solver::mass_spring::unsupported,
     .resolved_settings = taut::solver::mass_spring::resolved_settings,
+    .declared_step = [](const taut::Scene&, const taut::Params&) -> taut::DeclaredStep {
+      return {.none = "it is explicit"};
+    },
     .accuracy = {.substeps = "substeps",
                  .stiffness = {"structural|shear", "50|200|800|3200|12800|51200"},
                  .alternatives = taut::solver::mass_spring::kAlternatives,

@@ -12,8 +12,16 @@
 // e contracts by s lambda (1 - e)/(1 + s lambda) per iteration, s = h^2 K/m, which tends to 1: the
 // stiffer the links, the more iterations until the cloth moves at all, and a strain near zero does
 // not say that it did.
+//
+// method=lbfgs and method=ncg go other ways down the same energy G, from the same prediction.
+// L-BFGS (Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation of Hyperelastic
+// Materials, TOG 2017) corrects the factor's solution of -g by the last `history` pairs of ways and
+// changes of the gradient, in the two loops of Nocedal (1980); without pairs it is Projective
+// Dynamics with a line search. NCG is Polak and Ribiere's, with a preconditioner: the matrix'
+// diagonal of links and masses, or the factor. Both are halved until G falls (Armijo).
 #include <Eigen/Cholesky>
 #include <limits>
+#include <utility>
 
 #include "core/solver/chebyshev.hpp"
 #include "core/solver/global_system.hpp"
@@ -34,6 +42,11 @@ constexpr ParamSpec kOwn[] = {
     kChebyshev,
     ParamSpec::integer("anderson", "0", 0, 20,
                        "earlier iterations that Anderson acceleration combines; 0: none"),
+    ParamSpec::choice("method", "plain", "plain|lbfgs|ncg",
+                      "down the same energy: the factor's solution as it is, corrected by L-BFGS, "
+                      "or nonlinear conjugate gradients; the last two without contact"),
+    ParamSpec::integer("history", "5", 0, 20, "pairs that method=lbfgs keeps of a substep"),
+    ParamSpec::choice("preconditioner", "diagonal", "diagonal|factor", "of method=ncg"),
 };
 constexpr auto kParams = loop::with_common(kOwn);
 
@@ -79,6 +92,98 @@ class Anderson {
   std::vector<Eigen::VectorXd> residuals_, images_;  ///< of the last iterations
 };
 
+/// m^2 N/m: a pair of a way and a change of the gradient with less curvature is left out. Of a
+/// step's slope, that the energy has to fall by. m: of the largest way, for a difference of
+/// gradients.
+constexpr double kLeastCurvature = 1e-18, kFallsOfLbfgs = 0.03, kFallsOfNcg = 1e-4;
+constexpr double kDifference = 1e-6;
+constexpr int kMostHalvings = 30;
+
+/// Directions down an energy, from its gradients [N] at places [m] in vectors of rows.
+class Descent {
+ public:
+  using Vector = Eigen::VectorXd;
+  Descent(const Params& params)
+      : lbfgs_(params.is("method", "lbfgs")),
+        on_(!params.is("method", "plain")),
+        by_factor_(lbfgs_ || params.is("preconditioner", "factor")),
+        history_(to_index(params.integer("history"))) {}
+  bool on() const { return on_; }
+  bool lbfgs() const { return lbfgs_; }
+  double falls() const { return lbfgs_ ? kFallsOfLbfgs : kFallsOfNcg; }
+  bool by_factor() const { return by_factor_; }
+  void begin() {
+    ways_.clear();
+    changes_.clear();
+    last_x_.resize(0);
+  }
+
+  /// precondition(v): v [N] becomes a way [m].
+  template <class Precondition>
+  Vector direction(const Vector& x, const Vector& g, const Precondition& precondition) {
+    Vector d = lbfgs_ ? two_loops(x, g, precondition) : conjugate(g, precondition);
+    if (!(g.dot(d) < 0)) {
+      begin();
+      d = -preconditioned(g, precondition);
+    }
+    last_x_ = x;
+    last_g_ = g;
+    last_d_ = d;
+    return d;
+  }
+  std::size_t bytes(std::size_t rows) const {
+    return on_ ? (3 + 2 * history_) * 4 * rows * sizeof(double) : 0;
+  }
+
+ private:
+  template <class Precondition>
+  static Vector preconditioned(Vector v, const Precondition& precondition) {
+    precondition(v);
+    return v;
+  }
+
+  template <class Precondition>
+  Vector two_loops(const Vector& x, const Vector& g, const Precondition& precondition) {
+    if (last_x_.size() > 0 && history_ > 0) {
+      Vector way = x - last_x_, change = g - last_g_;
+      if (way.dot(change) >= kLeastCurvature) {
+        if (ways_.size() == history_) {
+          ways_.erase(ways_.begin());
+          changes_.erase(changes_.begin());
+        }
+        ways_.push_back(std::move(way));
+        changes_.push_back(std::move(change));
+      }
+    }
+    Vector q = g;
+    std::vector<double> taken(ways_.size());
+    for (std::size_t i = ways_.size(); i-- > 0;) {
+      taken[i] = ways_[i].dot(q) / ways_[i].dot(changes_[i]);
+      q -= taken[i] * changes_[i];
+    }
+    precondition(q);
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      const double again = changes_[i].dot(q) / ways_[i].dot(changes_[i]);
+      q += (taken[i] - again) * ways_[i];
+    }
+    return -q;
+  }
+
+  template <class Precondition>
+  Vector conjugate(const Vector& g, const Precondition& precondition) {
+    Vector z = preconditioned(g, precondition);
+    Vector d = -z;
+    if (last_x_.size() > 0) d += std::max(0.0, z.dot(g - last_g_) / last_g_.dot(last_z_)) * last_d_;
+    last_z_ = std::move(z);
+    return d;
+  }
+
+  bool lbfgs_, on_, by_factor_;
+  std::size_t history_;
+  std::vector<Vector> ways_, changes_;        ///< m, N
+  Vector last_x_, last_g_, last_z_, last_d_;  ///< of the iteration before; empty: there is none
+};
+
 template <class Real>
 class ProjectivePass final : public Pass<Real> {
  public:
@@ -86,7 +191,23 @@ class ProjectivePass final : public Pass<Real> {
       : forces_(kernels<Real>(s.simd).spring_forces),
         system_(s, make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
         slots_(system_.template make_slots<SpringSlot<Real>>(kNothingElse)),
-        anderson_(to_index(s.params.integer("anderson")), s.w.size()) {}
+        anderson_(to_index(s.params.integer("anderson")), s.w.size()),
+        descent_(s.params),
+        diagonal_(descent_.on() ? 4 * system_.rows() : 0) {
+    const auto add = [&](std::size_t vertex, double k) {
+      if (const int row = system_.row(vertex); row >= 0)
+        for (std::size_t c = 0; c < 4; ++c) stiffness_[4 * to_index(row) + c] += k;
+    };
+    if (!descent_.on()) return;
+    stiffness_.assign(4 * system_.rows(), 0);
+    for (const Spring& spring : system_.springs()) {
+      add(spring.a, spring.stiffness);
+      add(spring.b, spring.stiffness);
+    }
+    for (const BendingElement& e : system_.bending())
+      for (std::size_t i = 0; i < e.size; ++i)
+        add(to_index(e.vertex[i]), e.stiffness * e.weight[i] * e.weight[i]);
+  }
 
   const Layout& layout() const { return system_.layout(); }
 
@@ -95,11 +216,22 @@ class ProjectivePass final : public Pass<Real> {
 
   void begin(Particles<Real>& p, double t, double h) override {
     anderson_.begin();
+    if (descent_.on()) {
+      descent_.begin();
+      for (std::size_t i = 0; i < p.size(); ++i)
+        if (const int row = system_.row(i); row >= 0)
+          for (std::size_t c = 0; c < 4; ++c) {
+            const std::size_t at = 4 * to_index(row) + c;
+            diagonal_[static_cast<Eigen::Index>(at)] =
+                stiffness_[at] + 1 / (static_cast<double>(p.w[i]) * h * h);
+          }
+    }
     energy_ = std::numeric_limits<double>::infinity();
     system_.begin(p, t, h);
   }
 
   void apply(Particles<Real>& p, double, double h) override {
+    if (descent_.on()) return descend(p, h);
     if (!anderson_.on()) return solve(p);
     fall_back(p, h);
     const std::vector<Vec3> from = positions(p);
@@ -109,7 +241,8 @@ class ProjectivePass final : public Pass<Real> {
   }
 
   std::vector<PassCost> cost() const override {
-    return system_.cost("forces of links", slots_.size() * sizeof slots_[0] + anderson_.bytes());
+    return system_.cost("forces of links", slots_.size() * sizeof slots_[0] + anderson_.bytes() +
+                                               descent_.bytes(system_.rows()));
   }
 
  private:
@@ -120,23 +253,79 @@ class ProjectivePass final : public Pass<Real> {
     });
   }
 
+  using Vector = Eigen::VectorXd;
+
+  /// Of G at p.x [N].
+  Vector gradient(const Particles<Real>& p) {
+    Vector g(static_cast<Eigen::Index>(4 * system_.rows()));
+    system_.find_forces(p,
+                        [this](const ForceSweep<Real>& sweep, std::size_t begin, std::size_t end) {
+                          forces_(sweep, slots_.data(), begin, end);
+                        },
+                        {g.data(), static_cast<std::size_t>(g.size())});
+    return -g;
+  }
+  Vector place(const Particles<Real>& p) const {
+    return Eigen::Map<const Eigen::Matrix<Real, Eigen::Dynamic, 1>>(
+               p.x.data(), static_cast<Eigen::Index>(4 * system_.rows()))
+        .template cast<double>();
+  }
+  void put(Particles<Real>& p, const Vector& x) const {
+    for (Eigen::Index i = 0; i < x.size(); ++i) p.x.data()[i] = static_cast<Real>(x[i]);
+  }
+
+  /// One iteration of L-BFGS or of conjugate gradients.
+  void descend(Particles<Real>& p, double h) {
+    if (system_.rows() == 0) return;
+    const Vector x = place(p), g = gradient(p);
+    if (g.isZero(0)) return;
+    const Vector d = descent_.direction(x, g, [this](Vector& v) {
+      if (descent_.by_factor())
+        system_.solve_forces({v.data(), static_cast<std::size_t>(v.size())});
+      else
+        v.array() /= diagonal_.array();
+    });
+    const double slope = g.dot(d), before = energy(positions(p), h, p);
+    double share = 1;
+    if (!descent_.lbfgs()) {
+      const double small = kDifference / d.cwiseAbs().maxCoeff();
+      put(p, x + small * d);
+      const double curvature = (gradient(p) - g).dot(d) / small;
+      if (curvature > 0) share = -slope / curvature;
+    }
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings, share /= 2) {
+      put(p, x + share * d);
+      const double now = energy(positions(p), h, p);
+      if (now <= before + descent_.falls() * share * slope) return;
+      // near the minimum, differences of the energy are rounding: the gradient decides
+      if (now <= before * (1 + 1e-12) && gradient(p).norm() < g.norm()) return;
+      if (!std::isfinite(now)) continue;
+    }
+    put(p, std::isfinite(slope) ? x : Vector::Constant(x.size(), slope));
+  }
+
   static void move_to(Particles<Real>& p, const std::vector<Vec3>& x) {
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, x[i].template cast<Real>());
   }
 
-  /// To the last solution of the global system if the combination raised the energy.
-  void fall_back(Particles<Real>& p, double h) {
-    const std::vector<Vec3> x = positions(p);
-    double now = bending_energy(system_.bending(), x);
+  /// G [J] of x.
+  double energy(const std::vector<Vec3>& x, double h, const Particles<Real>& p) const {
+    double sum = bending_energy(system_.bending(), x);
     for (std::size_t i = 0; i < x.size(); ++i)
       if (p.w[i] > 0)
-        now += (x[i] - system_.target()[i].template cast<double>()).squaredNorm() /
+        sum += (x[i] - system_.target()[i].template cast<double>()).squaredNorm() /
                (2 * h * h * static_cast<double>(p.w[i]));
     for (const auto& [a, b, rest, k] : system_.springs()) {
       const double c = (x[b] - x[a]).norm() - rest;
-      now += k / 2 * c * c;
+      sum += k / 2 * c * c;
     }
+    return sum;
+  }
+
+  /// To the last solution of the global system if the combination raised the energy.
+  void fall_back(Particles<Real>& p, double h) {
+    const double now = energy(positions(p), h, p);
     if (now > energy_) {
       move_to(p, last_image_);
       anderson_.begin();
@@ -150,8 +339,11 @@ class ProjectivePass final : public Pass<Real> {
   GlobalSystem<Real> system_;
   std::vector<SpringSlot<Real>> slots_;
   Anderson anderson_;
-  std::vector<Vec3> last_image_;  ///< m; with Anderson acceleration
-  double energy_ = 0;             ///< J, of the last iterate
+  Descent descent_;
+  Vector diagonal_;                ///< [rows][4] N/m, of the matrix; of method=ncg
+  std::vector<double> stiffness_;  ///< [rows][4] N/m, its part of links and bending
+  std::vector<Vec3> last_image_;   ///< m; with Anderson acceleration or another method
+  double energy_ = 0;              ///< J, of the last iterate
 };
 
 template <class Real>
@@ -173,6 +365,13 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = unsupported_of_springs(scene, params);
   if (params.real("chebyshev") > 0 && params.integer("anderson") > 0)
     reasons.emplace_back("chebyshev and anderson are two ways to accelerate: take one");
+  if (!params.is("method", "plain")) {
+    const std::string method = "method=" + std::string(params.choice("method"));
+    if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
+      reasons.push_back(method + " knows no contact");
+    if (params.real("chebyshev") > 0 || params.integer("anderson") > 0)
+      reasons.push_back(method + " is a way of its own: neither chebyshev nor anderson joins it");
+  }
   return reasons;
 }
 
@@ -180,7 +379,10 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const ResolvedSettings own{
       {"links", describe_springs(scene, params)},
       {"links solved",
-       "all at once by a sparse LDLT, factored as set-up; other pins or links factor again"},
+       std::string(params.is("method", "lbfgs") ? "L-BFGS, "
+                   : params.is("method", "ncg") ? "nonlinear conjugate gradients, "
+                                                : "") +
+           "all at once by a sparse LDLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};
   return loop::resolved_settings(scene, params, own, "constant terms of the factored system",
                                  loop::kSolvedFriction);
@@ -191,17 +393,19 @@ constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "double|fl
 }  // namespace
 }  // namespace taut::solver::pd
 
-TAUT_SOLVER(pd) = {.name = "pd",
-                   .title = "Projective Dynamics",
-                   .summary = "Projective Dynamics of springs on one factored system",
-                   .source = "Liu et al. 2013; Bouaziz et al. 2014; Wang 2015; Peng et al. 2018",
-                   .params = taut::solver::pd::kParams,
-                   .make = taut::solver::pd::make,
-                   .unsupported = taut::solver::pd::unsupported,
-                   .resolved_settings = taut::solver::pd::resolved_settings,
-                   .accuracy = {.substeps = "substeps",
-                                .sweeps = "iterations",
-                                .all_at_once = true,
-                                .stiffness = taut::kStiffnesses,
-                                .alternatives = taut::solver::pd::kAlternatives,
-                                .labelled = "substeps|iterations|structural|precision"}};
+TAUT_SOLVER(pd) = {
+    .name = "pd",
+    .title = "Projective Dynamics",
+    .summary = "Projective Dynamics of springs on one factored system",
+    .source = "Liu et al. 2013, 2017; Bouaziz et al. 2014; Wang 2015; Peng et al. 2018",
+    .params = taut::solver::pd::kParams,
+    .make = taut::solver::pd::make,
+    .unsupported = taut::solver::pd::unsupported,
+    .resolved_settings = taut::solver::pd::resolved_settings,
+    .declared_step = taut::implicit_euler,
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .all_at_once = true,
+                 .stiffness = taut::kStiffnesses,
+                 .alternatives = taut::solver::pd::kAlternatives,
+                 .labelled = "substeps|iterations|structural|precision"}};

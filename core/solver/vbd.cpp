@@ -83,6 +83,12 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
+DeclaredStep declared_step(const Scene& scene, const Params& params) {
+  DeclaredStep step = implicit_euler(scene, params);
+  if (params.real("damping") > 0) step.none = "its damping is no part of it";
+  return step;
+}
+
 constexpr AccuracyParameters::Ladder kAlternatives[] = {
     {"chebyshev", "0.5|0.8|0.9"}, {"start", "adaptive|inertia"}, {"precision", "double|float"}};
 
@@ -98,6 +104,7 @@ TAUT_SOLVER(vbd) = {
     .make = taut::solver::vbd::make,
     .unsupported = taut::unsupported_of_springs,
     .resolved_settings = taut::solver::vbd::resolved_settings,
+    .declared_step = taut::solver::vbd::declared_step,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .stiffness = taut::kStiffnesses,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -71,12 +70,8 @@ class RowComparison {
            static_cast<double>(now.projections),
            "projections per step " + std::to_string(before.projections) + " -> " +
                std::to_string(now.projections));
-    for (const auto& [name, value] : before.values) compare(name, value, tolerances.of(name));
-    for (const auto& [name, value] : now.values)
-      if (!before.values.count(name) && !tolerances.of(name).ignored && !std::isnan(value))
-        add(known.count(name) ? Change::Kind::value_unrecorded : Change::Kind::value_new,
-            name + " has no baseline" + (known.count(name) ? " in this row alone" : "") + "; now " +
-                readable(value));
+    for (const ComparedValue& one : compare_values(before.values, now.values, tolerances))
+      add(one, tolerances.of(one.value), known.contains(one.value));
   }
 
  private:
@@ -89,16 +84,19 @@ class RowComparison {
     change.scene = now_.spec.scene, change.value = name;
     change.before = before, change.now = now;
   }
-  void compare(const std::string& name, double before, const Tolerance& tolerance) {
-    if (tolerance.ignored) return;
-    const auto now = now_.values.find(name);
-    if (now == now_.values.end()) {
-      add(Change::Kind::value_missing, name + " " + readable(before) + " -> no such value");
-      return;
-    }
+  void add(const ComparedValue& one, const Tolerance& tolerance, bool known) {
+    using Kind = ComparedValue::Kind;
+    if (one.kind == Kind::lost)
+      add(Change::Kind::value_missing,
+          one.value + " " + readable(one.before) + " -> no such value");
+    if (one.kind == Kind::gained && !std::isnan(one.now))
+      add(known ? Change::Kind::value_unrecorded : Change::Kind::value_new,
+          one.value + " has no baseline" + (known ? " in this row alone" : "") + "; now " +
+              readable(one.now));
+    if (one.kind == Kind::lost || one.kind == Kind::gained) return;
     ++result_.values;
-    if (!tolerance.holds(now->second, before))
-      move(name, before, now->second, moved_text(name, before, now->second, tolerance));
+    if (one.kind == Kind::moved)
+      move(one.value, one.before, one.now, moved_text(one.value, one.before, one.now, tolerance));
   }
 
   const BaselineRow& now_;
@@ -160,12 +158,6 @@ std::string escaped(const std::string& text) {
   return xml;
 }
 
-double relative_change(const Change& c) {
-  constexpr double kFromZero = std::numeric_limits<double>::infinity();
-  const double share = c.before == 0 ? kFromZero : (c.now - c.before) / std::abs(c.before);
-  return std::isfinite(share) ? share : kFromZero;
-}
-
 }  // namespace
 
 const BaselineRow* find_row(const Baseline& rows, const std::string& id) {
@@ -178,25 +170,6 @@ BaselineRow baseline_row(const Record& record, const std::string& scene) {
                   record.projections, record.values};
   row.spec.solver = parse_solver(record.spec.solver).brief();
   return row;
-}
-
-bool Tolerance::holds(double value, double baseline) const {
-  if (std::isnan(value) || std::isnan(baseline)) return std::isnan(value) == std::isnan(baseline);
-  if (value == baseline) return true;  // infinities too
-  return std::abs(value - baseline) <= absolute + relative * std::abs(baseline);
-}
-
-const Tolerance& Tolerances::of(const std::string& value) const {
-  static const Tolerance kBuiltIn{1e-12, 1e-6, false, "deterministic"};
-  std::string name = value;
-  while (true) {
-    if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-    const auto dot = name.rfind('.');
-    if (dot == name.npos) break;
-    name.resize(dot);
-  }
-  const auto other = by_name_.find("default");
-  return other != by_name_.end() ? other->second : kBuiltIn;
 }
 
 bool Comparison::regressed() const { return std::ranges::any_of(findings, &Change::is_regression); }
@@ -283,7 +256,7 @@ std::string junit(const std::string& study, const Baseline& now, const Compariso
   return xml + "</testsuite>\n";
 }
 
-double MovedValue::relative() const { return relative_change(*largest); }
+double MovedValue::relative() const { return relative_change(largest->before, largest->now); }
 
 std::vector<MovedValue> roll_up(const Comparison& comparison,
                                 const std::function<std::string(const std::string&)>& group_of) {
@@ -295,7 +268,8 @@ std::vector<MovedValue> roll_up(const Comparison& comparison,
         all, [&](const MovedValue& m) { return m.solver == c.solver && m.group == group; });
     if (at == all.end()) at = all.insert(all.end(), MovedValue{c.solver, group});
     ++at->cases, at->less += c.now<c.before, at->more += c.now> c.before;
-    if (!at->largest || std::abs(relative_change(c)) > std::abs(at->relative())) at->largest = &c;
+    if (!at->largest || std::abs(relative_change(c.before, c.now)) > std::abs(at->relative()))
+      at->largest = &c;
   }
   return all;
 }

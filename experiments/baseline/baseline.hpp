@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/model/solver.hpp"
+#include "experiments/case/comparison.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/study/frontier/frontier.hpp"
 
@@ -41,28 +42,6 @@ const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullp
 /// `scene` is digest(Scene) of the scene that the record's spec names. The solver is kept with only
 /// those parameters that differ from their defaults, so that a new parameter changes no row.
 BaselineRow baseline_row(const Record&, const std::string& scene);
-
-/// How far a value may move: |a - b| <= absolute + relative * |b|, b the baseline's.
-struct Tolerance {
-  double absolute = 0;  ///< in the metric's unit
-  double relative = 0;
-  bool ignored = false;  ///< never compared
-  std::string reason;    ///< why so much and no more; never empty
-
-  bool holds(double value, double baseline) const;
-};
-
-/// Tolerances by metric value ("stretch.max"), by metric ("stretch") or for all others ("default").
-class Tolerances {
- public:
-  Tolerances() = default;
-  explicit Tolerances(std::map<std::string, Tolerance> by_name) : by_name_(std::move(by_name)) {}
-  /// The most special one; the built-in default (relative 1e-6, absolute 1e-12) if none is given.
-  const Tolerance& of(const std::string& value) const;
-
- private:
-  std::map<std::string, Tolerance> by_name_;
-};
 
 /// One difference between a baseline and what was run.
 struct Change {

@@ -20,17 +20,6 @@ namespace taut {
 
 namespace {
 
-/// Names of the studies that have a baseline, sorted.
-std::vector<std::string> studies_with_baseline(const std::string& folder) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-    if (entry.is_directory() && entry.path().filename() != kFrontiersFolder)
-      names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 /// Whether the baseline was made with this program's toolchain; if not, that is said.
 bool same_toolchain(const BaselineStudy& study, const BaselineOptions& options, bool strict) {
   const std::string mine(toolchain());
@@ -210,6 +199,16 @@ CheckEnd check_study(const std::string& name, const BaselineOptions& options, bo
 }
 
 }  // namespace
+
+std::vector<std::string> studies_with_baseline(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (entry.is_directory() && entry.path().filename() != kFrontiersFolder)
+      names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 Check check_studies(std::vector<std::string> studies, const BaselineOptions& options, bool strict) {
   if (studies.empty()) studies = studies_with_baseline(options.baselines);

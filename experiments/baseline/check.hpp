@@ -11,6 +11,9 @@ namespace taut {
 /// How studies compare with their baselines; of several studies the greatest counts.
 enum class CheckEnd { passed, not_run, nothing, moved, environment, conflict, interrupted };
 
+/// Names of the studies that have a baseline in this folder, sorted.
+std::vector<std::string> studies_with_baseline(const std::string& folder);
+
 struct Check {
   Answer answer;
   CheckEnd end = CheckEnd::passed;

@@ -1,5 +1,8 @@
 #include "experiments/case/case.hpp"
 
+#include <cstdlib>
+#include <utility>
+
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
@@ -17,7 +20,26 @@ std::string brief(std::string text) {
   return text;
 }
 
+Case completed(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice,
+               const std::string& scene_digest) {
+  Case one{spec, std::move(scene), std::move(choice), {}, {}, {}};
+  one.spec.solver = one.choice.canonical();
+  one.key = case_key(*one.scene, scene_digest, one.choice);
+  one.id = one.scene->name;
+  for (const std::string& text : spec.overrides) one.id += ' ' + brief(text);
+  one.id += ' ' + one.choice.called();
+  one.build = one.choice.entry->build.empty() ? this_build() : one.choice.entry->build;
+  return one;
+}
+
 }  // namespace
+
+std::string this_build() {
+  for (const char* name : {"TAUT_BUILD_ID", "TAUT_COMMIT"})
+    if (const char* given = std::getenv(name); given && *given) return given;
+  static const std::string kOwn = "taut-" + program_digest().substr(0, 10);
+  return kOwn;
+}
 
 const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
   std::string address = spec.scene;
@@ -32,7 +54,7 @@ const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
 }
 
 Case CaseMaker::make(const CaseSpec& spec) {
-  Case one{spec, nullptr, {}, {}, {}};
+  SolverChoice choice;
   std::vector<Diagnostic> wrong;
   const auto collect = [&](const auto& read) {
     try {
@@ -44,21 +66,20 @@ Case CaseMaker::make(const CaseSpec& spec) {
   const Loaded* found = nullptr;
   collect([&] { found = &scene(spec); });
   collect([&] {
-    one.choice = parse_solver(spec.solver);
-    if (!one.choice.entry->make)
+    choice = parse_solver(spec.solver);
+    if (!choice.entry->make)
       throw InputError(spec.solver +
                        ": is not started, for neither the command line nor a study names it");
   });
   if (!wrong.empty()) throw InputError(wrong);
-  const Loaded& loaded = *found;
-  one.scene = loaded.scene;
-  one.remarks = loaded.remarks;
-  one.spec.solver = one.choice.canonical();
-  one.key = case_key(*loaded.scene, loaded.digest, one.choice);
-  one.id = loaded.scene->name;
-  for (const std::string& text : spec.overrides) one.id += ' ' + brief(text);
-  one.id += ' ' + one.choice.brief();
+  Case one = completed(spec, found->scene, std::move(choice), found->digest);
+  one.remarks = found->remarks;
   return one;
+}
+
+Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice) {
+  const std::string scene_digest = digest(*scene);
+  return completed(spec, std::move(scene), std::move(choice), scene_digest);
 }
 
 }  // namespace taut

@@ -18,8 +18,14 @@ struct Case {
   SolverChoice choice;
   std::string key;                        ///< case_key
   std::string id;                         ///< for people: "hang dt=1/64 jakobsen:iterations=8"
+  std::string build;                      ///< which runs it: that of its solver, or this_build()
   std::vector<std::string> remarks = {};  ///< what was skipped of the scene's files
 };
+
+/// Which build of taut this is: what $TAUT_BUILD_ID says, as "ID" or "ID@TIME", else $TAUT_COMMIT
+/// (`./taut` says the commit where nothing is changed), else "taut-" and ten digits of
+/// program_digest().
+std::string this_build();
 
 /// Makes cases; a scene that many of them share is read once.
 class CaseMaker {
@@ -36,6 +42,9 @@ class CaseMaker {
   const Loaded& scene(const CaseSpec&);
   std::map<std::string, Loaded> scenes_;
 };
+
+/// A case of a scene that was read already: of `spec` come its name and overrides.
+Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene>, SolverChoice);
 
 /// One case on its own.
 inline Case make_case(const CaseSpec& spec) { return CaseMaker().make(spec); }

@@ -43,7 +43,7 @@ std::string case_key(const Scene& scene, const std::string& scene_digest,
   const std::string_view own = choice.entry->implementation;
   const Json parts{{"schema", kRecordSchema},
                    {"scene", scene_digest},
-                   {"solver", choice.canonical()},
+                   {"solver", choice.addressed()},
                    {"implementation", own.empty() ? implementation(choice.entry->name) : own},
                    {"measurement", measurement()},
                    {"dt", scene.dt},

@@ -24,13 +24,23 @@ class SceneMetrics {
   void observe(const Snapshot& moment) {
     for (auto& [entry, metric] : watching_) metric->observe(moment);
   }
-  bool follow_path() const {
-    return std::any_of(watching_.begin(), watching_.end(),
-                       [](const Watching& w) { return w.entry->follows_path; });
+  void declare(const DeclaredStep& step) {
+    for (auto& [entry, metric] : watching_) metric->declare(step);
+  }
+  bool follow_path(int step) const {
+    return std::any_of(watching_.begin(), watching_.end(), [&](const Watching& w) {
+      return w.entry->follows_path && w.metric->follows(step);
+    });
   }
   void observe_within(const Snapshot& moment) {
     for (auto& [entry, metric] : watching_)
-      if (entry->follows_path) metric->observe_within(moment);
+      if (entry->follows_path && metric->follows(moment.step)) metric->observe_within(moment);
+  }
+  /// Which are those of a run that was seen to its end.
+  void add_remarks(ResolvedSettings& settings) const {
+    for (const auto& [entry, metric] : watching_)
+      if (const std::string remark = metric->remark(); !remark.empty())
+        settings.emplace_back(entry->values.front().name, remark);
   }
 
   std::vector<std::string> series_columns() const {
@@ -117,23 +127,33 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
 
   DivergenceDetector detector(scene, record.step_cost, choice.substeps());
   SceneMetrics scene_metrics(scene, options.measure);
-  if (options.series_rows > 0) run.series.columns = scene_metrics.series_columns();
-  const int stride = std::max(1, scene.steps / std::max(1, options.series_rows));
+  const bool in_rows = options.every > 0 || options.series_rows > 0;
+  if (in_rows) run.series.columns = scene_metrics.series_columns();
+  const int stride = options.every > 0
+                         ? options.every
+                         : std::max(1, scene.steps / std::max(1, options.series_rows));
+  if (options.timed) run.cpu_seconds = 0;
   State state;
   bool stable = true;
-  if (scene_metrics.follow_path())
+  scene_metrics.declare(declared_step(*choice.entry, scene, choice.params));
+  if (options.measure)
     solver->visit_substeps([&](double t) {
+      if (!scene_metrics.follow_path(step)) return;
       solver->store(state);
       scene_metrics.observe_within({step, t, state});
     });
   for (step = 0; step <= scene.steps; ++step) {
-    if (step > 0) solver->step((step - 1) * scene.dt, scene.dt);
+    if (step > 0) {
+      const double before = options.timed ? solver->cpu_seconds() : 0;
+      solver->step((step - 1) * scene.dt, scene.dt);
+      if (options.timed) run.cpu_seconds += solver->cpu_seconds() - before;
+    }
     solver->store(state);
     const Snapshot moment{step, step * scene.dt, state};
     stable = detector.observe(step, moment.t, state);
     if (!stable) break;
     scene_metrics.observe(moment);
-    if (options.series_rows > 0 && (step % stride == 0 || step == scene.steps))
+    if (in_rows && (step % stride == 0 || step == scene.steps))
       run.series.rows.push_back(scene_metrics.series_row(moment));
     if (options.watch) options.watch(moment);
     run.last = state;
@@ -141,6 +161,7 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   if (stable) detector.finish();
   record.status = detector.status();
   record.values = scene_metrics.values(stable);
+  scene_metrics.add_remarks(record.resolved_settings);
   record.digest = digest(run.last);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct Series {
 
 struct RunOptions {
   int series_rows = 0;  ///< about this many rows, evenly spaced, first and last included; 0: none
+  int every = 0;        ///< a row each so many steps instead, first and last included; 0: as above
+  bool timed = false;   ///< note the cost of the steps: CaseRun::cpu_seconds
   bool measure = true;  ///< let all metrics() observe; without them `values` stays empty
   std::function<void(const Snapshot&)>
       watch;  ///< also sees every stable boundary, the start included
@@ -30,6 +33,10 @@ struct CaseRun {
   Series series;
   State last;  ///< the last stable boundary: the final state, or the last before an explosion;
                ///< empty: nothing was computed
+
+  /// Of all steps by the solver's clock, with metrics at work in between: a first impression, no
+  /// sample (experiments/timing). NaN: not asked for, or it cannot be measured.
+  double cpu_seconds = std::numeric_limits<double>::quiet_NaN();
 
   bool computed() const { return !last.x.empty(); }
 };

@@ -12,6 +12,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/command_line/verb.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/json.hpp"

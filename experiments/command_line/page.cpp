@@ -7,10 +7,12 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/solver/simd/kernels.hpp"
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
+#include "experiments/history/history.hpp"
 #include "experiments/render/film/film.hpp"
 #include "experiments/report/findings.hpp"
 #include "experiments/report/report.hpp"
@@ -137,6 +139,9 @@ report::ReportInput input_of(PageRequest options) {
                      join(options.studies, ", ") + "; taut run " + join(studies, " ", study_words) +
                      " makes them" + where_else(studies.front(), store));
   report::add_stored_maps(input, load_all(maps, options.preset), store);
+  for (const Study& study : studies)
+    input.histories.push_back(history_of(
+        store, study.name, read_tolerances(results_folder() / "baselines" / study.name)));
   input.command = command;
   input.solvers = introductions();
   input.vectors = to_string(widest());

@@ -16,6 +16,8 @@
 #include "core/io/document.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
+#include "experiments/answer/answer.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/external/motion_file.hpp"
 #include "experiments/external/probe.hpp"
@@ -128,6 +130,20 @@ std::string digest_of(const Command& command, const std::vector<std::string>& fi
   return sha256(all);
 }
 
+/// A value of a solver's text; "": it has none.
+std::string value_in(std::string_view params, std::string_view key) {
+  for (const ParamItem& item : param_items(params))
+    if (item.key == key) return item.value;
+  return {};
+}
+
+/// What the results of a build that is named depend on: wherever the program lies.
+std::string digest_of(const Command& command, const std::string& build) {
+  return sha256("build " + build + "\n" + join(command.words, "\n", [](const fs::path& word) {
+                  return word.filename().string();
+                }));
+}
+
 /// One program as a solver: its entry, for as long as this program lives.
 class Program {
  public:
@@ -157,7 +173,8 @@ class Program {
   ResolvedSettings resolved_settings(const Scene&, const Params&);
   void require_probed(const Params&);
 
-  std::string name_, implementation_;
+  std::string name_, implementation_, build_;
+  bool told_ = false;  ///< the build, by whoever starts it
   Command command_;
   std::unique_ptr<const Hello> hello_;
   std::optional<SolverFailure> failure_;  ///< of the hello
@@ -182,13 +199,21 @@ Program::Program(std::string name, Command command, std::vector<ParamSpec> leadi
     failure_ = failure;
   }
   if (name_.empty()) name_ = name_for(hello_ ? hello_->name : "external", command_.text());
-  implementation_ = digest_of(command_, files, hello_ ? hello_->version : "");
+  build_ = value_in(given, "build");
+  told_ = !build_.empty();
+  implementation_ = told_ ? digest_of(command_, build_)
+                          : digest_of(command_, files, hello_ ? hello_->version : "");
+  if (!told_)
+    build_ = slug((hello_ ? hello_->name + "-" + hello_->version : name_) + "-" +
+                  implementation_.substr(0, 8));
   introduce(given);
 }
 
 Program::Program(const Program& silent, std::vector<ParamSpec> leading, std::string_view given)
     : name_(silent.name_),
       implementation_(silent.implementation_),
+      build_(silent.build_),
+      told_(silent.told_),
       command_(silent.command_),
       failure_(silent.failure_),
       specs_(std::move(leading)) {
@@ -210,7 +235,10 @@ void Program::introduce(std::string_view given) {
             .unsupported = [this](const Scene& s, const Params& p) { return unsupported(s, p); },
             .resolved_settings = [this](const Scene& s,
                                         const Params& p) { return resolved_settings(s, p); },
-            .implementation = implementation_};
+            .declared_step = implicit_euler_of_a_frame,
+            .implementation = implementation_,
+            .build = build_,
+            .place = told_ ? "cmd|folder|build" : ""};
   const auto has = [&](std::string_view parameter) {
     const auto at = std::ranges::find(specs_, parameter, &ParamSpec::name);
     return at != specs_.end() && at->kind == ParamSpec::Kind::integer;
@@ -277,8 +305,13 @@ ResolvedSettings Program::resolved_settings(const Scene& scene, const Params& pa
 
 constexpr ParamSpec kLeading[] = {
     {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
-    ParamSpec::real("timeout", "s", "30", 0.01, 86400,
-                    "Every answer has to come within this time")};
+    ParamSpec::real("timeout", "s", "30", 0.01, 86400, "Every answer has to come within this time"),
+    {.name = "folder",
+     .kind = ParamSpec::Kind::text,
+     .help = "Where the command runs; without it: where taut does"},
+    {.name = "build",
+     .kind = ParamSpec::Kind::text,
+     .help = "Which state of its sources it is, in place of command, files and version"}};
 
 /// Stands for all programs where none is named.
 const SolverEntry kAny = {
@@ -364,8 +397,9 @@ const SolverEntry* program(const std::string& name, std::string_view params,
   static std::mutex mutex;
   static std::map<std::string, std::shared_ptr<Program>> programs;
   const std::lock_guard lock(mutex);
-  const std::string command =
-      '\n' + solver.command.text() + '\n' + std::to_string(solver.command.seconds);
+  const std::string command = '\n' + solver.command.text() + '\n' +
+                              std::to_string(solver.command.seconds) + '\n' +
+                              solver.command.folder.string() + '\n' + value_in(params, "build");
   auto& known = programs[name + command];
   if (!known) {
     const std::string called = name == kAny.name ? "" : name;
@@ -385,7 +419,7 @@ std::set<std::string> named_by(const std::string& name, std::string_view params)
   if (is_registered(name)) return {"solver " + name};
   std::set<std::string> files;
   for (const ParamItem& item : param_items(params)) {
-    if (item.key == "cmd") return {"cmd " + item.value};
+    if (item.key == "cmd") return {"cmd " + item.value + "\nin " + value_in(params, "folder")};
     if ((item.key == "file" || item.key == "rest") && !item.value.empty())
       files.insert("file " + item.value);
   }
@@ -461,7 +495,8 @@ const SolverEntry* find(std::string_view name, std::string_view params) {
   if (!is_solver_name(name)) return nullptr;
   const std::set<std::string> named = named_by(called, params);
   if (!admitted().has(named)) return unstarted(called, params);
-  if (is_registered(called)) return program(called, params, read_registered(file_of(called)), {});
+  if (is_registered(called))
+    return program(called, params, read_registered(file_of(called)), {kLeading[3]});
   const std::vector<ParamItem> items = param_items(params);
   const auto has = [&](std::string_view key) {
     return std::ranges::find(items, key, &ParamItem::key) != items.end();
@@ -506,7 +541,7 @@ Command command_of(const std::string& text) {
       if (!item.problem.empty()) throw InputError(item.problem);  // half a command is not called
       cmd = item.value;
     }
-  Command command = split_command(cmd, "");
+  Command command = split_command(cmd, value_in(std::string_view(text).substr(9), "folder"));
   try {
     command.seconds = Params("external", kLeading, ours).real("timeout");
   } catch (const InputError&) {  // whoever reads all parameters says so, with its column

@@ -94,8 +94,11 @@ std::string text_or(const JsonReader& j, const char* key, const std::string& fal
 class SpecReader {
  public:
   SpecReader(Hello& hello, const std::string& name, const JsonReader& j) : hello_(hello), j_(j) {
-    if (!is_solver_name(name) || name == "cmd" || name == "timeout")
-      j.fail("is no name for a parameter (letters, digits, _ and -; not cmd or timeout)");
+    constexpr std::string_view kOurs[] = {"cmd", "timeout", "folder", "build"};
+    if (!is_solver_name(name) || std::ranges::count(kOurs, name) > 0)
+      j.fail(
+          "is no name for a parameter (letters, digits, _ and -; not cmd, timeout, folder or "
+          "build)");
     spec_.name = keep(name);
     spec_.unit = keep(text_or(j, "unit"));
     spec_.help = keep(text_or(j, "doc"));

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/declared_step.hpp"
 #include "core/model/index.hpp"
 #include "core/model/scene.hpp"
 
@@ -60,8 +61,19 @@ enum class Role {
   face_depth,    ///< the same of a face
   passages,      ///< of vertices through colliders: drawn alike; the sum over scenes is said
   reference_error,  ///< distance from the scene's reference: over sweeps
+  step_error,       ///< distance from the exact step: over sweeps
   contact_error,    ///< distance from a law of contact: over sweeps and time steps
 };
+
+/// Cloth that goes less than this share of the dynamic reference's way is not compared by strain:
+/// links keep their lengths where nothing moves.
+inline constexpr double kLeastMotion = 0.5;
+/// Where there is no such reference, less than this of its way by what its steps miss: that counts
+/// some of it twice, for a velocity that is lost early is missed by later steps, too. Of twelve
+/// settings on `swing` none that is below it goes half of the way (results/benchmarks).
+inline constexpr double kLeastByStepsAlone = 0.25;
+/// The value that says so.
+inline constexpr std::string_view kShareBySteps = "step.share";
 
 /// Distance from the dynamic reference over the way: 1 of a cloth that stands still.
 inline constexpr std::string_view kMotionError = "motion.error";
@@ -99,13 +111,18 @@ class Metric {
   static bool measures(const Scene&) { return true; }
   /// Whether it needs the path between step boundaries, too: see observe_within.
   static constexpr bool kFollowsPath = false;
+  /// Before a run: which step its solver declares, and nothing else of it.
+  virtual void declare(const DeclaredStep&) {}
   virtual void observe(const Snapshot&) = 0;
   /// The ends of the substeps between two boundaries, in order: the moment's step is the one that
   /// they lead to. Only called if `kFollowsPath`.
   virtual void observe_within(const Snapshot&) {}
+  virtual bool follows(int) const { return true; }  ///< whether within the step that leads to it
   virtual std::vector<double> finish() = 0;
   /// The values of this very moment, for series; same order, NaN where `in_series` is false.
   virtual std::vector<double> now(const Snapshot&) const = 0;
+  /// After a run: what its values are of, or why there are none; "": the entry says it all.
+  virtual std::string remark() const { return ""; }
 };
 
 /// How a metric introduces itself: one per file, found by its TAUT_METRIC line.

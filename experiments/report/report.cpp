@@ -56,6 +56,7 @@ class Builder {
     if (input_.differences) differences = json_of(*input_.differences, refs_, tables_);
     Json steps = json_of_steps(input_, refs_, charts_, tables_);
     Json limits = json_of_limits(input_, tables_);
+    Json history = json_of_history(input_, refs_);
     Json method = this->method();
     Json cases = this->cases();
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
@@ -77,6 +78,7 @@ class Builder {
     add_if(model, "tables", json_of_tables(tables_));
     add_if(model, "cost", std::move(cost));
     if (input_.truths) add_if(model, "truths", input_.truths->shown);
+    add_if(model, "history", std::move(history));
     if (input_.regressions) add_if(model, "regressions", *input_.regressions);
     add_if(model, "differences", std::move(differences));
     model["method"] = std::move(method);

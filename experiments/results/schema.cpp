@@ -74,6 +74,43 @@ CREATE TABLE planned (
   PRIMARY KEY (study, key)) WITHOUT ROWID;
 CREATE INDEX planned_key ON planned (key);
 
+-- Which build ran which case of a study; builds whose keys are equal share the case.
+CREATE TABLE builds (
+  study TEXT NOT NULL,
+  build TEXT NOT NULL,
+  made TEXT NOT NULL,
+  place INTEGER NOT NULL,
+  subject TEXT NOT NULL,
+  asked TEXT NOT NULL,
+  gap TEXT NOT NULL,
+  PRIMARY KEY (study, build)) WITHOUT ROWID;
+
+CREATE TABLE ran (
+  study TEXT NOT NULL,
+  build TEXT NOT NULL,
+  id TEXT NOT NULL,
+  key TEXT NOT NULL,
+  PRIMARY KEY (study, build, id),
+  FOREIGN KEY (study, build) REFERENCES builds) WITHOUT ROWID;
+CREATE INDEX ran_key ON ran (key);
+
+-- CPU and wall time of a step of one build over that of another, timed in turns.
+CREATE TABLE ratios (
+  study TEXT NOT NULL,
+  id TEXT NOT NULL,
+  before TEXT NOT NULL,
+  now TEXT NOT NULL,
+  host TEXT NOT NULL,
+  clock TEXT NOT NULL,
+  low REAL NOT NULL,
+  ratio REAL NOT NULL,
+  high REAL NOT NULL,
+  control_low REAL NOT NULL,
+  control REAL NOT NULL,
+  control_high REAL NOT NULL,
+  made TEXT NOT NULL,
+  PRIMARY KEY (study, id, before, now, host, clock)) WITHOUT ROWID;
+
 CREATE TABLE answers (
   kind TEXT NOT NULL,
   subject TEXT NOT NULL,
@@ -116,9 +153,19 @@ CREATE TABLE samples (
 CREATE VIEW results AS
 SELECT study, scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
   substeps, sweeps AS iterations,
-  metrics.name AS metric, numbers.value, metrics.unit, status, cases.key, parameters, settings
+  metrics.name AS metric, numbers.value, metrics.unit, status, cases.key, parameters, settings,
+  (SELECT build FROM ran JOIN builds USING (study, build) WHERE ran.key = cases.key
+    ORDER BY made DESC, place DESC, build LIMIT 1) AS build
 FROM metrics CROSS JOIN cases LEFT JOIN numbers USING (case_id, metric_id)
   LEFT JOIN planned ON planned.key = cases.key;
+
+CREATE VIEW history AS
+SELECT study, build, made, subject, scene, solver, substr(ran.id, length(scene) + 2) AS setting,
+  dt, substeps, sweeps AS iterations, metrics.name AS metric, numbers.value, metrics.unit, status,
+  (SELECT count(*) FROM ran AS other WHERE other.key = ran.key AND other.study = ran.study)
+    AS builds, ran.key
+FROM ran JOIN builds USING (study, build) JOIN cases ON cases.key = ran.key
+  LEFT JOIN numbers USING (case_id) LEFT JOIN metrics USING (metric_id);
 
 CREATE VIEW curves AS
 SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/fingerprint.hpp"
+#include "experiments/results/builds.hpp"
 #include "experiments/results/database.hpp"
 #include "experiments/results/store.hpp"
 #include "experiments/system/files.hpp"
@@ -57,16 +59,26 @@ std::string Missing::sentence() const {
 void Store::begin_session(const std::string& command, const std::vector<StudyCases>& studies,
                           const Shard& shard) {
   Database& database = writing();
+  std::map<std::string, Build> builds;
+  const auto build_of = [&](const Case& one) -> const Build& {
+    const std::string text = one.build.empty() ? this_build() : one.build;
+    const auto at = builds.find(text);
+    if (at != builds.end()) return at->second;
+    const Build named = build_named(text), given = given_build();
+    return builds.emplace(text, given.id == named.id ? given : named).first->second;
+  };
   database.transaction([&] {
     std::size_t cases = 0;
     for (const auto& [study, planned] : studies) {
       cases += planned.size();
       if (study.empty()) continue;
       database.run("DELETE FROM planned WHERE study = ?", study);  // of another build, or preset
-      for (const Case& one : planned)
+      for (const Case& one : planned) {
         database.run(
             "INSERT OR IGNORE INTO planned (study, key, id, shard, shards) VALUES (?, ?, ?, ?, ?)",
             study, one.key, one.id, Shard::of(one.key, shard.count), shard.count);
+        note_ran(*this, study, build_of(one), one.id, one.key);
+      }
     }
     database.run("INSERT INTO sessions VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
                  utc_stamp() + "-" + unique_suffix(), command, utc_stamp(), host_name(),

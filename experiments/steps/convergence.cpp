@@ -90,7 +90,7 @@ struct ExactStep {
   reference::ImplicitStep step;
   reference::ImplicitStep::Minimum minimum;
 
-  ExactStep(const Scene& scene, const State& from, double at, const reference::Stiffness& k)
+  ExactStep(const Scene& scene, const State& from, double at, const Stiffness& k)
       : step(scene, from, at, k), minimum(step.minimum(from.x)) {}
 };
 
@@ -140,25 +140,6 @@ std::vector<std::string> refuse(const Scene& scene, const SolverChoice& choice) 
 
 }  // namespace
 
-reference::Stiffness stiffness_of(const Scene& scene, const SolverChoice& choice) {
-  reference::Stiffness all;
-  all.fill(std::numeric_limits<double>::infinity());
-  const bool has_material = std::ranges::find(choice.params.specs(), kMaterial.name,
-                                              &ParamSpec::name) != choice.params.specs().end();
-  if (has_material && takes_stiffness(scene, choice.params)) return scene.stiffness;
-  for (const ParamSpec& spec : choice.params.specs()) {
-    if (spec.name == "links" && choice.params.is("links", "rigid")) return all;
-    for (const Family family : kFamilies)
-      if (spec.name == to_string(family)) {
-        double& k = all[static_cast<std::size_t>(family)];
-        const double value = choice.params.real(spec.name);
-        if (spec.unit == "N/m") k = value;
-        if (spec.unit == "m/N" && value > 0) k = 1 / value;
-      }
-  }
-  return all;
-}
-
 State state_at(const Scene& scene, const SolverChoice& from, double at) {
   State state = scene.start;
   const auto steps = static_cast<int>(std::lround(at / scene.dt));
@@ -176,7 +157,7 @@ State state_at(const Scene& scene, const SolverChoice& from, double at) {
 
 std::vector<Convergence> converge(const Scene& scene, const State& state, double at,
                                   const std::vector<std::string>& solvers, int most) {
-  std::map<reference::Stiffness, ExactStep> steps;  // that of rigid links is most solvers'
+  std::map<Stiffness, ExactStep> steps;  // that of rigid links is most solvers'
   std::vector<Convergence> all;
   for (const std::string& solver : solvers) {
     const SolverChoice choice = parse_solver(solver);
@@ -184,7 +165,7 @@ std::vector<Convergence> converge(const Scene& scene, const State& state, double
     one.solver = without(choice, {choice.entry->accuracy.sweeps, choice.entry->accuracy.substeps});
     one.refused = refuse(scene, choice);
     if (!one.refused.empty()) continue;
-    one.stiffness = stiffness_of(scene, choice);
+    one.stiffness = stiffness_of(scene, choice.params);
     const auto known = steps.find(one.stiffness);
     follow(one, scene, state, at, most,
            known != steps.end()

@@ -23,7 +23,7 @@ struct ConvergencePoint {
 struct Convergence {
   std::string solver;                    ///< without its iterations and substeps
   std::vector<std::string> refused;      ///< why it cannot be asked; nothing below has a meaning
-  reference::Stiffness stiffness{};      ///< of its links [N/m]; infinite: rigid
+  Stiffness stiffness{};                 ///< of its links [N/m]; infinite: rigid
   std::string problem;                   ///< why its step has no exact solution; "": it has
   double exact_residual = 0;             ///< N, what Newton's method left
   double moved = 0;                      ///< m, how far its last round still moved it
@@ -40,10 +40,6 @@ State state_at(const Scene&, const SolverChoice& from, double at);
 /// 8, ... up to `most` iterations, each anew from that state and without substeps.
 std::vector<Convergence> converge(const Scene&, const State& state, double at,
                                   const std::vector<std::string>& solvers, int most);
-
-/// The spring constants of the solver's links [N/m], the scene's or its own parameters'; infinite:
-/// rigid.
-reference::Stiffness stiffness_of(const Scene&, const SolverChoice&);
 
 /// Index of the first point from which on the gap stays at most `gap`; -1: it does not get there.
 int reached(const Convergence&, double gap);

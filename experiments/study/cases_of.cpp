@@ -137,6 +137,17 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
   if (!wrong.empty()) throw InputError(wrong);
 }
 
+Study of_build(Study study, const std::string& build) {
+  if (build.empty()) return study;
+  for (std::string& solver : study.solvers) {
+    admit_solver(solver);
+    const SolverChoice choice = parse_solver(solver);
+    if (choice.params.has("build") && choice.params.value("build").empty())
+      solver = with(solver, "build=" + build);
+  }
+  return study;
+}
+
 std::vector<Case> cases_of(const Study& study) {
   std::vector<Case> cases;
   each_case(study, [&](Case&& one) { cases.push_back(std::move(one)); });

@@ -9,6 +9,7 @@
 #include "core/io/document.hpp"
 #include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
+#include "experiments/results/builds.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -93,8 +94,12 @@ void refuse_control_characters(Diagnostics& diagnostics, const Value& value) {
 /// Reads one document into a Study; what is wrong goes to the diagnostics.
 class StudyReader {
  public:
-  StudyReader(Diagnostics& diagnostics, Study& study, std::string preset)
-      : diagnostics_(diagnostics), study_(study), wanted_(std::move(preset)) {}
+  StudyReader(Diagnostics& diagnostics, Study& study, std::string preset,
+              std::vector<std::string> instead)
+      : diagnostics_(diagnostics),
+        study_(study),
+        wanted_(std::move(preset)),
+        instead_(std::move(instead)) {}
 
   void read(const Value& root) {
     Section section(diagnostics_, root, "the study");
@@ -127,7 +132,13 @@ class StudyReader {
       admit_solver(text);
       parse_solver(text);
     };
-    if (strings(section, "solvers", study_.solvers, read)) remember_solvers();
+    if (!instead_.empty()) {
+      section.find("solvers");
+      std::ranges::for_each(study_.solvers = instead_, read);
+      remember_solvers();
+    } else if (strings(section, "solvers", study_.solvers, read)) {
+      remember_solvers();
+    }
   }
   void read_searched(Section& section) {
     const std::optional<std::string> file = section.string("searched");
@@ -403,7 +414,8 @@ class StudyReader {
 
   Diagnostics& diagnostics_;
   Study& study_;
-  std::string wanted_;  ///< a preset
+  std::string wanted_;                ///< a preset
+  std::vector<std::string> instead_;  ///< solvers that stand in place of the study's own
   std::vector<SolverChoice> choices_;
 };
 
@@ -467,7 +479,7 @@ void StudyReader::read_presets(Section& section) {
     const std::string& name = presets->keys[i].text;
     study_.presets.push_back(name);
     Study other = study_;  // a preset that was not asked for is judged all the same
-    StudyReader reader(diagnostics_, name == wanted_ ? study_ : other, "");
+    StudyReader reader(diagnostics_, name == wanted_ ? study_ : other, "", instead_);
     reader.choices_ = choices_;
     Section preset(diagnostics_, presets->items[i], "[preset." + name + "]");
     reader.read_keys(preset, true);
@@ -534,22 +546,27 @@ std::vector<StudyKey> study_keys() {
   return keys;
 }
 
-Study load_study(const std::string& name_or_path, const std::string& preset) {
+std::string study_name(const std::string& name_or_path) {
+  return printable(find_study(name_or_path).stem().string());
+}
+
+Study load_study(const std::string& name_or_path, const std::string& preset,
+                 const std::vector<std::string>& solvers) {
   Study study;
   study.file = find_study(name_or_path);
-  study.name = printable(study.file.stem().string());
+  study.name = study_name(name_or_path);
   const Document document = read_document(study.file, {});
   Diagnostics diagnostics(document);
   refuse_control_characters(diagnostics, document.root);
   diagnostics.throw_if_any();
-  StudyReader(diagnostics, study, preset).read(document.root);
+  StudyReader(diagnostics, study, preset, solvers).read(document.root);
   if (!diagnostics.clean()) judge_scenes(study, diagnostics);
   diagnostics.throw_if_any();
   if (!preset.empty() && study.preset.empty())
     throw InputError({{study.file, 0, 0,
                        "study '" + study.name + "' has no preset '" + preset + "'" +
                            suggestion(preset, study.presets)}});
-  return study;
+  return of_build(std::move(study), given_build().id);
 }
 
 }  // namespace taut

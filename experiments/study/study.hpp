@@ -97,9 +97,13 @@ std::vector<SearchedSetting> read_searched(const std::filesystem::path&);
 /// no line of its own.
 Diagnostic placed(const Study&, const std::string& scene, const Diagnostic& of_scene);
 
-/// Reads a study by name or path; `preset` replaces what it names, "" nothing. Throws InputError
-/// with every diagnostic at once, those of its scenes too, or if the study has no such preset.
-Study load_study(const std::string& name_or_path, const std::string& preset = "");
+/// Reads a study by name or path, of_build() given_build(); `preset` replaces what it names, ""
+/// nothing; `solvers` stand in place of its own, which are not looked at. Throws InputError with
+/// every diagnostic at once, those of its scenes too, or if the study has no such preset.
+Study load_study(const std::string& name_or_path, const std::string& preset = "",
+                 const std::vector<std::string>& solvers = {});
+/// Its name, without reading it. Throws InputError: there is no such study.
+std::string study_name(const std::string& name_or_path);
 
 /// One of Study::scenes, in its parts.
 struct StudyScene {
@@ -108,6 +112,11 @@ struct StudyScene {
 };
 /// Throws InputError if what follows the colon is no list of key=value, each key once.
 StudyScene parse_scene(const std::string& text);
+
+/// The study with its external programs called a build of this name ("": as they are): their
+/// results are addressed by it, in place of what is known of their files. Throws InputError as
+/// parse_solver() does.
+Study of_build(Study, const std::string& build);
 
 /// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
 /// wrong with any of the scenes, or if it would be more than 100 000.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 
@@ -15,12 +16,19 @@ fs::path sibling_program(const std::string& name) {
   return name.empty() ? this_program() : this_program().parent_path() / name;
 }
 
+namespace {
+fs::path g_data_folder;
+}
+
+void set_data_folder(fs::path folder) { g_data_folder = std::move(folder); }
+
 fs::path data_folder() {
   if (const char* given = std::getenv("TAUT_DATA"); given && *given) {
     if (!fs::is_directory(given))
       throw InputError("TAUT_DATA is '" + std::string(given) + "', which is no folder");
     return given;
   }
+  if (!g_data_folder.empty()) return g_data_folder;
   const fs::path installed = this_program().parent_path().parent_path() / TAUT_INSTALLED_DATA;
   return fs::is_directory(installed) ? installed : fs::path(TAUT_SOURCE_DATA);
 }

@@ -6,9 +6,14 @@
 
 namespace taut {
 
-/// Where shipped scenes and studies are: $TAUT_DATA if it is set, else share/taut beside an
-/// installed program, else the source tree. Throws InputError if $TAUT_DATA is no folder.
+/// Where shipped scenes and studies are: $TAUT_DATA if it is set, else what set_data_folder() said,
+/// else share/taut beside an installed program, else the source tree. Throws InputError if
+/// $TAUT_DATA is no folder.
 std::filesystem::path data_folder();
+
+/// For a library in a program that is not installed beside these data, as Python's is. Before the
+/// first use of them.
+void set_data_folder(std::filesystem::path);
 
 /// Where converged references are: beside the shipped scenes if installed, else
 /// results/references of the source tree.

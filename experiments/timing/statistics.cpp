@@ -86,6 +86,11 @@ Certainty judge(const Interval& ratio, const Interval& control, double tolerance
                                                                : Certainty::likely;
 }
 
+bool beyond_both(const Interval& ratio, const Interval& control, double tolerance) {
+  const double nearest = std::abs(std::log(ratio.mid < 1 ? ratio.high : ratio.low));
+  return !ratio.contains(1) && nearest > std::log1p(std::max(tolerance, spread(control)));
+}
+
 bool same_within(double tolerance, const Interval& ratio) { return spread(ratio) <= tolerance; }
 
 }  // namespace taut

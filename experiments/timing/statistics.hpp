@@ -53,6 +53,9 @@ std::string_view meaning(Certainty);
 /// How sure a ratio of costs is, given the ratio of identical code to itself: `clear` or `likely`
 /// a difference of more than the tolerance, which way the ratio's middle says; `too_noisy`; `none`.
 Certainty judge(const Interval& ratio, const Interval& control, double tolerance = kTolerance);
+/// Whether the whole interval is beyond the tolerance and beyond what identical code showed: what
+/// an alarm of one among many comparisons rests on.
+bool beyond_both(const Interval& ratio, const Interval& control, double tolerance = kTolerance);
 /// `clear` or `likely`.
 inline bool is_difference(Certainty c) { return c <= Certainty::likely; }
 /// Whether the whole interval is within the tolerance of 1.

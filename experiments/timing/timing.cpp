@@ -46,8 +46,10 @@ StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall
 
 constexpr std::string_view kRefusal = "! ";  ///< begins a worker's answer that is no time
 
-std::vector<std::string> worker_command(const CaseSpec& spec) {
-  std::vector<std::string> words{program_of(spec), "bench", "--worker", spec.scene, spec.solver};
+std::vector<std::string> worker_command(const CaseSpec& spec,
+                                        const std::filesystem::path& program) {
+  std::vector<std::string> words{program.empty() ? program_of(spec) : program, "bench", "--worker",
+                                 spec.scene, spec.solver};
   for (const std::string& value : spec.overrides) words.insert(words.end(), {"--set", value});
   return words;
 }
@@ -117,10 +119,10 @@ void pin(int cores) {
   sched_setaffinity(0, sizeof mine, &mine);
 }
 
-TimingWorker::TimingWorker(const CaseSpec& spec)
-    : process_(worker_command(spec), {.input = ProcessOptions::Stream::piped,
-                                      .output = ProcessOptions::Stream::piped,
-                                      .errors = ProcessOptions::Stream::inherited}) {
+TimingWorker::TimingWorker(const CaseSpec& spec, const std::filesystem::path& program)
+    : process_(worker_command(spec, program), {.input = ProcessOptions::Stream::piped,
+                                               .output = ProcessOptions::Stream::piped,
+                                               .errors = ProcessOptions::Stream::inherited}) {
   std::string line;
   if (!process_.read_line(line) || line != "ready")
     throw std::runtime_error("the timing worker of " + spec.scene + " " + spec.solver +
@@ -178,7 +180,7 @@ struct SampledCase {
 SampledCase start_case(const CaseToTime& timed, const TimingOptions& options) {
   SampledCase one;
   one.guard([&] {
-    one.worker = std::make_unique<TimingWorker>(timed.spec);
+    one.worker = std::make_unique<TimingWorker>(timed.spec, timed.program);
     if (options.deadline != SteadyClock::time_point::max())
       one.worker->give_up_at(options.deadline);
   });
@@ -226,13 +228,14 @@ class Control {
     return twin_;
   }
 
-  Interval ratio(const std::vector<Timing>& timings) const {
+  /// By one clock.
+  Interval ratio(const std::vector<Timing>& timings, std::vector<double> Timing::*samples) const {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    const std::vector<double>& again = twin_.timing.samples;
+    const std::vector<double>& again = twin_.timing.*samples;
     if (of_ >= timings.size() || again.empty() || !twin_.timing.failure.empty() ||
         !timings[of_].failure.empty())
       return {kNaN, kNaN, kNaN};
-    return interleaved_ratio(std::span(timings[of_].samples).subspan(skipped_), again);
+    return interleaved_ratio(std::span(timings[of_].*samples).subspan(skipped_), again);
   }
 
  private:
@@ -302,7 +305,8 @@ TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions
     });
     session.timings.push_back(std::move(one.timing));
   }
-  session.control = control.ratio(session.timings);
+  session.control = control.ratio(session.timings, &Timing::samples);
+  session.wall_control = control.ratio(session.timings, &Timing::wall);
   return session;
 }
 

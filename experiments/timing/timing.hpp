@@ -53,8 +53,9 @@ struct TimeIsUp : std::runtime_error {
 /// Samples of one case, taken in a process of its own that stays alive between them.
 class TimingWorker {
  public:
-  /// Starts `bench --worker` for the case; throws InputError if the case cannot be built.
-  explicit TimingWorker(const CaseSpec&);
+  /// Starts `bench --worker` of the program, by default program_of(), for the case; throws
+  /// InputError if the case cannot be built.
+  explicit TimingWorker(const CaseSpec&, const std::filesystem::path& program = {});
 
   /// Runs the first `steps` steps once and returns their mean; required before sample(). Both throw
   /// std::runtime_error if the worker died.
@@ -104,6 +105,7 @@ struct Timing {
 struct CaseToTime {
   CaseSpec spec;
   int steps = 0;
+  std::filesystem::path program = {};  ///< that times it; empty: program_of() the case
 };
 
 /// Every case sampled in rounds of alternating order (ABBA: A B C C B A), so that a
@@ -111,7 +113,8 @@ struct CaseToTime {
 /// runs twice as its own A/A control.
 struct TimingSession {
   std::vector<Timing> timings;
-  Interval control;  ///< ratio of a case to itself; not a number: none could be timed
+  Interval control;            ///< ratio of a case to itself; not a number: none could be timed
+  Interval wall_control = {};  ///< the same in wall time
 
   /// Cost of case i over case j, from their interleaved samples.
   Interval ratio(std::size_t i, std::size_t j) const;

@@ -234,6 +234,38 @@ TAUT_TRUTH(liu_newton, 8, 24, "Projective Dynamics converges to Newton's step",
                  FirstStep(s).distance("pd", 1000), 1e-9);
 }
 
+TAUT_TRUTH(xpbd_fixed_point, 8, 26,
+           "the sweeps of XPBD come to rest beside implicit Euler's step, not on it",
+           "Chen et al., Primal residual reduction with XPBD and hyperelasticity, Computers and "
+           "Graphics 2024, abstract") {
+  Scene s = elastic(swinging_sheet(12), 1e4);
+  const std::string solver = "xpbd:substeps=1,order=mesh,precision=double";
+  if (!can_run(findings, solver, s)) return;
+  s.start = Simulation(s, "implicit", 32).state();
+  const FirstStep step(s);
+  const double end = step.distance(solver, 16384);
+  findings.holds(solver, "16384 sweeps end more than a micrometre from it", end > 1e-6);
+  findings.equal(solver, "distance after 16384 over 8192 sweeps", "1",
+                 end / step.distance(solver, 8192), 1, 0.02);
+  findings.below("implicit", "distance of Newton's method from it", "m",
+                 step.distance("implicit", 100), 1e-9);
+}
+
+TAUT_TRUTH(lbfgs_factor, 8, 27,
+           "Projective Dynamics is L-BFGS without pairs, and with them it is faster",
+           "Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation, TOG 2017, "
+           "abstract") {
+  Scene s = elastic(swinging_sheet(12), 1e3);
+  if (!can_run(findings, "pd:method=lbfgs", s)) return;
+  s.start = Simulation(s, "implicit", 32).state();
+  const FirstStep step(s);
+  const double plain = step.distance("pd", 10);
+  findings.equal("pd:method=lbfgs,history=0", "distance after ten iterations over pd's", "1",
+                 step.distance("pd:method=lbfgs,history=0", 10) / plain, 1, 1e-9);
+  findings.below("pd:method=lbfgs", "distance after 60 iterations over pd's", "1",
+                 step.distance("pd:method=lbfgs", 60) / step.distance("pd", 60), 0.5);
+}
+
 TAUT_TRUTH(wang_chebyshev, 8, 25,
            "Chebyshev's semi-iteration saves more, the slower the plain iteration is: 3 times on a "
            "hung sheet, 10 times and more on one that swings",

@@ -11,7 +11,7 @@ build=$(readlink -f "$1")
 if [[ ${2:-} == --whole ]]; then study= tests=()
 else
   study=regression
-  tests=(-R '^(browser|cluster.container|documents|external_test|format|install_test|launcher_test|layers$|pictures_test|VideoTest|Plots)')
+  tests=(-R '^(browser|cluster.container|documents|external_test|format|install_test|launcher_test|layers$|pictures_test|python\.|VideoTest|Plots)')
 fi
 not_here() { echo "bare_root: not run: $1"; exit 77; }
 
@@ -28,6 +28,15 @@ mkdir "$root" "$scratch/changed" "$scratch/work"
 debootstrap --variant=minbase bookworm "$root" "$mirror" >"$scratch/log" 2>&1 || { tail -n 3 "$scratch/log"; not_here "debootstrap failed"; }
 mkdir -p "$root$home"
 cp /etc/resolv.conf /etc/hosts "$root/etc"
+# The Debian packages in a root of their own: what they depend on is all that `import taut` needs.
+packages=
+if command -v dpkg-shlibdeps >/dev/null && grep -q '^TAUT_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
+  (cd "$build" && cpack -G DEB -B "$scratch/packages") >"$scratch/log" 2>&1 || { tail -n 20 "$scratch/log"; exit 1; }
+  packages=$scratch/packaged
+  cp -a "$root" "$packages"
+  cp "$scratch"/packages/{taut,python3-taut}_*.deb "$packages/tmp"
+else echo "bare_root: the Debian packages are not tried: dpkg-shlibdeps is missing, or the Python module is off"
+fi
 # Equal commands, so that what BUILD compiled stays: its -Werror, and for its compiler cache one that only calls the compiler.
 export CI=
 ! grep -q '^TAUT_WERROR:BOOL=ON' "$build/CMakeCache.txt" || CI=1
@@ -35,10 +44,17 @@ cache=$(sed -n 's/^CCACHE:FILEPATH=\(\/.*\)/\1/p' "$build/CMakeCache.txt")
 [[ -z $cache ]] || install -Dm755 <(printf '#!/bin/sh\nexec "$@"\n') "$root$cache"
 
 # What is mounted is gone with the process.
-export root home build scratch study
+export root home build scratch study packages
 unshare --mount --pid --fork --kill-child bash -euc '
   mount -t overlay overlay -o "lowerdir=$home,upperdir=$scratch/changed,workdir=$scratch/work" "$root$home" &&
     mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" || exit 77
+  if [[ -n $packages ]]; then
+    mount -t proc proc "$packages/proc" && mount --rbind /dev "$packages/dev" || exit 77
+    packaged() { chroot "$packages" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive "$@"; }
+    packaged apt-get update >"$scratch/log" 2>&1 &&
+      packaged sh -c "apt-get install -y --no-install-recommends /tmp/*.deb" >>"$scratch/log" 2>&1 || { tail -n 20 "$scratch/log"; exit 1; }
+    packaged python3 -c "import taut; print(\"python3-taut:\", taut.simulate(\"hang\", \"bullet\", duration=0.5).status, len(taut.scenes()), \"scenes\")"
+  fi
   rm -f "$root$build/CMakeCache.txt" "$root$build/build.ninja"
   in_root() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TMPDIR=/tmp CI="$CI" "$@"; }
   in_root "$home/taut" run $study --out /tmp/runs

@@ -25,8 +25,8 @@ ASKED = {
     "render": ["./small.toml", "--solver", "jakobsen", "--quality", "draft", "--size", "320x240"],
     "require": ["./small.toml", "jakobsen", "--patience", "20"], "frontier": ["./small.toml", "jakobsen", "--tolerance", "0.5"],
     "converge": ["./small.toml", "--solver", "jakobsen", "--most", "8"], "advise": ADVICE[1:], "bench": ["./study.toml", *FEW],
-    "bench effects": ["chain", *FEW], "bench scaling": ["./sizes.toml", "--samples", "2"], "doctor": [], "verify": ["free-fall"],
-    "baseline update": ["./study.toml", "--why", "a test"], "baseline diff": ["./study.toml"], "check": ["./study.toml"],
+    "bench effects": ["chain", *FEW], "bench scaling": ["./sizes.toml", "--samples", "2"], "doctor": [], "verify": ["free-fall"], "verify steps": ["rigid", "--scene", "chain"],
+    "baseline update": ["./study.toml", "--why", "a test"], "baseline diff": ["./study.toml"], "check": ["./study.toml"], "history": ["./study.toml"],
     "cluster submit": ["./study.toml", "--on", "parallel", "--dry-run", "--shards", "1", "--folder", "cN"],
     "cluster status": ["c0"], "cluster merge": ["c0"], "external probe": [TOY], "external score": ["./small.toml", "end.pc2", "--fps", "64"],
     "external scene": ["./small.toml", "-o", "scene.json"],
@@ -58,6 +58,7 @@ class EveryVerb(CommandLine):
     def prepare(self):
         self.study(solvers=["jakobsen", "bullet"], rest="axes.iterations = [1, 4]\n")
         self.study("sizes.toml", rest=SWEPT)
+        self.taut("run", "./study.toml", env=os.environ | {"TAUT_COMMIT": "before"})  # history compares two builds
         self.taut("run", "./study.toml")
         self.taut("baseline", "update", "./study.toml", "--why", "to have one")
         self.taut("cluster", "submit", *(word.replace("N", "0") for word in ASKED["cluster submit"]))

@@ -25,6 +25,12 @@ add_executable(taut core/main.cpp made.hpp)
 target_include_directories(taut PRIVATE ${PROJECT_BINARY_DIR})
 target_compile_definitions(taut PRIVATE SOURCE="${PROJECT_SOURCE_DIR}")
 add_custom_target(taut-f32)
+option(TAUT_PYTHON "" OFF)
+if(TAUT_PYTHON)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  add_custom_target(taut_python COMMAND mkdir -p python/taut COMMAND cp ${PROJECT_SOURCE_DIR}/experiments/taut_module python/taut/__init__.py
+                    COMMAND touch python/taut/_taut.toy.so)
+endif()
 if(TAUT_TESTS)
   enable_testing()
   foreach(target taut_tests taut_tests_f32 taut_fuzz)
@@ -82,6 +88,7 @@ class Launcher(unittest.TestCase):
             shutil.copy2(REPOSITORY / name, self.clone)
         (self.clone / "CMakeLists.txt").write_text(CMAKE)
         (self.clone / "core/main.cpp").write_text(MAIN)
+        (self.clone / "experiments/taut_module").write_text("version = 1\n")
         self.tools = self.folder / "tools"
         self.tools.mkdir()
         for name in ["cmake", "ninja", "ctest"]:
@@ -220,6 +227,25 @@ class Launcher(unittest.TestCase):
         self.assertRegex(done.err, r"gnuplot-nox +draws the plots")
         self.assertNotIn("libeigen3-dev", done.err)
         self.assertEqual(self.started(), ["dpkg-query"])
+
+    def test_python_has_the_module_and_installs_what_a_script_names(self):
+        script = self.folder / "script.py"
+        script.write_text("import os, sys, taut\nprint('version', taut.version, sys.argv[1:], os.environ.get('TAUT_RESULTS'))\n")
+        self.assertEqual(self.call("python", str(script), "a b").out, "version 1 ['a b'] None\n")
+        self.assertFalse((self.clone / "build/default/taut").exists(), "the program was not asked for")
+        self.started()
+        again = self.call("python", "-c", "import taut; print(taut.version)", cwd=self.folder)
+        self.assertEqual((again.out, again.err, self.started()), ("1\n", "", []))
+        (self.clone / "experiments/taut_module").write_text("version = 2\n")
+        self.assertIn(f"version 2 [] {self.clone}/results\n", self.call("python", str(script), cwd=self.folder).out)
+        self.call("--no-install", "python", "-c", "pass", MISSING="python3-matplotlib")
+        script.write_text("import matplotlib\n")
+        done = self.call("--no-install", "python", str(script), expect=2, MISSING="python3-matplotlib")
+        self.assertRegex(done.err, r"python3-matplotlib +charts")
+        self.edit("version 1", "version 3")
+        done = self.call("--no-install", "python", expect=2, MISSING="python3-numpy")
+        self.assertRegex(done.err, r"python3-numpy +the arrays")
+        self.assertIn("version 3", self.call("--no-install", "run", MISSING="python3-numpy").out, "which needs none of it")
 
     def test_two_calls_at_once_build_once(self):
         self.call("run")

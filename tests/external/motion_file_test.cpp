@@ -53,7 +53,7 @@ class MotionFiles : public testing::Test {
     return x;
   }
   static std::string misfit(const Scene& scene, const MotionOptions& options) {
-    const MotionFile motion(scene, options);
+    const ComputedMotion motion(scene, opened(options));
     return motion.misfits().empty() ? "" : motion.misfits().front();
   }
   fs::path folder_;
@@ -75,7 +75,7 @@ TEST_F(MotionFiles, UnitAndAxisAreSaidAndTheOrderIsFound) {
         return y;
       });
       file.scale = unit, file.z_up = z_up;
-      MotionFile motion(scene, file);
+      ComputedMotion motion(scene, opened(file));
       ASSERT_TRUE(motion.misfits().empty()) << motion.misfits().front();
       for (int k = 0; k < 4; ++k) {
         const std::vector<Vec3> x = motion.frame(k), want = moved(scene, k);
@@ -185,7 +185,7 @@ TEST_F(MotionFiles, TheOrderMayComeFromARestShape) {
     return x;
   });
   file.rest = folder_ / "rest_00000.obj";
-  MotionFile motion(scene, file);
+  ComputedMotion motion(scene, opened(file));
   ASSERT_TRUE(motion.misfits().empty()) << motion.misfits().front();
   EXPECT_LT((motion.frame(0)[3] - crumpled[3] - Vec3(0, -0.05, 0)).norm(), 1e-14);
 }
@@ -209,7 +209,7 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
   Scene turned = scene;
   turned.start.x = rigid({});
   for (const char* name : {"a.pc2", "a.npy"}) {
-    MotionFile motion(turned, write(name, turned, rigid));
+    ComputedMotion motion(turned, opened(write(name, turned, rigid)));
     ASSERT_TRUE(motion.misfits().empty()) << motion.misfits().front();
     const StrainFloor floor = motion.floor(turned);
     const double seen = strain_rms(turned, motion.frame(3));
@@ -223,7 +223,7 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
     out.setf(std::ios::fixed), out.precision(6);
     for (const Vec3& v : rigid({})) out << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
   }
-  MotionFile six(turned, {.file = folder_ / "six0.obj"});
+  ComputedMotion six(turned, opened({.file = folder_ / "six0.obj"}));
   const double seen = strain_rms(turned, six.frame(3)), floor = six.floor(turned).rms;
   EXPECT_GT(seen, floor / 2);
   EXPECT_LT(seen, floor * 2);
@@ -231,7 +231,7 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
 
 /// The value of a line of the settings.
 std::string setting(const Scene& scene, const MotionOptions& options, const std::string& name) {
-  const ResolvedSettings all = MotionFile(scene, options).settings(scene);
+  const ResolvedSettings all = ComputedMotion(scene, opened(options)).settings(scene);
   const ResolvedSetting* one = find_setting(all, name);
   return one ? one->text : "";
 }
@@ -261,8 +261,8 @@ TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {
   EXPECT_EQ(setting(scene, turned, "unit"), "1 unit is 0.01 m, z up");
   EXPECT_TRUE(
       setting(scene, turned, "vertex order").starts_with("matched by position, at the start"));
-  EXPECT_EQ(MotionFile(scene, {.file = plain.file, .fps = 50}).frame_dt(), 0.02);
-  EXPECT_EQ(MotionFile(scene, {.file = plain.file, .fps = 0.5}).frame_dt(), 2);
+  EXPECT_EQ(ComputedMotion(scene, opened({.file = plain.file, .fps = 50})).frame_dt(), 0.02);
+  EXPECT_EQ(ComputedMotion(scene, opened({.file = plain.file, .fps = 0.5})).frame_dt(), 2);
 }
 
 TEST_F(MotionFiles, AVertexMayBeginATenThousandthOfTheExtentOffItsPlace) {
@@ -277,7 +277,7 @@ TEST_F(MotionFiles, AVertexMayBeginATenThousandthOfTheExtentOffItsPlace) {
       });
       EXPECT_EQ(misfit(scene, file).empty(), good) << share << shuffled;
       if (!good) continue;
-      MotionFile motion(scene, file);
+      ComputedMotion motion(scene, opened(file));
       EXPECT_NEAR((motion.frame(0)[20] - scene.start.x[20]).norm(), share * tolerance, 1e-12);
       EXPECT_NEAR((motion.frame(0)[40] - scene.start.x[40]).norm(), 0, 1e-12);
     }
@@ -303,7 +303,7 @@ TEST_F(MotionFiles, TheFloorOfAStepIsItsVarianceOverTheRestLength) {
       for (const Vec3& v : scene.start.x)
         out << "v " << v.x() / unit << ' ' << v.y() / unit << ' ' << v.z() / unit << '\n';
     }
-    MotionFile motion(scene, options);
+    ComputedMotion motion(scene, opened(options));
     ASSERT_TRUE(motion.misfits().empty()) << motion.misfits().front();
     double sum = 0, most = 0;
     for (const Link& link : scene.links) {

@@ -15,6 +15,7 @@ BINARIES = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/default").r
 TREE = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLES = pathlib.Path(__file__).resolve().parent / "examples"
 VERSION = re.search(r"project\(taut VERSION (\S+)", (TREE / "CMakeLists.txt").read_text())[1]
+PYTHON = "TAUT_PYTHON:BOOL=ON" in (BINARIES / "CMakeCache.txt").read_text()
 
 
 os.environ["CMAKE_GENERATOR"] = "Ninja"  # what ./taut installs; CMake's own default is make
@@ -110,6 +111,23 @@ class Installed(unittest.TestCase):
         call("g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", include, "-isystem",
              "/usr/include/eigen3", source)
 
+    def test_the_python_module_uses_public_headers_alone(self):
+        included = {name for file in (TREE / "experiments/python").glob("*.?pp")
+                    for name in re.findall(r'#include "(?:core|experiments)/(?!python/)(\S+)"', file.read_text())}
+        self.assertGreater(len(included), 10)
+        for name in included:
+            self.assertTrue((self.prefix / "include/taut" / name).exists(), name)
+
+    def test_the_python_package_is_one_with_the_program(self):
+        if not PYTHON:
+            self.skipTest("TAUT_PYTHON is off")
+        package = self.prefix / "lib/python3/dist-packages/taut"
+        said = call("/usr/bin/python3", "-c", "import taut; print(taut.__file__); print(taut.simulate('hang', duration=0.1).record['digest'])",
+                    cwd=self.folder, env={**os.environ, "PYTHONPATH": str(package.parent)}).splitlines()
+        record = json.loads(call(self.prefix / "bin/taut", "case", "hang", "jakobsen", "--duration", 0.1, "--json"))
+        self.assertEqual(said, [str(package / "__init__.py"), record["digest"]])
+        self.assertTrue((package / "data").samefile(self.prefix / "share/taut"))
+
     def test_debian_packages(self):
         for tool in ("dpkg-deb", "dpkg-shlibdeps"):
             if not shutil.which(tool):
@@ -117,7 +135,7 @@ class Installed(unittest.TestCase):
         out = self.folder / "packages"
         call("cpack", "-G", "DEB", "-B", out, cwd=BINARIES)
         packages = {call("dpkg-deb", "-f", deb, "Package").strip(): deb for deb in out.glob("*.deb")}
-        self.assertEqual(set(packages), {"taut", "libtaut-dev"})
+        self.assertEqual(set(packages), {"taut", "libtaut-dev"} | ({"python3-taut"} if PYTHON else set()))
         field = lambda package, name: call("dpkg-deb", "-f", packages[package], name).strip()
         self.assertEqual(field("taut", "Version"), VERSION)
         self.assertIn("libbullet3.24", field("taut", "Depends"))
@@ -131,6 +149,15 @@ class Installed(unittest.TestCase):
         self.assertEqual(record["status"]["kind"], "ok")
         record = json.loads(call(taut, "case", "hang", "bullet:precision=float", "--duration", 0.5, "--json", cwd=self.folder))
         self.assertEqual(record["status"]["kind"], "ok", "taut-f32 came along")
+        if not PYTHON:
+            return
+        for part in (f"taut (= {VERSION})", "python3-numpy", "libbullet"):
+            self.assertIn(part, field("python3-taut", "Depends"))
+        call("dpkg-deb", "-x", packages["python3-taut"], root)
+        said = call("/usr/bin/python3", "-c", "import taut; print(len(taut.scenes()), taut.simulate('hang', 'bullet', duration=0.5).status)",
+                    cwd=self.folder, env={**os.environ, "PYTHONPATH": str(root / "usr/lib/python3/dist-packages")})
+        self.assertRegex(said, r"^[12]\d ok$")
+        self.assertLess(packages["python3-taut"].stat().st_size, 20e6, "without what debuggers read")
 
 
 if __name__ == "__main__":

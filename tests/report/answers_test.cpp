@@ -7,6 +7,7 @@
 #include "experiments/report/answer/winners.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/study/study.hpp"
+#include "experiments/timing/hardly_moves.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::answers_test {
@@ -217,6 +218,18 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   EXPECT_EQ(answer.table("price").rows[0][3].note, "hardly moves: 40\u00A0% of the way");
   EXPECT_EQ(answer.table("price").rows[0][3].state, Cell::State::hardly_moves);
   EXPECT_FALSE(answer.table("price").rows[0][1].best) << "alone";
+
+  // a reference in motion decides; without one, what steps miss does
+  cases[2].record.values["motion.share"] = 0.6;
+  cases[2].record.values["step.share"] = 0.1;
+  EXPECT_EQ(made.answer().table("price").rows[0][3].note, "8 × 1");
+  cases[2].record.values["motion.share"] = std::nan("");
+  EXPECT_EQ(hardly_moves(cases[2].record),
+            "hardly moves: 10\u00A0% of the way, by what its steps miss");
+  EXPECT_TRUE(is_judged_by_steps(cases[2].record));
+  EXPECT_EQ(made.answer().table("price").rows[0][3].text(), "not reached");
+  cases[2].record.values["step.share"] = 0.3;
+  EXPECT_EQ(made.answer().table("price").rows[0][3].note, "8 × 1");
 }
 
 // Where work is not equal each cell says its own, beside what it says anyway.

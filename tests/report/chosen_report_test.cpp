@@ -259,6 +259,47 @@ TEST(Chosen, CostsOfTwoFoldersAreComparedSolverBySolver) {
   EXPECT_EQ(costs[0][3], to_string(Certainty::none)) << "within the noise";
   EXPECT_EQ(model["tables"]["differences-ends"]["caption"],
             "1 cases in both; in A alone 3, in B alone 5");
+  const Json& values = model["tables"]["differences"];
+  const Json cpu = values["rows"].back();
+  EXPECT_EQ((Json{cpu[0], cpu[1], cpu[2], cpu[3]}), (Json{"CPU time of a step", 3.0, 1.0, 1.0}));
+  EXPECT_NEAR(cpu[4].get<double>(), -0.5, 1e-12);
+  EXPECT_NE(values["notes"].back()["note"].get<std::string>().find("not timed together"),
+            std::string::npos);
+}
+
+// Three builds of which the last stepped; the one in between has no result of the case.
+TEST(Chosen, AHistoryHasALineForEachCaseAndBothBuildsOfAStep) {
+  ReportInput input = chosen();
+  EXPECT_FALSE(model_of(input).contains("history"));
+  const Record& now = input.studies[0].records[0];
+  const auto point = [](const std::string& key, double stretch) {
+    return std::make_shared<const HistoryPoint>(
+        HistoryPoint{key, "ok", true, {{"stretch.rms", stretch}}});
+  };
+  History history{"s",
+                  {{"one", "2026-01-01"}, {"two", "2026-02-01"}, {"three", "2026-03-01"}},
+                  {{"hang a",
+                    "hang",
+                    "jakobsen",
+                    {point("k", 0.02), nullptr, point(now.key, 0.03)},
+                    {"k", "", now.key}}},
+                  {},
+                  {},
+                  1};
+  history.builds[1].gap = "does not build";
+  history.steps = {{0, 0, 2, "stretch.rms", 0.02, 0.03, "", 0.5}};
+  input.histories = {history};
+  const Json found = model_of(input)["history"][0];
+  EXPECT_EQ(found["rows"][0]["values"], (Json{0.02, nullptr, 0.03}));
+  EXPECT_EQ(found["builds"][1]["gap"], "does not build");
+  const Json& step = found["rows"][0]["steps"][0];
+  EXPECT_EQ((Json{step["at"], step["before"], step["now"]}), (Json{2, "one", "three"}));
+  EXPECT_EQ(step["cases"][1]["case"], short_key("hang", "jakobsen", 4));
+  EXPECT_FALSE(step["cases"][0].contains("case")) << "no case of this page";
+  EXPECT_EQ(step["values"][0]["text"], "2 % -> 3 %");
+  EXPECT_EQ(found["sentences"][0],
+            "stretch.rms of hang a rose from 2 to 3 % at three (2026-03-01), or at one of 1 builds "
+            "before it without a result");
 }
 
 TEST(Chosen, ACostIsThatOfTheCheapestThatReachesAnErrorAndAProfileCountsThem) {

@@ -257,6 +257,8 @@ std::vector<Other> others(const SolverEntry& entry, const ParamSpec& param) {
   if (key == "mass-spring.drag-at") return {{"central", "drag=0.01"}};
   if (key == "mass-spring.integrator") return {{"explicit-euler", ""}};  // the third is Verlet
   if (key == "implicit.linear") return {{"cg", ""}};
+  if (key == "pd.history") return {{"1", "method=lbfgs"}};
+  if (key == "pd.preconditioner") return {{"factor", "method=ncg"}};
   if (param.name == "layout") return {{"batches", ""}};
   if (key == "implicit.self") return {{"octree", ""}};  // the grid finds nothing to part
   if (param.kind == ParamSpec::Kind::choice) {

@@ -27,6 +27,39 @@ TEST(ProjectiveDynamics, FixedPointIsNewtonsStep) {
   }
 }
 
+TEST(ProjectiveDynamics, ByOtherMethodsItGoesToTheSamePoint) {
+  for (const unsigned seed : {3u, 4u}) {
+    const Scene scene = irregular_net(seed);
+    const std::vector<Vec3> exact = ElasticStep(scene, kSoft).minimum();
+    for (const char* method : {"lbfgs", "ncg", "ncg,preconditioner=factor"})
+      EXPECT_LT(largest_distance(after_one_step(scene, "pd:iterations=2000,method=" +
+                                                           std::string(method) + "," + kSoftText)
+                                     .x,
+                                 exact),
+                1e-8)
+          << method;
+    // without pairs L-BFGS is Projective Dynamics
+    EXPECT_LT(largest_distance(
+                  after_one_step(scene, "pd:iterations=10,method=lbfgs,history=0," + kSoftText).x,
+                  after_one_step(scene, "pd:iterations=10," + kSoftText).x),
+              1e-13);
+    // and with them it goes faster
+    const auto error = [&](const std::string& more) {
+      return largest_distance(after_one_step(scene, "pd:" + kSoftText + more).x, exact);
+    };
+    EXPECT_LT(error(",iterations=60,method=lbfgs"), 0.5 * error(",iterations=60"));
+  }
+}
+
+TEST(ProjectiveDynamics, OtherMethodsSayWhatTheyDoNotKnow) {
+  Scene scene = hanging_sheet(3, 3);
+  scene.colliders = {{.shape = Plane{.offset = -3}}};
+  for (const char* method : {"lbfgs", "ncg"}) {
+    const SolverChoice choice = parse_solver("pd:chebyshev=0.9,method=" + std::string(method));
+    EXPECT_EQ(choice.entry->unsupported(scene, choice.params).size(), 2u);
+  }
+}
+
 TEST(ProjectiveDynamics, AcceleratedItGoesToTheSamePointFaster) {
   const Scene scene = irregular_net(3);
   const std::vector<Vec3> exact = ElasticStep(scene, kSoft).minimum();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 
 #include "core/reference/implicit_step.hpp"
 #include "tests/solver/elastic_step.hpp"
@@ -117,6 +118,104 @@ TEST(Implicit, StrainOfAHungSheetIsInverseToItsStiffness) {
   const double soft = strain("1e3"), stiff = strain("1e5");
   EXPECT_GT(soft, 1e-4);
   EXPECT_NEAR(stiff * 1e5 / (soft * 1e3), 1, 0.02);
+}
+
+TEST(KeptMultipliers, ConvergeToTheSameStep) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const Scene scene = irregular_net(seed);
+    const std::vector<Vec3> exact = ElasticStep(scene, kSoft).minimum();
+    EXPECT_LT(largest_distance(
+                  after_one_step(scene, "implicit:multipliers=keep,iterations=200," + kSoftText).x,
+                  exact),
+              1e-9);
+  }
+}
+
+/// Out to the side and let go, as stiff as Newton's method from x_t needs many iterations for.
+TEST(KeptMultipliers, MoveStiffClothRightWithThreeIterations) {
+  Scene scene = hanging_sheet(12, 12, {true, true, false});
+  scene.pins.clear();
+  for (int i = 0; i < 12; ++i) scene.pins.push_back(i);
+  for (Vec3& x : scene.start.x) x = {x.x(), x.y() * std::sqrt(0.5), -x.y() * std::sqrt(0.5)};
+  for (const char* k : {"1e4", "1e6"}) {
+    const std::string springs = std::string("structural=") + k + ",shear=" + k;
+    const std::vector<Vec3> exact = simulate(scene, "implicit:iterations=100," + springs, 32).x;
+    const auto off = [&](const std::string& how) {
+      return largest_distance(simulate(scene, "implicit:" + how + "," + springs, 32).x, exact);
+    };
+    EXPECT_LT(off("multipliers=keep,iterations=3"), 3e-3) << k;
+    if (k == std::string("1e6")) EXPECT_GT(off("iterations=3"), 0.02);
+  }
+}
+
+/// Slack cloth: its tensions of the step before keep it from folding at random.
+TEST(KeptMultipliers, HoldSlackClothWithTwoIterations) {
+  Scene scene = crumpled(hanging_sheet(12, 12, {true, false, false}), 1e-3);
+  scene.damping = 0.5;
+  for (const int pin : scene.pins) scene.start.x[to_index(pin)].x() = pin == 0 ? 0.15 : 0.85;
+  const State end = simulate(scene, "implicit:multipliers=keep,iterations=2,structural=1e4", 96);
+  for (const Link& l : scene.links)
+    EXPECT_LT((end.x[to_index(l.b)] - end.x[to_index(l.a)]).norm(), 1.02 * l.rest);
+}
+
+/// Along its axis a spring between a pin and a mass is linear: z of a step is known.
+Scene oscillator(double dt) {
+  Scene scene = hanging_sheet(1, 2, {true, false, false});
+  scene.gravity.setZero();
+  scene.dt = dt;
+  scene.start.x[1].y() -= 0.05;
+  return scene;
+}
+
+TEST(Integrators, KeepWhatTheyShouldOfASwing) {
+  const double k = 10;
+  for (const double dt : {1.0 / 64, 1.0 / 32}) {
+    const Scene scene = oscillator(dt);
+    const double w2 = k / scene.mesh.mass[1], w = std::sqrt(w2);
+    const auto energy = [&](const State& s) {
+      const double stretch = scene.start.x[0].y() - s.x[1].y() - scene.links[0].rest;
+      return s.v[1].squaredNorm() + w2 * stretch * stretch;
+    };
+    const auto ratio = [&](const std::string& integrator, int steps) {
+      return energy(simulate(scene, "implicit:structural=10,integrator=" + integrator, steps)) /
+             energy(scene.start);
+    };
+    EXPECT_NEAR(ratio("midpoint", 64), 1, 1e-9);
+    EXPECT_NEAR(ratio("euler", 10), std::pow(1 + w2 * dt * dt, -10), 1e-9);
+    // BDF2's root that is no parasite: (3 - 2 i w dt) z^2 - 4 z + 1 = 0
+    const std::complex<double> a(3, -2 * w * dt), z = (2.0 + std::sqrt(4.0 - a)) / a;
+    EXPECT_NEAR(ratio("bdf2", 200) / ratio("bdf2", 100), std::pow(std::norm(z), 100),
+                0.02 * std::pow(std::norm(z), 100));
+  }
+}
+
+TEST(Integrators, HaveTheOrdersOneTwoTwo) {
+  const auto error = [&](const std::string& integrator, int steps) {
+    const Scene scene = oscillator(0.5 / steps);
+    const double w = std::sqrt(10 / scene.mesh.mass[1]);
+    const State end = simulate(scene, "implicit:structural=10,integrator=" + integrator, steps);
+    return std::abs(scene.start.x[0].y() - end.x[1].y() - scene.links[0].rest -
+                    0.05 * std::cos(0.5 * w));
+  };
+  for (const auto& [integrator, order] :
+       {std::pair<std::string, double>{"euler", 1}, {"bdf2", 2}, {"midpoint", 2}})
+    EXPECT_NEAR(std::log2(error(integrator, 256) / error(integrator, 512)), order, 0.1)
+        << integrator;
+}
+
+TEST(Integrators, SayWhatTheyDoNotKnow) {
+  Scene scene = hanging_sheet(3, 3);
+  const auto refused = [&](const std::string& integrator) {
+    const SolverChoice choice = parse_solver("implicit:integrator=" + integrator);
+    return choice.entry->unsupported(scene, choice.params).size();
+  };
+  EXPECT_EQ(refused("bdf2"), 0u);
+  scene.damping = 1;
+  scene.wind = Wind{};
+  scene.colliders = {{.shape = Plane{.offset = -3}}};
+  EXPECT_EQ(refused("bdf2"), 3u);
+  EXPECT_EQ(refused("midpoint"), 3u);
+  EXPECT_EQ(refused("euler"), 0u);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ def main():
             found += wrong_links(file)
         if file in documents and known and file.name != "CHANGELOG.md":
             named = set(re.findall(r"(?:\./|`|    |/)taut (?!VERB)([a-z]+)", file.read_text()))
-            found += [f"names the verb {verb}, which taut has not" for verb in sorted(named - known - {"test"})]
+            found += [f"names the verb {verb}, which taut has not" for verb in sorted(named - known - {"test", "python"})]
         wrong += [f"{file.relative_to(ROOT)}: {what}" for what in found]
     print("\n".join(wrong))
     return 1 if wrong else 0

@@ -14,38 +14,41 @@ core/solver/simd         | core/solver/simd/
 core/solver/layout       | core/(model|solver/(simd|layout))/
 core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|thread_pool))
 core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_pool))
-core/reference           | core/(model|reference)/
+core/reference           | core/(model|reference)/|core/solver/panel_factor\.hpp
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
-experiments/metrics      | core/model/(bending|crossings|index|scene|triangle)\.hpp|experiments/metrics/
+experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|triangle)|reference/step_error)\.hpp|experiments/metrics/
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
+experiments/python       | (core/(model|io)|experiments/(metrics|case|python))/|experiments/system/data.hpp
 experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|case|results))/
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/(study|results)/[a-z_]+.hpp
-experiments/timing       | (core/(model|reference)|experiments/(answer|system|case|results|study|timing|beside))/
+experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|case|results|study|timing|beside))/
 experiments/beside       | beside\.hpp
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
+experiments/history      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|baseline|history))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
 experiments/advise       | (core/(model|io)|experiments/(answer|system|case|results|study|timing|require|advise))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/
 experiments/render/picture | (core/model|experiments/(answer|system|case|render/(image|opengl|picture)))/
-experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(picture|film)|report))/
-experiments/report       | (core/model|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|truths|report))/
+experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(image|picture|film)|report))/
+experiments/report       | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|history|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|steps|report/chart))/|experiments/report/input
 experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
-experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|truths|report/(chart|answer|model)))/|experiments/report/input
+experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|history|report/(chart|plot)))/
+experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|history|truths|report/(chart|answer|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
+pybind11/|Python.h      | ^experiments/python/.*
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
@@ -127,6 +130,9 @@ experiments/metrics/planted.cpp|"core/model/solver.hpp"
 experiments/metrics/planted.cpp|"core/solver/layout/particles.hpp"
 experiments/case/planted.cpp|"bullet_ref/read_back.hpp"
 experiments/external/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/python/planted.cpp|"core/solver/layout/particles.hpp"
+experiments/python/planted.cpp|"experiments/results/store.hpp"
+experiments/case/planted.cpp|<pybind11/numpy.h>
 core/solver/simd/planted.hpp|"core/solver/layout/particles.hpp"
 core/solver/layout/planted.hpp|"core/solver/constraints/relaxation.hpp"
 core/solver/constraints/planted.cpp|"core/solver/contact/projector.hpp"
@@ -136,6 +142,7 @@ experiments/results/planted.cpp|"experiments/study/study.hpp"
 experiments/study/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/study/cluster/planted.cpp|"experiments/study/frontier/parameter_frontier.hpp"
 experiments/study/frontier/planted.cpp|"experiments/study/cluster/cluster.hpp"
+experiments/history/planted.cpp|"experiments/report/input.hpp"
 experiments/timing/planted.cpp|"core/solver/simd/kernels.hpp"
 experiments/steps/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/timing/bench/planted.cpp|"experiments/results/store.hpp"

@@ -25,7 +25,7 @@ Convergence of_one(const Scene& scene, const std::string& solver, int most) {
 }
 
 TEST(Convergence, ExactStepOfSpringsAgreesWithADenseNewtonProgram) {
-  const reference::Stiffness soft{800, 300, 50};
+  const Stiffness soft{800, 300, 50};
   for (const unsigned seed : {11u, 12u}) {
     const Scene scene = irregular_net(seed);
     const ElasticStep dense(scene, soft);
@@ -138,7 +138,7 @@ std::vector<Vec3> nearest_placement(const Scene& scene, const std::vector<Vec3>&
 
 /// Sheets that fold along their rows, and chains and nets, with velocities at random.
 TEST(Convergence, ExactStepOfRigidLinksAgreesWithDenseNewtonOnTheKktSystem) {
-  reference::Stiffness rigid;
+  Stiffness rigid;
   rigid.fill(std::numeric_limits<double>::infinity());
   for (const unsigned seed : {3u, 4u, 5u})
     for (auto [scene, cells] : {std::pair(let_go(5, 5, {true, true, false}), true),
@@ -282,7 +282,7 @@ TEST(Convergence, SaysWhatItCannotCompare) {
   EXPECT_FALSE(of_one(scene, "mass-spring", 4).refused.empty());
   Scene elastic = scene;
   const auto of = [&](const char* solver) {
-    return stiffness_of(elastic, parse_solver(solver))[0];
+    return stiffness_of(elastic, parse_solver(solver).params)[0];
   };
   EXPECT_TRUE(std::isinf(of("admm")));
   EXPECT_EQ(of("admm:links=elastic,structural=7"), 7);

@@ -245,6 +245,36 @@ std::unique_ptr<PositionReader> open_pc2(const std::filesystem::path& path) {
                     {.spacing = rate});
 }
 
+template <class Real>
+class MemoryReader final : public PositionReader {
+ public:
+  MemoryReader(std::span<const Real> numbers, std::size_t vertices, const std::string& name)
+      : numbers_(numbers) {
+    const std::size_t frames = vertices > 0 ? numbers.size() / (3 * vertices) : 0;
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    if (frames == 0 || frames > kMost || vertices > kMost ||
+        frames * 3 * vertices != numbers.size())
+      fail_in(name, std::to_string(numbers.size()) + " numbers are no frames of " +
+                        std::to_string(vertices) + " vertices");
+    header_.vertices = static_cast<int>(vertices);
+    header_.frames = static_cast<int>(frames);
+    header_.rounding = sizeof(Real) == 4 ? Rounding::binary32 : Rounding::binary64;
+  }
+
+  std::vector<Vec3> read(int k) override {
+    assert(k >= 0 && k < header_.frames);
+    const std::size_t n = static_cast<std::size_t>(header_.vertices);
+    const Real* at = numbers_.data() + static_cast<std::size_t>(k) * 3 * n;
+    std::vector<Vec3> x(n);
+    for (Vec3& v : x)
+      for (double& c : v) c = static_cast<double>(*at++);
+    return x;
+  }
+
+ private:
+  std::span<const Real> numbers_;
+};
+
 struct Format {
   std::string_view extension;
   std::unique_ptr<PositionReader> (*open)(const std::filesystem::path&);
@@ -272,6 +302,16 @@ void check_positions_name(const std::filesystem::path& path) { format_of(path); 
 
 std::unique_ptr<PositionReader> open_positions(const std::filesystem::path& path) {
   return format_of(path).open(path);
+}
+
+std::unique_ptr<PositionReader> positions_in(std::span<const float> numbers, std::size_t vertices,
+                                             const std::string& name) {
+  return std::make_unique<MemoryReader<float>>(numbers, vertices, name);
+}
+
+std::unique_ptr<PositionReader> positions_in(std::span<const double> numbers, std::size_t vertices,
+                                             const std::string& name) {
+  return std::make_unique<MemoryReader<double>>(numbers, vertices, name);
 }
 
 std::unique_ptr<PositionWriter> create_positions(const std::filesystem::path& path,

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,13 @@ class PositionReader {
 /// Throws InputError with file and line or byte: unreadable, another extension, a malformed header,
 /// counts that do not agree with the size of the file, a missing frame of a sequence.
 std::unique_ptr<PositionReader> open_positions(const std::filesystem::path&);
+
+/// Frames in memory, [frames][vertices][3] in C order, which must outlive the reader. Throws
+/// InputError that names `name`: no whole frame, or more numbers than whole frames have.
+std::unique_ptr<PositionReader> positions_in(std::span<const float>, std::size_t vertices,
+                                             const std::string& name);
+std::unique_ptr<PositionReader> positions_in(std::span<const double>, std::size_t vertices,
+                                             const std::string& name);
 
 /// Appends frames to a new file or sequence; what was written is good if the program is killed.
 /// float32 where the format has nothing else; coordinates of .npy and .obj come back bit for bit.

@@ -6,6 +6,7 @@
 #include "experiments/timing/bench_answer.hpp"
 #include "experiments/timing/beside.hpp"
 #include "experiments/timing/recommendation.hpp"
+#include "experiments/timing/two_builds.hpp"
 
 namespace taut::verb::bench {
 
@@ -14,7 +15,7 @@ namespace {
 struct Options {
   std::vector<std::string> what, solvers, settings;
   std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
-  std::string preset, metric = kErrorMetric, out, beside;
+  std::string preset, metric = kErrorMetric, out, against, keep_build, beside;
   int rounds = 5;
   double seconds = 0.05;
   double tolerance = kTolerance;
@@ -52,6 +53,25 @@ StudyBench compared(const std::string& scene, const Options& options) {
   return bench({"", cases}, scene, options);
 }
 
+/// This build over another one, case by case; whether it is slower anywhere.
+bool against(const std::string& name, const Options& options) {
+  const std::filesystem::path folder = folder_of_build(options.out, options.against);
+  Study study = load_study(name, options.preset);
+  Store store(options.out);
+  const std::vector<TwoBuilds> found = time_two_builds(
+      cases_of_two(run_and_collect({study.name, taut::cases_of(study)}, store, "taut bench"),
+                   folder),
+      {.rounds = options.rounds, .seconds = options.seconds, .progress = Countdown("case")});
+  const std::string now = build_named(this_build()).id;
+  for (const BuildRatio& one : ratios_of(found, options.against, now))
+    note_ratio(store, study.name, one);
+  Answer answer{"bench", name};
+  answer.add({"machine"}, machine_name());
+  answer.add(table_of(found, "against", options.against));
+  print(answer, options.format);
+  return any_slower(found);
+}
+
 /// Cores that a case keeps busy.
 int threads_of(const SolverChoice& choice) {
   for (const ParamSpec& spec : choice.params.specs())
@@ -72,13 +92,21 @@ int run(const Options& options) {
     print(bench_beside(options.beside, options.rounds), options.format);
     return kPass;
   }
+  if (!options.keep_build.empty()) {
+    std::cout << keep_build(options.out, options.keep_build).string() << '\n';
+    if (options.what.empty()) return kPass;
+  }
   if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
+  bool slower = false;
   for (const std::string& name : options.what)
-    print(
-        bench_answer(options.solvers.empty() ? timed(name, options) : compared(name, options),
-                     {options.levels, options.metric, options.tolerance, options.solvers.empty()}),
-        options.format);
-  return kPass;
+    if (!options.against.empty())
+      slower = against(name, options) || slower;
+    else
+      print(bench_answer(
+                options.solvers.empty() ? timed(name, options) : compared(name, options),
+                {options.levels, options.metric, options.tolerance, options.solvers.empty()}),
+            options.format);
+  return slower ? kRegression : kPass;
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -96,6 +124,12 @@ void add_options(CLI::App& app, Options& o) {
       ->check(above_zero());
   add_samples(app, o.rounds, o.seconds);
   add_results(app, o.out);
+  app.add_option(
+         "--against", o.against,
+         "Another build of taut, a folder or the name of a kept one, timed in turns with this "
+         "one; exit 1 if this one is slower")
+      ->excludes("--solver");
+  app.add_option("--keep-build", o.keep_build, "Keep this program under a name, for --against");
   add_format(app, o.format, "Print every case and every sample, too");
   app.add_flag("--worker", o.worker, "Serve samples of one case over stdin and stdout (internal)")
       ->group("");
@@ -112,7 +146,9 @@ TAUT_VERB(bench) = {
     .example =
         "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
         "jakobsen:iterations=1,substeps=16 --solver "
-        "bullet:iterations=1,substeps=16\n  taut bench effects\n  taut bench scaling\n  "
+        "bullet:iterations=1,substeps=16\n  taut bench --keep-build before && taut bench "
+        "regression "
+        "--against before\n  taut bench effects\n  taut bench scaling\n  "
         "taut bench --beside ../ShapeOp",
     .answer =
         "machine host build times; "
@@ -120,5 +156,6 @@ TAUT_VERB(bench) = {
         "recommended: scene target solver setting error cost times answer; "
         "cases: scene case solver cost cpu wall peak_bytes error status times verdict remark; "
         "samples: scene case round cpu wall; "
-        "iterations: code each sweeps differs",
+        "iterations: code each sweeps differs; "
+        "against: case ratio control verdict wall wall_control",
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};

@@ -1,12 +1,9 @@
-#include <cmath>
-
 #include "core/io/scene_io.hpp"
-#include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/motion_file.hpp"
-#include "experiments/render/film/recorded_runs.hpp"
+#include "experiments/render/film/drawing.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
@@ -21,29 +18,18 @@ struct Options {
   Format format;
 };
 
-/// The scene gets the file's time step and, if the file is shorter, its duration.
-std::vector<std::string> fitted(const Options& o) {
-  std::vector<std::string> settings = o.settings;
-  Scene scene = load_scene(find_scene(o.scene), settings);
-  const external::MotionFile motion(scene, o.motion);
-  if (std::abs(motion.frame_dt() - scene.dt) > 1e-6 * scene.dt) {
-    settings.push_back("time.dt=" + shortest(motion.frame_dt()));
-    scene = load_scene(find_scene(o.scene), settings);
-  }
-  if (motion.header().frames < 2)
-    throw InputError(o.motion.file.string() +
-                     ": has one frame; a motion has two at least, the start and what follows");
-  if (const int steps = motion.header().frames - 1; steps < scene.steps)
-    settings.push_back("time.duration=" + shortest(steps * motion.frame_dt()));
-  return settings;
-}
-
 int run(const Options& o) {
   if (o.solvers.size() > 3) throw InputError("--solver: three to draw beside, at most");
+  if (!o.picture.empty() && !o.picture.ends_with(".png"))
+    throw InputError("--picture " + o.picture + ": what is drawn here ends in .png");
   check_solvers(o.solvers);
   const std::string solver = external::solver_text(o.motion);
   admit_solver(solver);
-  const Case one = CaseMaker().make({o.scene, fitted(o), solver});
+  const auto load = [&](const std::vector<std::string>& settings) {
+    return load_scene(find_scene(o.scene), settings);
+  };
+  const std::vector<std::string> settings = fitted(load, o.settings, external::opened(o.motion));
+  const Case one = CaseMaker().make({o.scene, settings, solver});
   for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
     throw InputError(why);
   const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : 120});
@@ -57,7 +43,9 @@ int run(const Options& o) {
     RunRequest both{
         .scene = o.scene, .overrides = one.spec.overrides, .solvers = {one.spec.solver}};
     both.solvers.insert(both.solvers.end(), o.solvers.begin(), o.solvers.end());
-    draw_end(both, o.picture, [](const std::string& news) { progress() << news << '\n'; });
+    const RunSet set =
+        record_runs(both, [](const std::string& news) { progress() << news << '\n'; });
+    draw(set, {.times = {set.scene.duration()}}, o.picture, Countdown("still"));
     answer.add({"picture"}, o.picture);
   }
   print(answer, o.format);

@@ -2,12 +2,10 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/render/film/recorded_runs.hpp"
-#include "experiments/render/image/video.hpp"
+#include "experiments/render/film/drawing.hpp"
 #include "experiments/render/picture/figure.hpp"
-#include "experiments/system/files.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/text.hpp"
-#include "experiments/timing/statistics.hpp"
 
 namespace taut::verb::render {
 
@@ -39,77 +37,6 @@ RenderQuality parse_quality(const std::string& name) {
   return RenderQuality::still();
 }
 
-SceneRendererOptions look_of(const Options& options, const std::string& quality, int width,
-                             int height) {
-  SceneRendererOptions look;
-  look.width = width, look.height = height;
-  look.theme = options.dark ? Theme::dark() : Theme::paper();
-  look.quality = parse_quality(options.quality.empty() ? quality : options.quality);
-  look.view = parse_view(options.view);
-  look.colour_by = parse_colour_by(options.colour);
-  look.range = options.range / ColourScale{look.colour_by}.shown();
-  return look;
-}
-
-using Files = std::vector<std::string>;
-
-/// Files of several moments get the time into their names: ball-t0.50.png.
-Files draw_stills(const Options& options, const RunSet& set, const std::vector<double>& times,
-                  const fs::path& out) {
-  const auto [width, height] = parse_size(options.size.empty() ? "1920x1080" : options.size);
-  const auto layout = PageLayout::page(width, height, static_cast<int>(set.runs.size()));
-  SceneRendererOptions look = look_of(options, "still", layout.panel_width, layout.panel_height);
-  look.frame = FitRegion::beside_inset();
-  look.from = times.front(), look.to = times.back();
-  const SceneRenderer renderer(set.scene, set.runs, look);
-  const Countdown countdown("still");
-  Files files;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    fs::path file = out;
-    if (times.size() > 1)
-      file.replace_filename(out.stem().string() + formatted("-t%.2f", times[k]) +
-                            out.extension().string());
-    write_png(file, compose(renderer, layout, {times[k]}));
-    countdown(k + 1, times.size());
-    files.push_back(file.string());
-  }
-  return files;
-}
-
-Files draw_sheet(const Options& options, const RunSet& set, const std::vector<double>& times,
-                 const fs::path& out) {
-  const auto [width, height] = parse_size(options.size.empty() ? "480x400" : options.size);
-  SceneRendererOptions look = look_of(options, "video", width, height);
-  look.from = times.front(), look.to = times.back();
-  const SceneRenderer renderer(set.scene, set.runs, look);
-  const auto layout = PageLayout::sheet(width, height, static_cast<int>(set.runs.size()),
-                                        static_cast<int>(times.size()));
-  write_png(out, compose(renderer, layout, times));
-  return {out.string()};
-}
-
-/// Without ffmpeg: a picture of the last frame.
-Files draw_video(const Options& options, const RunSet& set, const fs::path& out) {
-  const auto [width, height] = parse_size(options.size.empty() ? "1280x720" : options.size);
-  const auto layout = PageLayout::page(width, height, static_cast<int>(set.runs.size()));
-  SceneRendererOptions look = look_of(options, "video", layout.panel_width, layout.panel_height);
-  look.frame = FitRegion::beside_inset();
-  const SceneRenderer renderer(set.scene, set.runs, look);
-  const double dt = set.scene.dt;
-  const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
-  const int frames = set.scene.steps / stride + 1;
-  VideoWriter video(out, {width, height, frame_rate(stride * dt), 22});
-  const Countdown countdown("frame");
-  for (int k = 0; k < frames && video.write(compose(renderer, layout, {k * stride * dt})); ++k)
-    countdown(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
-  const std::string why = video.finish();
-  if (why.empty()) return {out.string()};
-  std::cerr << printable(out.string()) << ": " << why << "; a picture of its end instead\n";
-  fs::path poster = out;
-  write_png(poster.replace_extension(".png"), compose(renderer, layout, {set.scene.duration()}));
-  return {poster.string()};
-}
-
 fs::path output_of(const Options& options, const std::string& scene) {
   if (!options.output.empty()) return options.output;
   return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
@@ -127,42 +54,61 @@ void check_output(const Options& options) {
     throw InputError("-o " + options.output + ": what is drawn here ends in " + suffix);
 }
 
+/// What the options say of the drawing, but its moments. Throws InputError before anything is run.
+Drawing drawing_of(const Options& options) {
+  Drawing drawing;
+  if (options.video) drawing.kind = Drawing::Kind::video;
+  if (options.sheet) drawing.kind = Drawing::Kind::sheet;
+  if (!options.size.empty()) drawing.size = parse_size(options.size);
+  if (!options.quality.empty()) drawing.quality = parse_quality(options.quality);
+  drawing.view = parse_view(options.view);
+  drawing.colour_by = parse_colour_by(options.colour);
+  drawing.range = options.range;
+  drawing.dark = options.dark;
+  return drawing;
+}
+
+/// Moments that were asked for, ascending; a run ends with the last of them where nothing later is
+/// seen. Throws InputError: one is not within the scene's time.
+std::vector<double> times_of(const Options& options, std::vector<std::string>& overrides) {
+  std::vector<double> times;
+  for (const std::string& at : options.at) times.push_back(parse_number(at));
+  if (times.empty()) return times;
+  std::ranges::sort(times);
+  if (times.front() < 0) throw InputError("--at: times are not negative");
+  const Scene scene = load_scene(find_scene(options.what.scene), overrides);
+  if (times.back() > scene.duration() + scene.dt)
+    throw InputError("--at " + number_text(times.back()) + " is after the end at " +
+                     number_text(scene.duration()) + " s: see --duration");
+  const double seen = times.back() + 1e-4;
+  if (!options.video && options.duration.empty() && seen < scene.duration())
+    overrides.push_back("time.duration=" + std::to_string(seen));
+  return times;
+}
+
 int run(Options options) {
   if (options.output.ends_with(".mp4")) options.video = true;
   check_output(options);
-  if (options.what.solvers.empty() || options.what.solvers.size() > std::size_t{kMostPanels})
+  RunRequest& what = options.what;
+  if (what.solvers.empty() || what.solvers.size() > std::size_t{kMostPanels})
     throw InputError("one to nine --solver, for example --solver jakobsen --solver bullet");
-  check_solvers(options.what.solvers);
-  if (!options.dt.empty()) options.what.overrides.push_back("time.dt=\"" + options.dt + "\"");
+  check_solvers(what.solvers);
+  if (!options.dt.empty()) what.overrides.push_back("time.dt=\"" + options.dt + "\"");
   if (!options.duration.empty())
-    options.what.overrides.push_back("time.duration=\"" + options.duration + "\"");
-  std::vector<double> times;
-  for (const std::string& at : options.at) times.push_back(parse_number(at));
-  std::ranges::sort(times);
-  if (!times.empty() && times.front() < 0) throw InputError("--at: times are not negative");
-  if (!times.empty()) {
-    const Scene scene = load_scene(find_scene(options.what.scene), options.what.overrides);
-    if (times.back() > scene.duration() + scene.dt)
-      throw InputError("--at " + number_text(times.back()) + " is after the end at " +
-                       number_text(scene.duration()) + " s: see --duration");
-    const double seen = times.back() + 1e-4;  // nothing later will be seen
-    if (!options.video && options.duration.empty() && seen < scene.duration())
-      options.what.overrides.push_back("time.duration=" + std::to_string(seen));
-  }
-  parse_view(options.view), parse_colour_by(options.colour);
-  if (!options.size.empty()) parse_size(options.size);
-  const RunSet set =
-      record_runs(options.what, [](const std::string& text) { progress() << text << '\n'; });
-  const fs::path out = output_of(options, set.scene.name);
+    what.overrides.push_back("time.duration=\"" + options.duration + "\"");
+  Drawing drawing = drawing_of(options);
+  drawing.times = times_of(options, what.overrides);
+  const RunSet set = record_runs(what, [](const std::string& text) { progress() << text << '\n'; });
   const double end = set.scene.duration();
-  if (times.empty() && options.sheet)
-    times = {0, end / 8, end / 4, end / 2, end};
-  else if (times.empty())
-    times = {end};
-  const std::vector<std::string> files = options.video   ? draw_video(options, set, out)
-                                         : options.sheet ? draw_sheet(options, set, times, out)
-                                                         : draw_stills(options, set, times, out);
-  print_files(files, options.json);
+  if (drawing.times.empty())
+    drawing.times =
+        options.sheet ? std::vector{0.0, end / 8, end / 4, end / 2, end} : std::vector{end};
+  const fs::path out = output_of(options, set.scene.name);
+  const Drawn drawn = draw(set, drawing, out, Countdown(options.video ? "frame" : "still"));
+  if (!drawn.no_video.empty())
+    std::cerr << printable(out.string()) << ": " << drawn.no_video
+              << "; a picture of its end instead\n";
+  print_files(drawn.files, options.json);
   return kPass;
 }
 

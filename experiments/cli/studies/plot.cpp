@@ -1,15 +1,9 @@
-#include "experiments/report/plot/plot.hpp"
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/metrics/metric.hpp"
-#include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/stored.hpp"
+#include "experiments/report/study_figures.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 
@@ -17,23 +11,12 @@ namespace taut::verb::plot {
 
 namespace {
 
-using report::PlotSpec;
-
 struct Options {
   std::string study, preset, kind, x, y, title, results, output;
   std::string width, height, font;
   std::vector<std::string> solvers, scenes;
   bool no_title = false, json = false;
 };
-
-/// A plot's `slope`, the exponent of a theory; nothing if it names none.
-std::optional<double> exponent(const std::string& text) {
-  if (text.empty()) return {};
-  const std::optional<double> value = whole<double>(text);
-  if (!value || !std::isfinite(*value))
-    throw InputError("slope = " + text + " in [[plot]]: expected a number");
-  return value;
-}
 
 /// "84mm" as 84: a number with this unit. Throws InputError.
 double size_of(const char* option, const std::string& text, const std::string& unit) {
@@ -51,96 +34,25 @@ report::FigureSize figure_size(const Options& options) {
           size_of("--font", options.font, "pt")};
 }
 
-/// A picture, and the exponent of a theory that it names.
-struct Wanted {
-  PlotSpec spec;
-  std::optional<double> slope = {};
-};
-
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
-std::vector<Wanted> wanted(const Options& options, const Study& study) {
-  if (!options.kind.empty() || !options.x.empty() || !options.y.empty())
-    return {{{.kind = options.kind.empty() ? "work-precision" : options.kind,
-              .x = options.x,
-              .y = options.y,
-              .title = options.title}}};
-  std::vector<Wanted> all;
-  for (const Plot& plot : study.plots) {
-    const auto option = [&](const char* name) {
-      const auto at = plot.options.find(name);
-      return at == plot.options.end() ? std::string() : at->second;
-    };
-    all.push_back({{.kind = plot.kind,
-                    .x = option("x"),
-                    .y = option("y"),
-                    .along = option("along"),
-                    .title = option("title"),
-                    .file = option("file")},
-                   exponent(option("slope"))});
+std::vector<report::FigureRequest> wanted(const Options& options, const Study& study) {
+  using Title = report::FigureRequest::Title;
+  std::vector<report::FigureRequest> all;
+  if (options.kind.empty() && options.x.empty() && options.y.empty())
+    all = report::figures_of(study);
+  else
+    all.push_back({.spec = {.kind = options.kind.empty() ? "work-precision" : options.kind,
+                            .x = options.x,
+                            .y = options.y,
+                            .title = options.title}});
+  for (report::FigureRequest& one : all) {
+    one.spec.size = figure_size(options);
+    one.title = options.no_title        ? Title::none
+                : options.title.empty() ? Title::single
+                                        : Title::always;
   }
-  if (all.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
   return all;
-}
-
-/// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
-/// and on standard error.
-std::string hold_other(const PlotSpec& spec, report::Records& records, const std::string& scene) {
-  const std::string held = spec.x == "dt" ? report::kSweeps : "dt";
-  const report::Slice slice = report::hold(records, held, held == "dt" ? 1.0 / 64 : 8);
-  const std::size_t left_out = records.size() - slice.records.size();
-  records = slice.records;
-  if (left_out == 0) return "";
-  const std::string at = report::quantity(held).text(slice.value, 3);
-  const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";
-  progress() << scene << ", " << spec.y << " over " << spec.x << ": " << setting << "; " << left_out
-             << " cases at other values are not drawn\n";
-  return ", " + setting;
-}
-
-/// Of one scene; a setting that is neither on an axis nor what orders the curves is held at its
-/// commonest.
-report::PlotPanel panel_of(const Wanted& want, const report::StudyResult& study,
-                           const std::string& scene, const Store& store) {
-  const PlotSpec& spec = want.spec;
-  report::PlotPanel panel{scene, study.records, {}, want.slope};
-  std::erase_if(panel.records, [&](const Record* r) { return r->scene != scene; });
-  if (spec.kind == "scaling") panel.slope = 1;
-  if (spec.kind != "stability") panel.title += hold_other(spec, panel.records, scene);
-  if (spec.kind == "series") panel.series = report::stored_series(panel.records, spec.y, store);
-  const ValueSpec* value = find_value(spec.y).second;
-  if (const auto slope = study.slopes.find(scene);
-      slope != study.slopes.end() && spec.kind == "convergence" && spec.x == report::kSweeps &&
-      !panel.slope && value && value->falls_with_sweeps)
-    panel.slope = slope->second;
-  return panel;
-}
-
-/// A figure of these scenes; of a single one it bears the name. Several panels have titles of their
-/// own, and the figure has one only if it is asked for.
-report::PlotFiles draw(Wanted want, const Options& options, const report::StudyResult& study,
-                       const std::vector<std::string>& scenes, const Store& store,
-                       const std::filesystem::path& out) {
-  PlotSpec& spec = want.spec;
-  const report::PlotKind& kind = report::find_plot_kind(spec.kind);
-  if (spec.x.empty()) spec.x = kind.x;
-  if (spec.y.empty()) spec.y = kind.y;
-  std::vector<report::PlotPanel> panels;
-  for (const std::string& scene : scenes) panels.push_back(panel_of(want, study, scene, store));
-  if (spec.title.empty())
-    spec.title = report::capitalised(report::quantity(spec.y).title) + " over " +
-                 report::quantity(spec.x).title;
-  if (panels.size() == 1) spec.title += ", " + panels.front().title;
-  if (options.no_title || (panels.size() > 1 && options.title.empty())) spec.title.clear();
-  report::Records drawn;
-  for (const report::PlotPanel& panel : panels)
-    drawn.insert(drawn.end(), panel.records.begin(), panel.records.end());
-  if (const std::string unequal = report::unequal_work(drawn); !unequal.empty())
-    spec.remark = "unequal work: " + unequal;
-  if (!spec.remark.empty()) progress() << spec.remark << '\n';
-  if (spec.file.empty()) spec.file = spec.kind + "-" + spec.y + "-over-" + spec.x;
-  spec.file = slug((scenes.size() == 1 ? scenes.front() + "-" : "") + spec.file);
-  return report::make_plot(spec, panels, out);
 }
 
 /// Keeps what was chosen, all if nothing was; throws InputError if the study has no such.
@@ -157,41 +69,6 @@ void keep(const char* option, std::vector<Record>& records, const std::vector<st
     std::erase_if(records, [&](const Record& r) {
       return std::ranges::find(names, name_of(r)) == names.end();
     });
-}
-
-/// Every figure of a study, and how many could not be drawn, which is said. Maps have their panels
-/// by solver: a figure for each scene.
-std::vector<report::PlotFiles> draw_all(const std::vector<Wanted>& wanted, const Options& options,
-                                        const report::ReportInput& input, const Store& store,
-                                        const std::filesystem::path& out, int& dropped) {
-  const report::StudyResult& study = input.studies.front();
-  std::vector<std::string> scenes;
-  for (const Record& r : study.records) push_unique(scenes, r.scene);
-  std::vector<report::PlotFiles> figures;
-  for (Wanted want : wanted) {
-    want.spec.size = figure_size(options);
-    if (want.spec.kind == "profile") {
-      if (!input.bench) throw InputError("no cost was measured: taut bench " + study.name);
-      if (want.spec.title.empty() && !options.no_title)
-        want.spec.title = "How often each solver is near the cheapest";
-      figures.push_back(report::make_profile_plot(want.spec, *input.bench, out));
-      continue;
-    }
-    std::vector<std::vector<std::string>> sets{scenes};
-    if (want.spec.kind == "stability") {
-      sets.clear();
-      for (const std::string& scene : scenes) sets.push_back({scene});
-    }
-    for (const std::vector<std::string>& set : sets) try {
-        figures.push_back(draw(want, options, study, set, store, out));
-      } catch (const report::FigureNotWritten&) {
-        throw;
-      } catch (const InputError& error) {
-        std::cerr << "not drawn: " << error.what() << '\n';
-        ++dropped;
-      }
-  }
-  return figures;
 }
 
 int run(const Options& options) {
@@ -214,8 +91,7 @@ int run(const Options& options) {
       options.output.empty() ? std::filesystem::path(options.results) / "figures" /
                                    (study.name + (study.preset.empty() ? "" : "-" + study.preset))
                              : std::filesystem::path(options.output);
-  const std::vector<Wanted> all = wanted(options, study);
-  figure_size(options);
+  const std::vector<report::FigureRequest> all = wanted(options, study);
   for (const auto& [key, name] : {std::pair("--x: ", options.x), std::pair("--y: ", options.y)})
     if (!name.empty()) try {
         report::check_value_name(name, result.records);
@@ -223,22 +99,25 @@ int run(const Options& options) {
         throw InputError(key + error.diagnostics().front().message);
       }
   make_folder(out);  // what cannot be written is said once, not for every scene
-  std::vector<std::string> files;
+  report::StudyFigures figures;
   bool drawn = true;
-  int dropped = 0;
   try {
-    for (const report::PlotFiles& plot : draw_all(all, options, input, store, out, dropped)) {
-      for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
-      for (const std::string& why : plot.without) std::cerr << why << '\n';
-    }
+    figures = report::draw_figures(all, input, store, out,
+                                   [](const std::string& text) { progress() << text << '\n'; });
   } catch (const report::PlotError& error) {
     std::cerr << error.what() << '\n';
     drawn = false;
   }
+  std::vector<std::string> files;
+  for (const report::PlotFiles& plot : figures.files) {
+    for (const auto& file : {plot.svg, plot.pdf}) files.push_back(file.string());
+    for (const std::string& why : plot.without) std::cerr << why << '\n';
+  }
+  for (const std::string& why : figures.not_drawn) std::cerr << "not drawn: " << why << '\n';
   print_files(files, options.json);
   if (!drawn) return kEnvironment;
   if (files.empty()) return kNothing;
-  return missing > 0 || dropped > 0 ? kIncomplete : kPass;
+  return missing > 0 || !figures.not_drawn.empty() ? kIncomplete : kPass;
 }
 
 void add_options(CLI::App& app, Options& options) {

@@ -2,6 +2,7 @@
 
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/timing/two_builds.hpp"
 
 namespace taut::verb::check {
 
@@ -9,8 +10,8 @@ namespace {
 
 struct Options : BaselineOptions {
   std::vector<std::string> studies;
-  std::string junit;
-  bool strict = false, record = false;
+  std::string junit, against = "before";
+  bool strict = false, record = false, speed = false;
   Format format;
 };
 
@@ -34,8 +35,29 @@ int exit_code(CheckEnd end) {
   return kUsage;
 }
 
+/// Adds what each study costs over the kept build; whether anything is slower.
+bool add_speed(Answer& answer, const std::vector<std::string>& studies, const Options& options) {
+  const std::filesystem::path folder = folder_of_build(options.out, options.against);
+  Store store(options.out);
+  std::vector<TwoBuilds> all;
+  for (const std::string& name : studies) {
+    const Study study = load_study(name);
+    const auto found = time_two_builds(cases_of_two(collect(study, store).records, folder),
+                                       {.seconds = 0.02, .progress = Countdown("case")});
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  answer.add(table_of(all, "speed", options.against));
+  return any_slower(all);
+}
+
 int check(const Options& options) {
-  const Check found = check_studies(options.studies, options, options.strict);
+  if (options.speed) folder_of_build(options.out, options.against);  // before anything runs
+  Check found = check_studies(options.studies, options, options.strict);
+  if (options.speed && found.end != CheckEnd::interrupted) {
+    const auto studies =
+        options.studies.empty() ? studies_with_baseline(options.baselines) : options.studies;
+    if (add_speed(found.answer, studies, options)) found.end = std::max(found.end, CheckEnd::moved);
+  }
   if (!options.junit.empty()) write_file(options.junit, found.junit);
   if (options.record && found.cases > 0) Store(options.out).keep(found.answer);
   print(found.answer, options.format);
@@ -46,6 +68,14 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("STUDY", options.studies, "Names or paths; none: all that have a baseline");
   add_baseline_options(app, options);
   app.add_option("--junit", options.junit, "Also write a JUnit file for continuous integration");
+  app.add_flag(
+      "--speed", options.speed,
+      "Also time every case in turns with the build of --against; 1 if this one is slower");
+  app.add_option("--against", options.against,
+                 "A folder with another build of taut, or the name of a kept one (taut bench "
+                 "--keep-build)")
+      ->default_str("before")
+      ->needs("--speed");
   add_format(app, options.format, "Print every change with the command that runs its case");
   app.add_flag("--record", options.record, "Also keep the findings for the report");
   app.add_flag("--strict-env", options.strict,
@@ -64,7 +94,8 @@ TAUT_VERB(check) = {
         "missing",
     .example =
         "taut check\n  taut check regression --junit check.xml\n"
-        "Exit: 0 nothing moved; 1 a value or status moved; 3 cases were not "
+        "  taut bench --keep-build before && taut check regression --speed\n"
+        "Exit: 0 nothing moved; 1 a value or status moved, or it got slower; 3 cases were not "
         "run;\n      4 nothing compared, or the baseline does not match the "
         "study;\n      5 another toolchain under --strict-env",
     .answer =
@@ -73,5 +104,6 @@ TAUT_VERB(check) = {
         "findings: study kind case change command solver scene value before now; "
         "not_run: study case; "
         "mismatches: study solver kind number first change; "
-        "moved: study solver value cases less more largest relative judged case",
+        "moved: study solver value cases less more largest relative judged case; "
+        "speed: case ratio control verdict wall wall_control",
     .bind = taut::bind_verb<taut::verb::check::add_options, taut::verb::check::check>};

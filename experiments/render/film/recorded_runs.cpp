@@ -74,20 +74,4 @@ RunSet record_runs(const RunRequest& request, const std::function<void(const std
   return set;
 }
 
-void draw_end(const RunRequest& what, const fs::path& file,
-              const std::function<void(const std::string&)>& say) {
-  if (file.extension() != ".png")
-    throw InputError(file.string() + ": what is drawn here ends in .png");
-  const RunSet set = record_runs(what, say);
-  const auto layout = PageLayout::page(1920, 1080, static_cast<int>(set.runs.size()));
-  SceneRendererOptions look;
-  look.width = layout.panel_width;
-  look.height = layout.panel_height;
-  look.theme = Theme::paper();
-  look.quality = RenderQuality::still();
-  look.frame = FitRegion::beside_inset();
-  look.from = look.to = set.scene.duration();
-  write_png(file, compose(SceneRenderer(set.scene, set.runs, look), layout, {look.to}));
-}
-
 }  // namespace taut

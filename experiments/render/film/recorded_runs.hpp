@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,9 +27,5 @@ struct RunSet {
 /// what is being run. Throws InputError: unknown scene or solver, a solver that cannot represent
 /// the scene.
 RunSet record_runs(const RunRequest&, const std::function<void(const std::string&)>& say);
-
-/// Draws the end of these runs into a .png. Throws as record_runs(), and of another ending.
-void draw_end(const RunRequest&, const std::filesystem::path& file,
-              const std::function<void(const std::string&)>& say);
 
 }  // namespace taut

@@ -46,9 +46,12 @@ class SceneWinners {
     WinnerRow row{bench_.cases.empty() ? bench_.scene : bench_.cases.front().record.scene,
                   bench_.scene,
                   {},
+                  {},
                   {}};
-    for (const BenchedCase& c : bench_.cases)
+    for (const BenchedCase& c : bench_.cases) {
       row.motion_judged = row.motion_judged || is_motion_judged(c.record);
+      row.judged_by_steps = row.judged_by_steps || is_judged_by_steps(c.record);
+    }
     for (const double level : kErrorLevels) row.cells.push_back(cell(level));
     return row;
   }

@@ -38,6 +38,7 @@ struct WinnerCell {
 struct WinnerRow {
   std::string scene, title;
   bool motion_judged = false;     ///< against a reference in motion
+  bool judged_by_steps = false;   ///< else by what steps miss, where a solver declares its step
   std::vector<WinnerCell> cells;  ///< of each of kErrorLevels
 };
 

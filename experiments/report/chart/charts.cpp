@@ -102,8 +102,8 @@ void draw_levels(Chart& chart) {
 
 /// What the chart of a value is called in its scene; where several have the role, after the value.
 std::string id_of(const ValueSpec& value) {
-  constexpr std::string_view kNames[] = {"",      "convergence", "motion",    "vertices",
-                                         "faces", "passages",    "reference", "slip"};
+  constexpr std::string_view kNames[] = {"",         "convergence", "motion", "vertices", "faces",
+                                         "passages", "reference",   "step",   "slip"};
   const std::vector<const ValueSpec*> all = values_with_role();
   const bool alone = std::ranges::count(all, value.role, &ValueSpec::role) == 1;
   return std::string(alone ? kNames[static_cast<std::size_t>(value.role)] : value.name);
@@ -111,13 +111,17 @@ std::string id_of(const ValueSpec& value) {
 
 bool over_sweeps_alone(const ValueSpec& value) {
   return value.role == Role::error || value.role == Role::motion ||
-         value.role == Role::reference_error;
+         value.role == Role::reference_error || value.role == Role::step_error;
 }
 
 std::string caption_of(const ValueSpec& value) {
   if (value.role == Role::reference_error)
     return "The reference is the static equilibrium of the same cloth, found without any of these "
            "solvers.";
+  if (value.role == Role::step_error)
+    return "From each step's own start, without a reference in motion: cloth that is strained or "
+           "late "
+           "is far from it, in a step or in a substep where the solver has them.";
   if (value.role == Role::error) return capitalised(std::string(to_string(value.window))) + ".";
   return value.role == Role::vertex_depth || value.role == Role::face_depth
              ? "Peak over the whole run."

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "experiments/case/comparison.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
@@ -14,31 +15,43 @@ namespace {
 
 constexpr std::size_t kMostRows = 200;  ///< of the table; the data has all
 
+/// A case that both have, with its values that are numbers in both, if it completed in both.
+struct ComparedCase {
+  const std::pair<Record, Record>* pair;
+  std::vector<ComparedValue> values;
+};
+
+std::vector<ComparedCase> compared_cases(const Differences& differences) {
+  std::vector<ComparedCase> all;
+  for (const auto& pair : differences.pairs) {
+    const auto& [a, b] = pair;
+    all.push_back({&pair, {}});
+    if (!completed(a.status) || !completed(b.status)) continue;
+    all.back().values = compare_values(a.values, b.values, Tolerances::exact());
+    std::erase_if(all.back().values, [](const ComparedValue& one) { return !one.both_finite(); });
+  }
+  return all;
+}
+
 /// A value of a case that B has otherwise.
 struct Changed {
   const std::pair<Record, Record>* pair;
-  const std::string* value;  ///< nullptr: the status
-  double size;               ///< |b - a| over the larger; 2: another status
+  const ComparedValue* value;  ///< nullptr: the status
+  double size;                 ///< |b - a| over the larger; 2: another status
 };
 
 /// The largest first.
-std::vector<Changed> all_changed(const Differences& differences) {
+std::vector<Changed> all_changed(const std::vector<ComparedCase>& cases) {
   std::vector<Changed> all;
-  for (const auto& pair : differences.pairs) {
-    const auto& [a, b] = pair;
+  for (const ComparedCase& one : cases) {
+    const auto& [a, b] = *one.pair;
     if (a.status.kind != b.status.kind) {
-      all.push_back({&pair, nullptr, 2});
+      all.push_back({one.pair, nullptr, 2});
       continue;
     }
-    if (!completed(b.status)) continue;
-    for (const auto& [name, now] : b.values) {
-      const auto at = a.values.find(name);
-      if (at == a.values.end() || !std::isfinite(now) || !std::isfinite(at->second)) continue;
-      const double before = at->second;
-      if (now != before)
-        all.push_back(
-            {&pair, &name, std::abs(now - before) / std::max(std::abs(now), std::abs(before))});
-    }
+    for (const ComparedValue& value : one.values)
+      if (value.kind == ComparedValue::Kind::moved)
+        all.push_back({one.pair, &value, std::abs(mutual_change(value.before, value.now))});
   }
   std::ranges::stable_sort(all, [](const Changed& x, const Changed& y) { return x.size > y.size; });
   return all;
@@ -52,8 +65,8 @@ std::vector<Cell> row_of(const Changed& changed, CaseList& refs) {
   head.key = refs.key(b);
   if (!changed.value)
     return {head, "status", to_string(a.status.kind), to_string(b.status.kind), {}, {}};
-  const Quantity& q = refs.use(*changed.value);
-  const double before = a.values.at(*changed.value), now = b.values.at(*changed.value);
+  const Quantity& q = refs.use(changed.value->value);
+  const double before = changed.value->before, now = changed.value->now;
   return {head,
           q.title,
           q.text(before, 4),
@@ -80,8 +93,26 @@ Table ends_table(const Differences& differences) {
   return table;
 }
 
-/// Values with a role: in how many cases they are less or more in B.
-Table compared_table(const Differences& differences, CaseList& refs) {
+/// In how many cases a value is less or more in B.
+class Counted {
+ public:
+  void add(double before, double now, const std::string& key) {
+    ++cases_, less_ += now<before, more_ += now> before;
+    const double change = mutual_change(before, now);
+    if (!largest_.empty() && std::abs(change) <= std::abs(largest_.number())) return;
+    largest_ = Cell(change), largest_.key = key;
+  }
+  bool any() const { return cases_ > 0; }
+  std::vector<Cell> row(Cell title) const { return {title, cases_, less_, more_, largest_}; }
+
+ private:
+  int cases_ = 0, less_ = 0, more_ = 0;
+  Cell largest_;
+};
+
+/// Values with a role, and what a step cost.
+Table compared_table(const Differences& differences, const std::vector<ComparedCase>& cases,
+                     CaseList& refs) {
   Table table{
       "differences",
       "What differs, value by value",
@@ -89,22 +120,21 @@ Table compared_table(const Differences& differences, CaseList& refs) {
        Column("more", "more in B", kCount), Column("change", "largest change", kSignedShare)},
       {},
       "Of cases that completed in both; the largest change is over the larger of the two."};
-  for (const ValueSpec* value : values_with_role()) {
-    const std::string name(value->name);
-    int cases = 0, less = 0, more = 0;
-    Cell largest;
-    for (const auto& [a, b] : differences.pairs) {
-      const double before = completed(a.status) ? value_of(a, name) : std::nan(""),
-                   now = completed(b.status) ? value_of(b, name) : std::nan("");
-      if (!std::isfinite(before) || !std::isfinite(now)) continue;
-      ++cases, less += now<before, more += now> before;
-      const double change =
-          now == before ? 0 : (now - before) / std::max(std::abs(now), std::abs(before));
-      if (!largest.empty() && std::abs(change) <= std::abs(largest.number())) continue;
-      largest = Cell(change), largest.key = refs.key(b);
-    }
-    if (cases > 0) table.rows.push_back({refs.use(name).title, cases, less, more, largest});
-  }
+  std::map<std::string, Counted> by_value;
+  for (const ComparedCase& one : cases)
+    for (const ComparedValue& value : one.values)
+      by_value[value.value].add(value.before, value.now, refs.key(one.pair->second));
+  for (const ValueSpec* value : values_with_role())
+    if (const auto at = by_value.find(std::string(value->name)); at != by_value.end())
+      table.rows.push_back(at->second.row(refs.use(at->first).title));
+  Counted cpu;
+  for (const auto& [a, b] : differences.timed)
+    if (a.stable() && b.stable())
+      cpu.add(a.cost().mid * a.record.dt, b.cost().mid * b.record.dt, refs.key(b.record));
+  if (cpu.any())
+    table.rows.push_back(cpu.row(Cell("CPU time of a step")
+                                     .with("not timed together: identical code differs, too; taut "
+                                           "bench --against times two builds in turns")));
   return table;
 }
 
@@ -144,9 +174,10 @@ Json json_of(const Differences& differences, CaseList& refs, Answer& tables) {
        "Cases are matched by the names of scene and solver and by their settings, not by what is "
        "in a scene's file: one that was changed between A and B differs here as a solver does."}};
   add_table(one, ends_table(differences), tables);
-  add_table(one, compared_table(differences, refs), tables);
+  const std::vector<ComparedCase> cases = compared_cases(differences);
+  add_table(one, compared_table(differences, cases, refs), tables);
   add_table(one, costs_table(differences), tables);
-  const std::vector<Changed> changed = all_changed(differences);
+  const std::vector<Changed> changed = all_changed(cases);
   const std::size_t rows = std::min(changed.size(), kMostRows);
   Table table{"differences-values",
               "Values that differ",

@@ -34,6 +34,8 @@ Json json_of_winners(const ReportInput&, CaseList&);
 Json json_of_cost(const ReportInput&, CaseList&, Json& charts, Answer& tables);
 /// What two folders have otherwise.
 Json json_of(const Differences&, CaseList&, Answer& tables);
+/// How values went from build to build, study by study; null: of one build alone.
+Json json_of_history(const ReportInput&, CaseList&);
 /// What scenes require and how far solvers go; null without either.
 Json json_of_limits(const ReportInput&, Answer& tables);
 /// What iterations inside one step bring, scene by scene; null: no step was followed.

@@ -47,7 +47,10 @@ Json json_of_winners(const ReportInput& input, CaseList& list) {
             {"frame", kFrame},
             {"certainty", certainty_text(map.noise)}};
   for (const WinnerRow& row : map.rows) {
-    Json one{{"scene", row.scene}, {"title", row.title}, {"motion_judged", row.motion_judged}};
+    Json one{{"scene", row.scene},
+             {"title", row.title},
+             {"motion_judged", row.motion_judged},
+             {"judged_by_steps", !row.motion_judged && row.judged_by_steps}};
     for (const WinnerCell& cell : row.cells) one["cells"].push_back(json_of(cell));
     json["rows"].push_back(std::move(one));
   }

@@ -69,7 +69,7 @@ function start() {
   paint();
   const sections = [differencesSection(), answerSection(), chartsSection(), sceneSection(), costSection(), stepsSection(), limitsSection(),
                     truthsSection(),
-                    regressionSection(), casesSection(), methodSection()].filter(Boolean);
+                    historySection(), regressionSection(), casesSection(), methodSection()].filter(Boolean);
   document.getElementById('main').append(...sections);
   contents(sections);
   watchCase();

@@ -45,10 +45,11 @@ function winnerCell(cell) {
 /** The map: a row for each scene, a column for each error. */
 function winnersCard() {
   const {rows, levels, certainty} = model.winners, error = metric(model.winners.metric);
-  const unjudged = rows.filter((row) => !row.motion_judged).map((row) => row.title);
+  const titles = (some) => rows.filter(some).map((row) => row.title).join(', ');
+  const bySteps = titles((row) => row.judged_by_steps), unjudged = titles((row) => !row.motion_judged && !row.judged_by_steps);
   const line = (row) => {
     const node = el('tr', {}, el('th', {scope: 'row'}, scenes.has(row.scene) ? choice({scene: row.scene, at: 'scenes'}, {}, row.title) : row.title,
-      !row.motion_judged && el('small', {}, 'motion not judged')), row.cells.map(winnerCell));
+      !row.motion_judged && el('small', {}, row.judged_by_steps ? 'motion judged by its steps' : 'motion not judged')), row.cells.map(winnerCell));
     state.watch(() => node.classList.toggle('chosen', chosenScene() === row.scene));
     return node;
   };
@@ -58,7 +59,8 @@ function winnersCard() {
       levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))), rows.map(line)),
     note('Each cell: the solver, how many times cheaper it is than the next solver, CPU time of a frame of 1/60\u00A0s, setting, arithmetic, and the stiffness of links that are not rigid. ',
       'Nothing counts that fails, passes through a body or sinks into it by more than 0.1\u00A0% of the cloth\u2019s diagonal, goes less than half of its way, or is off its way by more than a quarter of it',
-      unjudged.length > 0 && ` (on ${unjudged.join(', ')} there is no reference in motion: not judged, and cloth that lags keeps its links there)`, '. ',
+      unjudged && ` (on ${unjudged} there is no reference in motion: not judged, and cloth that lags keeps its links there)`, '. ',
+      bySteps && `On ${bySteps} there is no reference in motion either: cloth counts for nothing that goes less than a quarter of its way by what its steps miss of the exact step, the same bound for all; solvers that declare no step (Bullet\u2019s) and contact that does not settle are not judged there. `,
       'Only settings that were timed compete: a rival whose next one just misses the error is out. ', certainty));
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/history/history.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 
@@ -89,5 +90,10 @@ void run_gnuplot(const std::filesystem::path& script, const std::string& termina
 /// InputError if the files cannot be written.
 std::filesystem::path plot_frontiers(const std::vector<ParameterFrontier>&,
                                      const std::filesystem::path& folder, const std::string& stem);
+
+/// A value over builds, a line for each of the first 24 cases, a circle where it stepped.
+/// Precondition: there are builds and cases. Writes and throws as plot_frontiers().
+std::filesystem::path plot_history(const History&, const std::string& value,
+                                   const std::filesystem::path& folder, const std::string& stem);
 
 }  // namespace taut::report

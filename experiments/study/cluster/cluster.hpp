@@ -38,10 +38,6 @@ double estimated_seconds(double work);
 /// cases, or a case that may take longer.
 Plan plan(const Study&, const std::vector<Case>&, const Limits&, int shards, double hours);
 
-/// Copies scene files of the user's own, with their meshes, to where the folder's copy of the study
-/// finds them: a folder is whole in itself. Throws InputError: a file outside of this folder.
-void copy_scenes(const std::vector<Case>&, const std::filesystem::path& folder);
-
 /// Where a shard keeps its results: a store.
 std::filesystem::path shard_folder(const std::filesystem::path& folder, int shard);
 
@@ -58,6 +54,21 @@ std::string job_script(const Plan&, Scheduler);
 
 /// The README of a folder: five lines.
 std::string readme(const Plan&, Scheduler);
+
+/// What a new folder is made of.
+struct FolderRequest {
+  Study study;
+  Limits limits;
+  int shards = 0;    ///< 0: as `hours` asks for
+  double hours = 0;  ///< 0: one
+  Scheduler on = Scheduler::slurm;
+  std::string nodes = {};  ///< lines of the file `nodes`; "": there is none
+};
+
+/// Writes all of a folder: the study with scene files of the user's own and their meshes where the
+/// copy of the study finds them, what is planned, job.sh. Whatever throws leaves nothing behind:
+/// InputError as plan(), or of a scene file outside of the current folder.
+Plan write_folder(const std::filesystem::path& folder, const FolderRequest&);
 
 /// How far a cluster folder is: facts `cases`, `done`, `start` (the command that starts what is not
 /// done) and `again` (that runs failures again); tables `shards` and `failed`. Throws InputError

@@ -70,6 +70,23 @@ void copy_mesh(const fs::path& scene, const std::vector<std::string>& overrides,
   write_file(into / name, read_text(scene.parent_path() / name, kMostMeshBytes));
 }
 
+/// Scene files of the user's own, with their meshes, to where the folder's copy of the study finds
+/// them: a folder is whole in itself.
+void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
+  std::set<std::string> seen;
+  for (const Case& one : cases) {
+    if (!seen.insert(one.spec.scene + '\n' + join(one.spec.overrides, "\n")).second) continue;
+    const fs::path name(one.spec.scene), file = find_scene(one.spec.scene);
+    if (file.parent_path() == data_folder() / "scenes" || !fs::exists(name)) continue;
+    if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
+      throw InputError(name.string() +
+                       ": a scene that goes to other machines lies in this folder or below");
+    make_folder((folder / name).parent_path());
+    write_file(folder / name, read_text(file));
+    copy_mesh(file, one.spec.overrides, (folder / name).parent_path());
+  }
+}
+
 /// Who began a shard last, and when.
 std::pair<std::string, std::string> last_start(const Store& store) {
   Database* database = store.reading();
@@ -108,18 +125,31 @@ Plan plan(const Study& study, const std::vector<Case>& cases, const Limits& limi
   return plan;
 }
 
-void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
-  std::set<std::string> seen;
-  for (const Case& one : cases) {
-    if (!seen.insert(one.spec.scene + '\n' + join(one.spec.overrides, "\n")).second) continue;
-    const fs::path name(one.spec.scene), file = find_scene(one.spec.scene);
-    if (file.parent_path() == data_folder() / "scenes" || !fs::exists(name)) continue;
-    if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
-      throw InputError(name.string() +
-                       ": a scene that goes to other machines lies in this folder or below");
-    make_folder((folder / name).parent_path());
-    write_file(folder / name, read_text(file));
-    copy_mesh(file, one.spec.overrides, (folder / name).parent_path());
+Plan write_folder(const fs::path& folder, const FolderRequest& request) {
+  const Study& study = request.study;
+  fs::path there = folder.parent_path();  // what exists already of the folder's path
+  while (!there.empty() && !fs::exists(there)) there = there.parent_path();
+  const std::vector<Case> cases = cases_of(study);
+  try {
+    const Plan made =
+        plan(study, cases, request.limits, request.shards, request.hours > 0 ? request.hours : 1);
+    make_folder(folder / "log");
+    make_folder(folder / "shards");
+    copy_scenes(cases, folder);
+    write_durably(folder / (study.name + ".toml"), read_text(study.file));
+    write_durably(folder / "README", readme(made, request.on));
+    if (!request.nodes.empty()) write_durably(folder / "nodes", request.nodes);
+    write_durably(folder / "job.sh", job_script(made, request.on));
+    fs::permissions(folder / "job.sh", fs::perms::owner_exec | fs::perms::group_exec,
+                    fs::perm_options::add);
+    Store(folder).begin_session("taut cluster submit", {{study.name, cases}}, {1, made.shards});
+    return made;
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    for (fs::path parent = folder.parent_path(); parent != there; parent = parent.parent_path())
+      fs::remove(parent, ignored);
+    throw;
   }
 }
 

@@ -12,6 +12,11 @@ constexpr const char* kWang = "Wang, A Chebyshev Semi-Iterative Approach, 2015";
 constexpr const char* kXpbd = "Macklin, Mueller, Chentanez, XPBD, MIG 2016";
 constexpr const char* kSmallSteps = "Macklin et al., Small Steps in Physics Simulation, SCA 2019";
 constexpr const char* kVbd = "Chen, Liu, Yang, Yuksel, Vertex Block Descent, 2024";
+constexpr const char* kQuasi =
+    "Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation, TOG 2017";
+constexpr const char* kPrimal =
+    "Chen et al., Primal residual reduction with XPBD and hyperelasticity, C&G 2024";
+constexpr const char* kMgpbd = "Li et al., MGPBD, SIGGRAPH 2025";
 constexpr const char* kAvbd = "Giles, Diaz, Yuksel, Augmented Vertex Block Descent, 2025";
 
 constexpr Assertion kOfPapers[] = {
@@ -56,6 +61,31 @@ constexpr Assertion kOfPapers[] = {
     {kVbd, "Fig. 24", "it fails to converge at 1:10 000 in stiffness", holds,
      "100 iterations leave 99 % of the error, 0.2 % where all links are alike",
      "vbd-stiffness-ratio", "share of the first step's error left by 100 iterations, 1:10000"},
+    {kQuasi, "abstract", "Projective Dynamics can be interpreted as a quasi-Newton method", holds,
+     "L-BFGS without pairs is Projective Dynamics, to 1e-13 m", "lbfgs-factor",
+     "distance after ten iterations over pd's"},
+    {kQuasi, "abstract", "it is further accelerated by L-BFGS updates", holds_if,
+     "in iterations, of soft springs; where they are stiff both stand still (`taut run methods`)",
+     "lbfgs-factor", "distance after 60 iterations over pd's"},
+    {kQuasi, "abstract", "it is typically more than 10 times faster than one Newton iteration",
+     cannot_be_tested,
+     "by a truth, for time depends on the machine, and its materials are hyperelastic solids", ""},
+    {kQuasi, "abstract", "its result is often more accurate than that of one Newton iteration",
+     cannot_be_tested,
+     "often names no scene; of springs `taut run methods --table step.error` shows both", ""},
+    {kPrimal, "abstract", "XPBD does not always lead to convergent behaviors", holds,
+     "its sweeps come to rest beside the step of implicit Euler", "xpbd-fixed-point",
+     "distance after 16384 over 8192 sweeps"},
+    {kPrimal, "abstract", "with the primal residual it rivals Newton's method", cannot_be_tested,
+     "neither of its two modifications is built here", ""},
+    {kMgpbd, "abstract", "XPBD's sweeps often struggle with low-frequency errors", cannot_be_tested,
+     "often names no measure; that sweeps grow as the square of a chain's links is the truth "
+     "hanging-chain-sweeps",
+     ""},
+    {kMgpbd, "abstract", "constructing prolongators takes up to two thirds of the time",
+     cannot_be_tested, "its multigrid is not built here", ""},
+    {kMgpbd, "abstract", "it improves convergence rates significantly", cannot_be_tested,
+     "its multigrid is not built here", ""},
     {kAvbd, "parameters", "alpha 0.95, beta 10 and gamma 0.99 do for all examples", holds_if,
      "for the sheets that were tried, hung and swinging: 2 % RMS strain with 15 iterations",
      "avbd-defaults"},

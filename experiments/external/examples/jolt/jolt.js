@@ -1,6 +1,8 @@
 #!/usr/bin/env node
-// Jolt Physics' soft body (npm jolt-physics 1.1.0, MIT) as a solver: vertices, edges, rest lengths and inverse masses of
+// Jolt Physics' soft body (npm jolt-physics, MIT) as a solver: vertices, edges, rest lengths and inverse masses of
 // the scene, compliance 0, float32. experiments/external/README.md says how to register it.
+//
+// Colliders at rest are static bodies of their shape (a plane is a large box); all have one friction.
 //
 // Jolt's "iterations" are substeps of one sweep each, without multipliers. Its Optimize() is obligatory and reorders
 // the edges; pins have to be set before it.
@@ -16,15 +18,37 @@ const kPackage = path.join(__dirname, 'node_modules', 'jolt-physics');
 function start(Jolt) {
   const settings = new Jolt.JoltSettings();
   const layers = new Jolt.ObjectLayerPairFilterTable(1), broad = new Jolt.BroadPhaseLayerInterfaceTable(1, 1);
+  layers.EnableCollision(0, 0);
   broad.MapObjectToBroadPhaseLayer(0, new Jolt.BroadPhaseLayer(0));
   settings.mObjectLayerPairFilter = layers;
   settings.mBroadPhaseLayerInterface = broad;
   settings.mObjectVsBroadPhaseLayerFilter = new Jolt.ObjectVsBroadPhaseLayerFilterTable(broad, 1, layers, 1);
   const engine = new Jolt.JoltInterface(settings), system = engine.GetPhysicsSystem(), bodies = system.GetBodyInterface();
 
+  /// A static body of a collider, not yet added.
+  function still({type, normal, offset, center, radius, half_extents: half, rotation, friction}) {
+    const vector = ([x, y, z]) => new Jolt.Vec3(x, y, z);
+    let shape, at, turned = Jolt.Quat.prototype.sIdentity();
+    if (type === 'ball') {
+      shape = new Jolt.SphereShape(radius), at = center;
+    } else if (type === 'box') {
+      shape = new Jolt.BoxShape(vector(half), 0, null), at = center;
+      turned = new Jolt.Quat(rotation[1], rotation[2], rotation[3], rotation[0]);
+    } else {  // its upper side is the plane
+      const kDeep = 50;
+      shape = new Jolt.BoxShape(new Jolt.Vec3(kDeep, kDeep, kDeep), 0, null), at = normal.map((n) => n * (offset - kDeep));
+      turned = Jolt.Quat.prototype.sFromTo(new Jolt.Vec3(0, 1, 0), vector(normal));
+    }
+    const settings = new Jolt.BodyCreationSettings(shape, new Jolt.RVec3(...at), turned, Jolt.EMotionType_Static, 0);
+    settings.mFriction = friction, settings.mRestitution = 0;
+    return bodies.CreateBody(settings).GetID();
+  }
+
   class Cloth {
     static cannot(scene) {
-      const effects = {colliders: scene.colliders.length > 0, wind: scene.wind, 'self-collision': scene.self_collision,
+      const mapped = (c) => !c.motion && ['plane', 'ball', 'box'].includes(c.type);
+      const effects = {'colliders that move, capsules': !scene.colliders.every(mapped),
+        'several frictions': new Set(scene.colliders.map((c) => c.friction)).size > 1, wind: scene.wind, 'self-collision': scene.self_collision,
         'moving pins': scene.pin_motions.length > 0, damping: scene.damping > 0};
       const present = Object.keys(effects).filter((name) => effects[name]);
       return present.length > 0 ? [`${present.join(', ')}: not mapped to Jolt`] : [];
@@ -43,14 +67,17 @@ function start(Jolt) {
         shared.mEdgeConstraints.push_back(edge);
         Jolt.destroy(edge);
       }
+      if (scene.colliders.length > 0) shared.mVertexRadius = scene.thickness;  // until 0.36; since 0.37 it is the creation's
       shared.Optimize();
       const creation = new Jolt.SoftBodyCreationSettings(shared, new Jolt.RVec3(0, 0, 0), Jolt.Quat.prototype.sIdentity(), 0);
       Object.assign(creation, {mNumIterations: params.substeps, mUpdatePosition: false, mLinearDamping: 0, mVertexRadius: 0,
         mAllowSleeping: false, mMaxLinearVelocity: 1e6});
-      if (live) bodies.RemoveBody(live), bodies.DestroyBody(live);
+      if (scene.colliders.length > 0) creation.mVertexRadius = scene.thickness, creation.mFriction = scene.colliders[0].friction;
+      for (const id of live.splice(0)) bodies.RemoveBody(id), bodies.DestroyBody(id);
       this.body = bodies.CreateSoftBody(creation);
-      live = this.body.GetID();
-      bodies.AddBody(live, Jolt.EActivation_Activate);
+      live.push(this.body.GetID());
+      for (const collider of scene.colliders) live.push(still(collider));
+      for (const id of live) bodies.AddBody(id, Jolt.EActivation_Activate);
       system.SetGravity(new Jolt.Vec3(...scene.gravity));
       this.motion = Jolt.castObject(this.body.GetMotionProperties(), Jolt.SoftBodyMotionProperties);
       this.n = scene.vertices, this.links = scene.links.length, this.substeps = params.substeps;
@@ -84,10 +111,10 @@ function start(Jolt) {
   }
   Cloth.about = {
     name: 'jolt', version: `jolt-physics ${JSON.parse(fs.readFileSync(path.join(kPackage, 'package.json'))).version}`,
-    summary: "Jolt Physics' soft body: XPBD edges without compliance", source: 'J. Rouwe, Jolt Physics; npm jolt-physics 1.1.0',
+    summary: "Jolt Physics' soft body: XPBD edges without compliance", source: 'J. Rouwe, Jolt Physics; npm jolt-physics',
     params: {substeps: {type: 'integer', min: 1, max: 10000, default: 5, doc: "Jolt's mNumIterations: substeps of one sweep each"}},
   };
-  let live = null;
+  const live = [];  // ids of bodies
   serve(Cloth);
 }
 

@@ -1,0 +1,40 @@
+#include "experiments/baseline/frontier_baseline.hpp"
+
+#include <cmath>
+
+#include "core/io/text_file.hpp"
+#include "core/model/text.hpp"
+#include "experiments/baseline/baseline.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+fs::path frontier_baseline(const fs::path& folder, const std::string& solver) {
+  return folder / kFrontiersFolder / (slug(solver) + ".json");
+}
+
+void keep_frontiers(const Answer& answer, const fs::path& file) {
+  make_folder(file.parent_path());
+  write_durably(file, to_json(answer));
+}
+
+std::optional<std::vector<Difference>> changes_of_frontiers(const Answer& now,
+                                                            const fs::path& file) {
+  constexpr double kBracket = 0.02;  // twice the width of a bracket
+  if (!fs::exists(file)) return {};
+  const Answer before = answer_from_json(read_text(file), file.string());
+  return differences(before.table("parameters"), now.table("parameters"), {"solver", "parameter"},
+                     {"lacks", "symptom", "at_start", "from", "to", "good", "bad"}, kBracket);
+}
+
+Table commands_of(const std::vector<ParameterFrontier>& found) {
+  Table table{"commands", "what runs the case beyond", {{"solver"}, {"parameter"}, {"command"}}};
+  for (const ParameterFrontier& one : found)
+    if (!std::isnan(one.bad))
+      table.rows.push_back({one.solver, one.parameter, reproduce(one.beyond)});
+  return table;
+}
+
+}  // namespace taut

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace taut {
+
+// What of a case is compared with what it was before: by a baseline (experiments/baseline), between
+// two results folders (experiments/report) and from build to build (experiments/history).
+
+/// How far a value may move: |a - b| <= absolute + relative * |b|, b what it was.
+struct Tolerance {
+  double absolute = 0;  ///< in the metric's unit
+  double relative = 0;
+  bool ignored = false;  ///< never compared
+  std::string reason;    ///< why so much and no more; never empty
+
+  bool holds(double value, double before) const;
+};
+
+/// Tolerances by metric value ("stretch.max"), by metric ("stretch") or for all others ("default").
+class Tolerances {
+ public:
+  Tolerances() = default;
+  explicit Tolerances(std::map<std::string, Tolerance> by_name) : by_name_(std::move(by_name)) {}
+  /// No difference holds, however small.
+  static Tolerances exact();
+  /// The most special one; the built-in default (relative 1e-6, absolute 1e-12) if none is given.
+  const Tolerance& of(const std::string& value) const;
+
+ private:
+  std::map<std::string, Tolerance> by_name_;
+};
+
+/// A value beside what it was.
+struct ComparedValue {
+  enum class Kind {
+    same,    ///< within the tolerance
+    moved,   ///< beyond it, or a number has come or gone
+    lost,    ///< there is no such value any more
+    gained,  ///< there was none
+  };
+  std::string value;           ///< "stretch.rms"
+  double before = 0, now = 0;  ///< NaN: no meaning, or none
+  Kind kind = Kind::same;
+
+  bool both_finite() const;
+};
+
+using MetricValues = std::map<std::string, double>;
+/// All values of either but those that are ignored: by name, what is gained last.
+std::vector<ComparedValue> compare_values(const MetricValues& before, const MetricValues& now,
+                                          const Tolerances&);
+
+/// (now - before) / |before|; infinite where there was 0 or no number.
+double relative_change(double before, double now);
+/// (now - before) over the larger of the two in size: from -2 to 2. Precondition: both are finite.
+double mutual_change(double before, double now);
+
+}  // namespace taut

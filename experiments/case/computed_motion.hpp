@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/io/positions/positions.hpp"
+#include "core/model/scene.hpp"
+#include "core/model/solver.hpp"
+#include "experiments/case/run_case.hpp"
+
+/// What another program computed, as a motion of a scene's cloth: what `taut external score`, the
+/// solver `positions` and taut.score of Python say about it is found here.
+namespace taut {
+
+/// Frames, and how they are meant; what is not said is inferred.
+struct ComputedFrames {
+  std::string name;                           ///< in messages: a file, "positions"
+  std::shared_ptr<PositionReader> positions;  ///< the start first
+  std::shared_ptr<PositionReader> rest;       ///< its first frame is the cloth at rest, in the same
+                                              ///< order; null: `positions` begin at the start
+  double fps = 0;                             ///< frames in a second; 0: one a step of the scene
+  double scale = 1;                           ///< m per unit
+  bool z_up = false;                          ///< else y
+};
+
+/// What rounding the coordinates does to the strain of a scene's links: less says nothing.
+struct StrainFloor {
+  double rms = 0;  ///< expected, over the links
+  double max = 0;  ///< no link is off by more
+};
+
+/// Frames in m, y up, in the scene's order.
+class ComputedMotion {
+ public:
+  /// What does not fit the scene is in misfits(). Throws InputError: a malformed file.
+  ComputedMotion(const Scene&, ComputedFrames);
+  const PositionsHeader& header() const { return frames_.positions->header(); }
+  /// Why it is no motion of this scene, a sentence each; empty: it is one.
+  const std::vector<std::string>& misfits() const { return misfits_; }
+  double frame_dt() const { return frame_dt_; }  ///< s, said, or the scene's
+  /// Positions at t = k frame_dt [m]. Precondition: no misfits.
+  std::vector<Vec3> frame(int k);
+  StrainFloor floor(const Scene&);
+  /// What was said, read or derived, for the record and for people.
+  ResolvedSettings settings(const Scene&);
+
+ private:
+  void find_place(const Scene&);
+  void check_pins(const Scene&);
+  std::string place() const;
+
+  ComputedFrames frames_;
+  double frame_dt_;
+  std::string order_said_;
+  std::vector<std::size_t> of_scene_;
+  std::vector<std::string> misfits_;
+};
+
+/// The solver `positions`: plays what `open` gives as if it computed it now, without cost.
+SolverEntry player(std::function<ComputedFrames(const Params&)> open);
+
+/// Reads a scene with these overrides (core/io/scene_io.hpp).
+using LoadScene = std::function<Scene(const std::vector<std::string>& overrides)>;
+
+/// The overrides with which the scene has the frames' time step and, if they end earlier, their
+/// duration. Throws InputError: it cannot be read so, or there is one frame alone.
+std::vector<std::string> fitted(const LoadScene&, std::vector<std::string> overrides,
+                                const ComputedFrames&);
+
+/// Runs the frames through every metric and the verdict on a run, as run_case does with a solver's;
+/// velocities are differences between frames. A coordinate that is not finite is a result
+/// (exploded). Throws InputError: the frames are no motion of this scene; it says why.
+CaseRun score(const Scene&, const ComputedFrames&, const RunOptions& = {});
+
+}  // namespace taut

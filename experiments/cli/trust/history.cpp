@@ -1,0 +1,125 @@
+#include "experiments/command_line/verb.hpp"
+#include "experiments/history/history_answer.hpp"
+#include "experiments/history/walk.hpp"
+#include "experiments/report/plot/plot.hpp"
+#include "experiments/results/store.hpp"
+#include "experiments/system/data.hpp"
+#include "experiments/system/files.hpp"
+
+namespace taut::verb::history {
+
+namespace {
+
+struct Options : Walk {
+  std::string metric = kErrorMetric, out, baselines, junit, plot;
+  double disk = 20;
+  Format format;
+};
+
+/// How it ended; the last build is what continuous integration asks about.
+int exit_code(const History& history) {
+  if (history.compared == 0) return kNothing;
+  if (history.last_stepped()) return kRegression;
+  for (std::size_t i = 0; i < history.builds.size(); ++i)
+    if (history.is_gap(i) || history.missing(i) > 0) return kIncomplete;
+  return kPass;
+}
+
+void draw(const History& history, const Options& options) {
+  const std::filesystem::path file = std::filesystem::absolute(options.plot);
+  try {
+    std::cerr
+        << report::plot_history(history, options.metric, file.parent_path(), file.stem()).string()
+        << '\n';
+  } catch (const report::PlotError& error) {
+    std::cerr << error.what() << '\n';
+  }
+}
+
+int history(Options options) {
+  Store store(options.out);
+  Walked walked;
+  if (!options.junit.empty()) test_writable(options.junit);
+  if (options.repository.empty()) {
+    walked.study = study_name(options.study);
+  } else {
+    const BaselineOptions how = baseline_options();
+    options.run = how.run, options.say = how.say;
+    options.limits.bytes = 1e9 * options.disk;
+    options.timing.progress = Countdown("case");
+    walked = walk(options, store);
+  }
+  const Tolerances tolerances =
+      read_tolerances(std::filesystem::path(options.baselines) / walked.study);
+  const History found = history_of(store, walked.study, tolerances, walked.builds);
+  Answer answer = answer_of(found, options.metric);
+  if (!walked.named.empty()) answer.add({"named", "bisection"}, walked.named);
+
+  if (!options.junit.empty()) write_file(options.junit, junit(found));
+  if (!options.plot.empty() && !found.rows.empty()) draw(found, options);
+  print(answer, options.format);
+  return exit_code(found);
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("STUDY", o.study, "Name or path of the study")->required();
+  add_preset(app, o.preset);
+  app.add_option("--metric", o.metric, "Value of the tables and of the figure")
+      ->check(metric_value())
+      ->capture_default_str();
+  app.add_option("--plot", o.plot, "Also draw it over builds: NAME.svg, with its data");
+  app.add_option("--junit", o.junit, "Also write a JUnit file about the last build");
+  add_results(app, o.out);
+  add_baselines(app, o.baselines);
+  CLI::Option* git = app.add_option("--git", o.repository,
+                                    "A repository: first run what the store lacks of its commits");
+  const auto of_git = [&](CLI::Option* option) { option->needs(git)->group("With --git"); };
+  CLI::Option* commits = app.add_option("--commits", o.range, "A..B: A, and what leads to B");
+  git->needs(commits);
+  of_git(commits);
+  of_git(app.add_option("--build", o.build, "Builds a commit: a command of the shell, run there"));
+  of_git(app.add_option("--solver", o.solver,
+                        "The solver, run there: 'python3 mine.py', or mine:cmd='...',iterations=8; "
+                        "it replaces those of the study"));
+  of_git(app.add_option("--taut", o.taut,
+                        "Without a solver: taut's own program there, which runs the study itself")
+             ->capture_default_str());
+  of_git(app.add_option("--bisect", o.bisect,
+                        "Run only what it takes to name the first commit at which this value "
+                        "changed; cpu.per_step and wall.per_step: the cost"));
+  of_git(app.add_flag("--speed", o.speed, "Also time neighbours in turns"));
+  of_git(app.add_flag("--again", o.again, "Try again what could not be built"));
+  of_git(app.add_option("--build-timeout", o.limits.seconds, "Seconds that a build may take")
+             ->check(above_zero_seconds())
+             ->capture_default_str());
+  of_git(app.add_option("--disk", o.disk, "Gigabytes that a checkout with its build may take")
+             ->check(above_zero())
+             ->capture_default_str());
+  add_jobs(app, o.jobs);
+  add_limits(app, o.case_limits);
+  add_format(app, o.format, "Print every build, every step and every value");
+}
+
+}  // namespace
+
+}  // namespace taut::verb::history
+
+TAUT_VERB(history) = {
+    .name = "history",
+    .group = VerbGroup::trust,
+    .summary = "Which build, or which commit, changed what a study measures",
+    .example =
+        "taut history iterations\n"
+        "  taut history ./mine.toml --git . --commits v1.0..HEAD --solver 'python3 mine.py'\n"
+        "  taut history ./mine.toml --git . --commits v1.0..HEAD --build make --solver ./mine "
+        "--bisect stretch.rms\n"
+        "Exit: 0 nothing changed; 1 the last build differs from the one before; 3 builds have no "
+        "results;\n      4 nothing was compared",
+    .answer =
+        "builds gaps cases compared steps value_steps last_stepped named; "
+        "steps: step cases relative build made subject before case solver value was is; "
+        "builds: build made subject cases shared steps gap; "
+        "rows: case first last builds steps; "
+        "values: build made case value status; "
+        "ratios: case before now host clock ratio control",
+    .bind = taut::bind_verb<taut::verb::history::add_options, taut::verb::history::history>};

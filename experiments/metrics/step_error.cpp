@@ -1,0 +1,165 @@
+#include "core/reference/step_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "experiments/metrics/metric.hpp"
+
+namespace taut {
+
+namespace {
+
+/// Every kEvery-th step is judged, kMostSamples at most, the last one among them; of no more
+/// vertices than kMostVertices, for it would take more time than most solvers.
+constexpr int kEvery = 16, kMostSamples = 32;
+constexpr std::size_t kMostVertices = 2500;
+/// Of the steps judged, those that must be believed.
+constexpr double kEnough = 0.5;
+/// s, in which a cloth shows whether it moves, and in how many of whose steps that is looked at; of
+/// its size, what it has to move at least.
+constexpr double kFirst = 0.5, kLeastWay = 0.05;
+constexpr int kFirstSamples = 8;
+
+/// From which step a case is off, is what its solver declares, and nothing else of it is known: the
+/// state before a step, or before its last substep, and the one behind it.
+class StepErrors final : public Metric {
+ public:
+  static constexpr ValueSpec kValues[] = {
+      {.name = "step.error",
+       .unit = kErrorLength,
+       .help = "distance of the free vertices from the exact step of implicit Euler from the "
+               "solver's own state before, without that step, RMS over vertices, mean over every "
+               "16th step; of a substep, where the solver has them; none where fewer than half of "
+               "these steps can be believed",
+       .window = Window::run,
+       .title = "distance from the exact step",
+       .role = Role::step_error,
+       .negligible = 1e-6},
+      {"step.error.peak", kErrorLength, "the largest of these steps", false, Window::run,
+       "largest distance from the exact step"},
+      {.name = kShareBySteps,
+       .unit = kSignedShare,
+       .help =
+           "share of the way that the cloth would have gone in the first half second if no step "
+           "had missed any of the exact step at the lengths that the links have: w.(w + l) "
+           "over |w + l|^2, w its way, l the sum of (0.5 s - t) times the velocity that the "
+           "step at t misses; 0 of a cloth that stands still; none if it would hardly have "
+           "moved, at most 5 % of its size",
+       .window = Window::none,
+       .title = "share of the way, by what its steps miss"},
+      {"step.error.believed", kSignedShare,
+       "share of these steps whose distance can be believed: no sheet about to buckle", false,
+       Window::run, "steps whose distance from the exact one can be believed"},
+  };
+  static constexpr bool kFollowsPath = true;
+
+  explicit StepErrors(const Scene& scene)
+      : scene_(scene),
+        every_(std::max(kEvery, (scene.steps + kMostSamples - 1) / kMostSamples)),
+        first_(std::min(scene.steps, static_cast<int>(std::lround(kFirst / scene.dt)))),
+        first_every_(std::max(1, first_ / kFirstSamples)),
+        lost_(scene.start.x.size(), Vec3::Zero()) {}
+
+  void declare(const DeclaredStep& step) override {
+    declared_ = step;
+    if (declared_.none.empty() && free_vertices(scene_).size() > kMostVertices)
+      declared_.none = "more than " + std::to_string(kMostVertices) + " vertices";
+    if (!declared_.none.empty()) return;
+    if (!free_vertices(scene_).empty()) error_.emplace(scene_, step.stiffness);
+  }
+  bool follows(int step) const override {
+    return error_ && declared_.substeps > 1 && (samples(step) || samples_first(step));
+  }
+  void observe_within(const Snapshot& m) override { before_ = m.state, step_before_ = m.step; }
+  void observe(const Snapshot& m) override {
+    if (!error_) return;
+    const int substeps = declared_.substeps;
+    const bool known = m.step > 0 && step_before_ == (substeps > 1 ? m.step : m.step - 1);
+    if (known && samples(m.step)) judge(m);
+    if (known && samples_first(m.step)) add_missed(m);
+    if (m.step == first_) end_ = m.state.x;
+    if (substeps == 1 && (samples(m.step + 1) || samples_first(m.step + 1)))
+      before_ = m.state, step_before_ = m.step;
+  }
+  std::vector<double> finish() override {
+    const double none = Summary::kNone;
+    if (count_ == 0) return {none, none, none, none};
+    const double share = way_share();
+    const double believed = believed_ / static_cast<double>(count_);
+    if (believed < kEnough) return {none, none, share, believed};
+    return {sum_ / believed_, peak_, share, believed};
+  }
+  std::vector<double> now(const Snapshot&) const override {
+    return {Summary::kNone, Summary::kNone, Summary::kNone, Summary::kNone};
+  }
+  std::string remark() const override {
+    if (!declared_.none.empty()) return "no value: " + declared_.none;
+    std::string text = "from one implicit Euler step of " + declared_.of;
+    if (believed_ < count_)
+      text += "; " + std::to_string(count_ - static_cast<int>(believed_)) + " of " +
+              std::to_string(count_) + " steps cannot be believed";
+    return text;
+  }
+
+ private:
+  bool samples(int step) const { return (scene_.steps - step) % every_ == 0; }
+  bool samples_first(int step) const {
+    return step > 0 && step <= first_ && step % first_every_ == 0;
+  }
+  double substep() const { return scene_.dt / declared_.substeps; }
+
+  void add_missed(const Snapshot& m) {
+    ++first_count_;
+    const double h = substep();
+    const std::vector<Vec3> missed = error_->missed(before_, m.t - h, h, m.state.x);
+    if (missed.empty()) return;
+    ++first_believed_;
+    const double left = first_ * scene_.dt - m.t;
+    for (std::size_t i = 0; i < missed.size(); ++i)  // as much in each substep of these steps
+      lost_[i] += left * first_every_ * declared_.substeps / h * missed[i];
+  }
+  double way_share() const {
+    if (end_.empty() || first_believed_ < kEnough * first_count_ || first_believed_ == 0)
+      return Summary::kNone;
+    double along = 0, square = 0;
+    const std::vector<std::size_t> free = free_vertices(scene_);
+    for (const std::size_t i : free) {
+      const Vec3 way = end_[i] - scene_.start.x[i],
+                 full = way + first_count_ / first_believed_ * lost_[i];
+      along += way.dot(full);
+      square += full.squaredNorm();
+    }
+    const bool moves =
+        std::sqrt(square / static_cast<double>(free.size())) >= kLeastWay * extent(scene_);
+    return moves ? along / square : Summary::kNone;
+  }
+  void judge(const Snapshot& m) {
+    const double h = substep();
+    const auto error = error_->of(before_, m.t - h, h, m.state.x);
+    ++count_;
+    if (!error.believed) return;
+    ++believed_;
+    sum_ += error.distance;
+    peak_ = std::max(peak_, error.distance);
+  }
+
+  const Scene& scene_;               ///< of the run, which outlives its metrics
+  int every_, first_, first_every_;  ///< steps
+  DeclaredStep declared_{.none = "no step is declared"};
+  std::optional<reference::StepError> error_;  ///< none: no value
+  State before_;
+  int step_before_ = -1;
+  std::vector<Vec3> lost_, end_;  ///< m; the places half a second after the start
+  double first_count_ = 0, first_believed_ = 0;
+  int count_ = 0;
+  double believed_ = 0, sum_ = 0, peak_ = 0;  ///< steps, m, m
+};
+
+}  // namespace
+
+TAUT_METRIC(step_error, StepErrors,
+            "How far each step is from the exact one, without a reference in motion",
+            "Newton's method from the solver's own answer");
+
+}  // namespace taut

@@ -1,0 +1,153 @@
+#include "experiments/report/study_figures.hpp"
+
+#include <cmath>
+
+#include "core/io/text_file.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/wording.hpp"
+#include "experiments/report/stored.hpp"
+#include "experiments/system/distinct.hpp"
+
+namespace taut::report {
+
+namespace {
+
+using Remark = std::function<void(const std::string&)>;
+
+/// A plot's `slope`, the exponent of a theory; nothing if it names none.
+std::optional<double> exponent(const std::string& text) {
+  if (text.empty()) return {};
+  const std::optional<double> value = whole<double>(text);
+  if (!value || !std::isfinite(*value))
+    throw InputError("slope = " + text + " in [[plot]]: expected a number");
+  return value;
+}
+
+/// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
+/// and to `remark`.
+std::string hold_other(const PlotSpec& spec, Records& records, const std::string& scene,
+                       const Remark& remark) {
+  const std::string held = spec.x == "dt" ? kSweeps : "dt";
+  const Slice slice = hold(records, held, held == "dt" ? 1.0 / 64 : 8);
+  const std::size_t left_out = records.size() - slice.records.size();
+  records = slice.records;
+  if (left_out == 0) return "";
+  const std::string at = quantity(held).text(slice.value, 3);
+  const std::string setting = held == "dt" ? "dt = " + at : at + " sweeps";
+  remark(scene + ", " + spec.y + " over " + spec.x + ": " + setting + "; " +
+         std::to_string(left_out) + " cases at other values are not drawn");
+  return ", " + setting;
+}
+
+/// Of one scene; a setting that is neither on an axis nor what orders the curves is held at its
+/// commonest.
+PlotPanel panel_of(const FigureRequest& want, const StudyResult& study, const std::string& scene,
+                   const Store& store, const Remark& remark) {
+  const PlotSpec& spec = want.spec;
+  PlotPanel panel{scene, study.records, {}, want.slope};
+  std::erase_if(panel.records, [&](const Record* r) { return r->scene != scene; });
+  if (spec.kind == "scaling") panel.slope = 1;
+  if (spec.kind != "stability") panel.title += hold_other(spec, panel.records, scene, remark);
+  if (spec.kind == "series") panel.series = stored_series(panel.records, spec.y, store);
+  const ValueSpec* value = find_value(spec.y).second;
+  if (const auto slope = study.slopes.find(scene);
+      slope != study.slopes.end() && spec.kind == "convergence" && spec.x == kSweeps &&
+      !panel.slope && value && value->falls_with_sweeps)
+    panel.slope = slope->second;
+  return panel;
+}
+
+/// A figure of these scenes; of a single one it bears the name. Several panels have titles of their
+/// own, and the figure has one only if it is asked for.
+PlotFiles draw(FigureRequest want, const StudyResult& study, const std::vector<std::string>& scenes,
+               const Store& store, const std::filesystem::path& out, const Remark& remark) {
+  PlotSpec& spec = want.spec;
+  const PlotKind& kind = find_plot_kind(spec.kind);
+  if (spec.x.empty()) spec.x = kind.x;
+  if (spec.y.empty()) spec.y = kind.y;
+  std::vector<PlotPanel> panels;
+  for (const std::string& scene : scenes)
+    panels.push_back(panel_of(want, study, scene, store, remark));
+  if (spec.title.empty())
+    spec.title = capitalised(quantity(spec.y).title) + " over " + quantity(spec.x).title;
+  if (panels.size() == 1) spec.title += ", " + panels.front().title;
+  if (want.title == FigureRequest::Title::none ||
+      (panels.size() > 1 && want.title != FigureRequest::Title::always))
+    spec.title.clear();
+  Records drawn;
+  for (const PlotPanel& panel : panels)
+    drawn.insert(drawn.end(), panel.records.begin(), panel.records.end());
+  if (const std::string unequal = unequal_work(drawn); !unequal.empty())
+    spec.remark = "unequal work: " + unequal;
+  if (!spec.remark.empty()) remark(spec.remark);
+  if (spec.file.empty()) spec.file = spec.kind + "-" + spec.y + "-over-" + spec.x;
+  spec.file = slug((scenes.size() == 1 ? scenes.front() + "-" : "") + spec.file);
+  return make_plot(spec, panels, out);
+}
+
+/// By scene; of a map a set for each.
+std::vector<std::vector<std::string>> panels_of(const std::string& kind,
+                                                const std::vector<Record>& records) {
+  std::vector<std::string> scenes;
+  for (const Record& r : records) push_unique(scenes, r.scene);
+  if (kind != "stability") return {scenes};
+  std::vector<std::vector<std::string>> sets;
+  for (const std::string& scene : scenes) sets.push_back({scene});
+  return sets;
+}
+
+PlotFiles draw_profile(PlotSpec spec, const FigureRequest& want, const ReportInput& input,
+                       const std::filesystem::path& out) {
+  if (!input.bench)
+    throw InputError("no cost was measured: taut bench " + input.studies.front().name);
+  if (spec.title.empty() && want.title != FigureRequest::Title::none)
+    spec.title = "How often each solver is near the cheapest";
+  return make_profile_plot(spec, *input.bench, out);
+}
+
+}  // namespace
+
+std::vector<FigureRequest> figures_of(const Study& study) {
+  std::vector<FigureRequest> all;
+  for (const Plot& plot : study.plots) {
+    const auto option = [&](const char* name) {
+      const auto at = plot.options.find(name);
+      return at == plot.options.end() ? std::string() : at->second;
+    };
+    all.push_back({{.kind = plot.kind,
+                    .x = option("x"),
+                    .y = option("y"),
+                    .along = option("along"),
+                    .title = option("title"),
+                    .file = option("file")},
+                   exponent(option("slope"))});
+  }
+  if (all.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
+  return all;
+}
+
+StudyFigures draw_figures(const std::vector<FigureRequest>& wanted, const ReportInput& input,
+                          const Store& store, const std::filesystem::path& folder,
+                          const Remark& remark) {
+  const StudyResult& study = input.studies.front();
+  StudyFigures figures;
+  for (const FigureRequest& want : wanted) {
+    if (want.spec.kind == "profile") {
+      figures.files.push_back(draw_profile(want.spec, want, input, folder));
+      continue;
+    }
+    for (const std::vector<std::string>& scenes : panels_of(want.spec.kind, study.records)) try {
+        figures.files.push_back(draw(want, study, scenes, store, folder, remark));
+      } catch (const FigureNotWritten&) {
+        throw;
+      } catch (const InputError& error) {
+        figures.not_drawn.emplace_back(error.what());
+      }
+  }
+  return figures;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,57 @@
+#include "experiments/study/study_table.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
+#include "experiments/system/distinct.hpp"
+
+namespace taut {
+
+namespace {
+
+/// What tells the cases of one scene apart: "jakobsen:iterations=4 dt=1/120".
+std::string setting_of(const Case& one, const Study& study) {
+  std::vector<std::string> shared = study.settings;
+  for (const std::string& scene : study.scenes)
+    std::ranges::copy(parse_scene(scene).settings, std::back_inserter(shared));
+  std::string text = one.choice.brief();
+  for (const std::string& change : one.spec.overrides)
+    if (std::ranges::find(shared, change) == shared.end()) text += " " + change;
+  return text;
+}
+
+/// A failure, and an extreme, is its status; a value of an unsettled case has a note.
+Cell cell(const Record& record, const std::string& value) {
+  if (!completed(record.status)) return to_string(record.status.kind);
+  Cell number(record.value(value));
+  number.key = record.key;
+  return record.status.kind == Status::Kind::unsettled ? number.with("~") : number;
+}
+
+}  // namespace
+
+Table table_of(const Study& study, const Store& store, const std::string& value,
+               const std::string& name) {
+  const std::vector<Case> cases = cases_of(study);
+  Table table{name, "", {{"setting", value}}};
+  const auto scenes = distinct(cases, [](const Case& c) { return c.scene->name; });
+  for (const std::string& scene : scenes)
+    table.columns.emplace_back(scene, scene, unit_of_value(value));
+  const auto settings = distinct(cases, [&](const Case& c) { return setting_of(c, study); });
+  for (const std::string& setting : settings) {
+    table.rows.emplace_back(scenes.size() + 1);
+    table.rows.back()[0] = setting;
+  }
+  for (const Case& one : cases)
+    if (const auto record = store.find(one)) {
+      const auto row = std::ranges::find(settings, setting_of(one, study)) - settings.begin();
+      const auto column = std::ranges::find(scenes, one.scene->name) - scenes.begin();
+      table.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column) + 1] =
+          cell(*record, value);
+    }
+  return table;
+}
+
+}  // namespace taut

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/answer/answer.hpp"
+#include "experiments/results/store.hpp"
+#include "experiments/study/study.hpp"
+
+namespace taut {
+
+/// What a study's stored cases have of a metric value: a row for each setting, a column for each
+/// scene, both in the order of the study.
+Table table_of(const Study&, const Store&, const std::string& value, const std::string& name);
+
+}  // namespace taut
