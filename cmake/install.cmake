@@ -14,7 +14,7 @@ install(FILES ${PROJECT_BINARY_DIR}/taut.bash DESTINATION ${CMAKE_INSTALL_DATADI
 install(FILES experiments/main-job.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
 install(DIRECTORY experiments/external/sdk
         DESTINATION ${CMAKE_INSTALL_DATADIR}/taut/external COMPONENT program)
-install(DIRECTORY experiments/scenes experiments/studies experiments/templates results/references
+install(DIRECTORY experiments/scenes experiments/studies experiments/templates experiments/beside results/references
         DESTINATION ${CMAKE_INSTALL_DATADIR}/taut COMPONENT program)
 
 # The Python package; its data are the program's.

@@ -101,7 +101,9 @@ struct AccuracyParameters {
   std::string_view substeps;  ///< steps of dt / substeps; "": the solver has none
   std::string_view sweeps;    ///< more of them need fewer substeps; "": the solver has none
   bool all_at_once = false;   ///< an iteration solves for all links at once: it is no sweep
-  Ladder stiffness;           ///< of a solver without sweeps: each value needs its own substeps
+  /// Springs that may be softer or stiffer: without sweeps each value needs its own substeps, with
+  /// sweeps a higher one is for what the default does not reach.
+  Ladder stiffness;
   std::span<const Ladder> alternatives;  ///< tried one at a time, at the best of the others
   /// All that may vary along a curve of error over cost, in the order in which labels name it.
   std::string_view labelled = "substeps|iterations";

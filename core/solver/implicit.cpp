@@ -63,8 +63,9 @@ using Eigen::Matrix3d;
 /// or below what rounding of the places makes of the springs: the first one only if that, too, is
 /// below a share, for a light cloth is moved by less.
 constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
-/// Beyond so many vertices that move, conjugate gradients take less time than a factor.
-constexpr std::size_t kFactorPays = 20000;
+/// Up to so many vertices that move, the factor is taken. It is faster than conjugate gradients at
+/// any size that was tried (methods.md) and is bound by its memory, 6 kB a vertex there.
+constexpr std::size_t kFactorPays = 100000;
 /// Of the stiffness of all else at a vertex, that of its contact; and of a change of the forces of
 /// contact, the gradient that is left before they take it.
 constexpr double kContactStiffness = 3, kSettled = 0.3;
@@ -815,4 +816,8 @@ TAUT_SOLVER(implicit) = {
     .unsupported = taut::solver::implicit::unsupported,
     .resolved_settings = taut::solver::implicit::resolved_settings,
     .declared_step = taut::solver::implicit::declared_step,
-    .accuracy = {.substeps = "substeps", .sweeps = "iterations", .all_at_once = true}};
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .all_at_once = true,
+                 .stiffness = taut::kStiffnesses,
+                 .labelled = "substeps|iterations|structural"}};

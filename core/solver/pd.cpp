@@ -406,5 +406,6 @@ TAUT_SOLVER(pd) = {
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .all_at_once = true,
+                 .stiffness = taut::kStiffnesses,
                  .alternatives = taut::solver::pd::kAlternatives,
-                 .labelled = "substeps|iterations|precision"}};
+                 .labelled = "substeps|iterations|structural|precision"}};

@@ -95,17 +95,19 @@ constexpr AccuracyParameters::Ladder kAlternatives[] = {
 }  // namespace
 }  // namespace taut::solver::vbd
 
-TAUT_SOLVER(vbd) = {.name = "vbd",
-                    .title = "VBD",
-                    .summary = "Vertex Block Descent on the energy of implicit Euler",
-                    .source = "Chen, Liu, Yang, Yuksel 2024; Wang 2015",
-                    .params = taut::solver::vbd::kParams,
-                    .make = taut::solver::vbd::make,
-                    .unsupported = taut::unsupported_of_springs,
-                    .resolved_settings = taut::solver::vbd::resolved_settings,
-                    .declared_step = taut::solver::vbd::declared_step,
-                    .accuracy = {.substeps = "substeps",
-                                 .sweeps = "iterations",
-                                 .alternatives = taut::solver::vbd::kAlternatives,
-                                 .labelled = "substeps|iterations|chebyshev|start|precision",
-                                 .accelerators = "chebyshev|threads"}};
+TAUT_SOLVER(vbd) = {
+    .name = "vbd",
+    .title = "VBD",
+    .summary = "Vertex Block Descent on the energy of implicit Euler",
+    .source = "Chen, Liu, Yang, Yuksel 2024; Wang 2015",
+    .params = taut::solver::vbd::kParams,
+    .make = taut::solver::vbd::make,
+    .unsupported = taut::unsupported_of_springs,
+    .resolved_settings = taut::solver::vbd::resolved_settings,
+    .declared_step = taut::solver::vbd::declared_step,
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .stiffness = taut::kStiffnesses,
+                 .alternatives = taut::solver::vbd::kAlternatives,
+                 .labelled = "substeps|iterations|structural|chebyshev|start|precision",
+                 .accelerators = "chebyshev|threads"}};

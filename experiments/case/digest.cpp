@@ -1,9 +1,9 @@
 #include "experiments/case/digest.hpp"
 
-#include <openssl/evp.h>
+#define OPENSSL_SUPPRESS_DEPRECATED  // what takes its place reads a configuration at every start
+#include <openssl/sha.h>
 
 #include <array>
-#include <cassert>
 
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/case/record_io.hpp"
@@ -12,11 +12,11 @@
 namespace taut {
 
 std::string sha256(std::string_view bytes) {
-  std::array<unsigned char, 32> hash{};
-  unsigned length = 0;
-  [[maybe_unused]] const int done =
-      EVP_Digest(bytes.data(), bytes.size(), hash.data(), &length, EVP_sha256(), nullptr);
-  assert(done == 1 && length == hash.size());
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> hash{};
+  SHA256_CTX state;
+  SHA256_Init(&state);
+  SHA256_Update(&state, bytes.data(), bytes.size());
+  SHA256_Final(hash.data(), &state);
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string text;
   for (const unsigned char byte : hash) {

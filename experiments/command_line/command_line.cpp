@@ -104,9 +104,14 @@ void add_verb(CLI::App& parent, const VerbEntry& entry, std::vector<Verb>& all) 
   all.push_back({app, bind(entry, *app)});
 }
 
-/// The whole parser: verbs in the order of their groups, then verbs of verbs.
-std::vector<Verb> add_verbs(CLI::App& app) {
+/// The parser of one verb and its verbs, or of all ("", of which most is never asked for): verbs in
+/// the order of their groups, then verbs of verbs.
+std::vector<Verb> add_verbs(CLI::App& app, const std::string& only) {
   std::vector<const VerbEntry*> entries(verbs().begin(), verbs().end());
+  if (!only.empty())
+    std::erase_if(entries, [&](const VerbEntry* e) {
+      return e->name != only && !e->name.starts_with(only + " ");
+    });
   const auto inner = [](const VerbEntry* e) { return e->name.find(' ') != std::string::npos; };
   std::ranges::stable_sort(entries, {},
                            [&](const VerbEntry* e) { return std::pair(inner(e), e->group); });
@@ -239,7 +244,8 @@ int parse_and_run(int argc, char** argv) {
            std::string(toolchain());
   });
   app.footer("`taut VERB --help` shows the options and an example of each verb.");
-  const std::vector<Verb> all = add_verbs(app);
+  const bool has_verb = argc > 1 && argv[1][0] != '-';
+  const std::vector<Verb> all = add_verbs(app, has_verb ? argv[1] : "");
   refuse_empty_values(argc, argv);
   admit_solvers(argc, argv);
   const std::string first = argc == 2 ? argv[1] : "";  // for `cmake --install`

@@ -80,6 +80,18 @@ bool excluded(const Study& study, const Settings& settings) {
       study.exclusions, [&](const Exclusion& one) { return std::ranges::all_of(one.when, has); });
 }
 
+/// The settings of the scene: those that a search chose for it, or all solvers.
+const std::vector<std::string>& solvers_on(const Study& study, const std::string& scene) {
+  if (study.searched.empty()) return study.solvers;
+  const auto chosen = study.chosen.find(scene);
+  if (chosen == study.chosen.end())
+    throw InputError(
+        {{study.searched.string(), 0, 0,
+          "no settings for scene '" + scene + "': `taut advise --study " + study.name +
+              (study.preset.empty() ? "" : " --preset " + study.preset) + "` searches them"}});
+  return chosen->second;
+}
+
 CaseSpec spec_of(const Study& study, const std::string& scene, const std::string& solver,
                  const Settings& of_scene, const Settings& of_solver) {
   const StudyScene own = parse_scene(scene);
@@ -113,7 +125,7 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
   };
   for (const std::string& scene : study.scenes)
     combinations(scene_axes(study), [&](const Settings& of_scene) {
-      for (const std::string& solver : study.solvers)
+      for (const std::string& solver : solvers_on(study, scene))
         combinations(solver_axes(study, solver), [&](const Settings& of_solver) {
           Settings all = of_scene;
           all.insert(of_solver.begin(), of_solver.end());

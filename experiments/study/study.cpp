@@ -140,6 +140,16 @@ class StudyReader {
       remember_solvers();
     }
   }
+  void read_searched(Section& section) {
+    const std::optional<std::string> file = section.string("searched");
+    if (!file) return;
+    study_.searched = study_.file.parent_path() / *file;
+    study_.chosen.clear();
+    std::error_code none;
+    if (!std::filesystem::exists(study_.searched, none)) return;  // it is yet to be searched
+    for (const SearchedSetting& row : taut::read_searched(study_.searched))
+      if (row.chosen()) study_.chosen[row.scene].push_back(row.solver);
+  }
   void read_set(Section& section) {
     if (strings(section, "set", study_.settings, [](const std::string&) {}))
       for (const Value& item : section.find("set")->items) study_.places[item.string] = item.place;
@@ -428,6 +438,11 @@ constexpr StudyRow kKeys[] = {
       "are to be equal work, name the substeps too (`jakobsen:substeps=1,order=mesh` beside "
       "`bullet`)"},
      &StudyReader::read_solvers},
+    {{"searched", true,
+      "a file beside the study: settings of the solvers, chosen scene by scene, that stand in "
+      "their "
+      "place; `taut advise --study` searches them and writes it"},
+     &StudyReader::read_searched},
     {{"set", true,
       "scene keys for every case, as on the command line: `[\"cloth.grid=[16, 16]\", "
       "\"time.duration=4\"]`"},

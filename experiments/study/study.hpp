@@ -48,10 +48,14 @@ struct Study {
   std::string name;      ///< file stem
   std::string question;  ///< one sentence
   std::filesystem::path file;
-  std::string preset;                 ///< which was applied; "": none
-  std::vector<std::string> presets;   ///< names of those it has
-  std::vector<std::string> scenes;    ///< "name:key=value,...": name or path, overrides of it alone
-  std::vector<std::string> solvers;   ///< "name:key=value,..."
+  std::string preset;                ///< which was applied; "": none
+  std::vector<std::string> presets;  ///< names of those it has
+  std::vector<std::string> scenes;   ///< "name:key=value,...": name or path, overrides of it alone
+  std::vector<std::string> solvers;  ///< "name:key=value,..."
+  /// The file of settings that a search chose for the solvers, scene by scene; "": none.
+  std::filesystem::path searched;
+  /// What stands there, by the scene as in `scenes`; empty: there is no such file yet.
+  std::map<std::string, std::vector<std::string>> chosen;
   std::vector<std::string> settings;  ///< scene overrides of every case
   std::vector<StudyAxis> axes;
   std::vector<Exclusion> exclusions;
@@ -68,6 +72,26 @@ struct StudyKey {
   std::string_view help;   ///< a line or two
 };
 std::vector<StudyKey> study_keys();
+
+/// A row of a file of searched settings (Study::searched): what was tried, and what of it is a
+/// solver's best on a scene. A row that is none was tried alone.
+struct SearchedSetting {
+  std::string scene;  ///< as in Study::scenes
+  std::string solver;
+  double error = 0;          ///< of the metric; NaN: none
+  double cost = 0;           ///< CPU s per simulated s, by a few steps; NaN: none
+  std::string refused = {};  ///< why it meets no target; "": it may
+  bool cheapest = false;     ///< of the solver's settings, whatever the error
+  std::vector<double> plain =
+      {};                         ///< errors for which it is the solver's best without accelerators
+  std::vector<double> best = {};  ///< errors for which it is the solver's best with them
+  bool chosen() const { return cheapest || !plain.empty() || !best.empty(); }
+};
+/// The file's text behind `heading`, comment lines; `missing` are sentences on who is not there.
+std::string searched_toml(const std::string& heading, const std::vector<SearchedSetting>&,
+                          const std::vector<std::string>& missing);
+/// Throws InputError with all that is wrong with the file.
+std::vector<SearchedSetting> read_searched(const std::filesystem::path&);
 
 /// What is wrong with one of Study::scenes, at the place where the study says it: an override has
 /// no line of its own.

@@ -16,6 +16,9 @@ constexpr double kSkipAboveOwnBest =
     1.3;  ///< a quick cost this much above its own best is not worth a run
 constexpr double kAbandonAboveBest = 30;  ///< nor is one this much above the best of all
 constexpr double kRefineBelowBest = 10;   ///< above the best of all: found, but not polished
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+using Values = std::map<std::string, std::string>;
 
 /// Values of the second parameter, each tried with its own number of substeps.
 struct Columns {
@@ -37,6 +40,14 @@ class OpenParameters {
     return !name.empty() && !fixed(':') && !fixed(',');
   }
 
+  /// Those of the parameters that are open, at that value.
+  Values values_of(std::string_view parameters, const std::string& value) const {
+    Values values;
+    for (const std::string& name : parts_of(parameters))
+      if (open(name)) values[name] = value;
+    return values;
+  }
+
   std::string substeps() const { return std::string(entry_.accuracy.substeps); }
   bool has_substeps() const { return open(entry_.accuracy.substeps); }
   std::string sweeps() const { return std::string(entry_.accuracy.sweeps); }
@@ -54,13 +65,35 @@ class OpenParameters {
     return columns;
   }
 
+  /// Stiffnesses of a solver whose columns are sweeps, as far as the text leaves them open.
+  std::vector<Values> stiffnesses() const {
+    std::vector<Values> all;
+    if (open(entry_.accuracy.sweeps))
+      for (const std::string& value : parts_of(entry_.accuracy.stiffness.values))
+        if (const Values values = values_of(entry_.accuracy.stiffness.parameters, value);
+            !values.empty())
+          all.push_back(values);
+    return all;
+  }
+
   /// Single changes worth trying beside substeps and columns.
-  std::vector<std::pair<std::string, std::string>> alternatives() const {
-    std::vector<std::pair<std::string, std::string>> all;
+  std::vector<Values> alternatives() const {
+    std::vector<Values> all;
     for (const auto& [name, values] : entry_.accuracy.alternatives)
       for (const std::string& value : parts_of(values))
-        if (open(name) && value != parse_solver(base_).params.value(name))
-          all.emplace_back(name, value);
+        if (open(name)) all.push_back({{std::string(name), value}});
+    for (const Values& values : stiffnesses()) all.push_back(values);
+    return all;
+  }
+
+  /// The same, those that the solver's text does not have anyway.
+  std::vector<Values> other_alternatives() const {
+    std::vector<Values> all = alternatives();
+    const Params& params = parse_solver(base_).params;
+    std::erase_if(all, [&](const Values& values) {
+      return std::ranges::all_of(
+          values, [&](const auto& one) { return params.value(one.first) == one.second; });
+    });
     return all;
   }
 
@@ -69,33 +102,34 @@ class OpenParameters {
   const SolverEntry& entry_;
 };
 
-using Values = std::map<std::string, std::string>;
-
 class SettingSearch {
  public:
   SettingSearch(const std::string& solver, const Target& target, const Evaluation& run,
-                std::vector<Candidate> known)
-      : solver_(solver), target_(target), run_(run), open_(solver), known_(std::move(known)) {}
+                std::vector<Candidate> known, double dearest = kNone)
+      : solver_(solver),
+        target_(target),
+        run_(run),
+        open_(solver),
+        known_(std::move(known)),
+        dearest_(dearest) {}
 
   std::vector<Candidate> run(SearchDepth depth) {
     const Columns columns = open_.columns();
-    int start = 1, idle = 0;
-    for (const std::string& value : columns.values) {
-      Values values;
-      for (const std::string& name : columns.parameters) values[name] = value;
-      const auto before = best_;
-      if (target_.error)
-        start = columns.sweeps ? std::max(1, fewest(values, start) / 2) : (fewest(values, 1), 1);
-      else
-        most(values);
-      idle = best_ && best_ != before ? 0 : idle + 1;
-      if (over_ || (idle >= 2 && (best_ || columns.sweeps == false))) break;
-      if (columns.sweeps && hopeless_) break;
-    }
+    walk(columns, {});
+    if (target_.error)
+      for (const Values& stiffness : open_.stiffnesses())
+        if (!best_ && is_stiffer(stiffness)) walk(columns, stiffness);
     if (depth == SearchDepth::columns) return tried_;
-    if (target_.error) bisect();
-    if (target_.error && columns.sweeps) bisect_sweeps();
-    if (worth_more()) alternatives();
+    if (depth == SearchDepth::repeated)
+      for (const Values& change : open_.other_alternatives())
+        if (!best_) walk(columns, change);
+    refine(columns);
+    std::optional<std::size_t> before;
+    while (depth == SearchDepth::repeated && best_ != before && !over_) {
+      before = best_;
+      if (target_.error && columns.sweeps) other_sweeps();
+      refine(columns);
+    }
     return tried_;
   }
 
@@ -112,6 +146,44 @@ class SettingSearch {
     std::string all = solver_;
     for (const auto& [name, value] : values) all = with(all, name + "=" + value);
     return all;
+  }
+
+  /// The same text whether a default stands there or not.
+  std::string canonical(const Values& values) const {
+    return parse_solver(text(values)).canonical();
+  }
+
+  bool is_stiffer(const Values& stiffness) const {
+    const Params& params = parse_solver(solver_).params;
+    return std::ranges::all_of(
+        stiffness, [&](const auto& one) { return std::stod(one.second) > params.real(one.first); });
+  }
+
+  /// All columns, at these values of other parameters.
+  void walk(const Columns& columns, const Values& fixed) {
+    int start = 1, idle = 0;
+    double floor_before = kNone;
+    for (const std::string& value : columns.values) {
+      Values values = fixed;
+      for (const std::string& name : columns.parameters) values[name] = value;
+      const auto before = best_;
+      if (target_.error)
+        start = columns.sweeps ? std::max(1, fewest(values, start) / 2) : (fewest(values, 1), 1);
+      else
+        most(values);
+      idle = best_ && best_ != before ? 0 : idle + 1;
+      if (over_ || (idle >= 2 && (best_ || columns.sweeps == false))) break;
+      if (columns.sweeps && hopeless_) break;
+      // More substeps do not help, and neither do more sweeps: it is the stiffness.
+      if (!best_ && at_floor_ && floor_ > 0.9 * floor_before && !open_.stiffnesses().empty()) break;
+      floor_before = at_floor_ ? floor_ : kNone;
+    }
+  }
+
+  void refine(const Columns& columns) {
+    if (target_.error) bisect();
+    if (target_.error && columns.sweeps) bisect_sweeps();
+    if (worth_more()) alternatives();
   }
 
   /// The candidate at these values and substeps, run at most once; nullptr when time is up.
@@ -145,14 +217,16 @@ class SettingSearch {
   /// Quick costs above this are not worth a run. A solver is held to its own best, so that the
   /// runner-up is as well chosen as the winner.
   double bar() const {
-    return std::min(kSkipAboveOwnBest * least(tried_), kAbandonAboveBest * least(known_));
+    return std::min(
+        {kSkipAboveOwnBest * least(tried_), kAbandonAboveBest * least(known_), dearest_});
   }
 
-  /// The fewest substeps, a power of two times `from`, that reach the error; where the walk ended
-  /// if none does for a cost worth paying.
+  /// The fewest substeps, a power of two times `from`, that reach the error. If none does for a
+  /// cost worth paying: where the walk ended; `from` if all failed; or of those beyond which more
+  /// do not help the first.
   int fewest(const Values& values, int from) {
     int n = from;
-    hopeless_ = false;
+    hopeless_ = at_floor_ = false;
     const Candidate* candidate = attempt(values, n);
     if (!candidate) return n;
     if (target_.meets(*candidate)) {
@@ -160,19 +234,25 @@ class SettingSearch {
       return n;
     }
     double last = candidate->error;
-    for (int stuck = 0; stuck < 3 && n < kMostSubsteps && open_.has_substeps();) {
+    int stuck = 0, helped = n;
+    bool any = candidate->failure.empty();
+    while (stuck < 3 && n < kMostSubsteps && open_.has_substeps()) {
       if (2 * candidate->cost.mid > bar()) {
         hopeless_ = n == from;  // not even the start of the next column can be cheaper
-        return n;
+        return any ? n : from;
       }
       n *= 2;
       candidate = attempt(values, n);
       if (!candidate || target_.meets(*candidate)) return n;
       // Explosions have no error; rounding is a floor that no number of substeps passes.
       stuck = candidate->error > 0.9 * last ? stuck + 1 : 0;
+      if (stuck == 0) helped = n;
+      any = any || candidate->failure.empty();
       if (!std::isnan(candidate->error)) last = candidate->error;
     }
-    return n;
+    at_floor_ = stuck == 3;
+    floor_ = last;
+    return !any ? from : at_floor_ ? helped : n;
   }
 
   /// As many substeps as the budget allows, by the cost of those tried.
@@ -233,29 +313,46 @@ class SettingSearch {
   }
 
   void alternatives() {
-    for (const auto& [name, value] : open_.alternatives()) {
+    for (const Values& change : open_.alternatives()) {
       if (over_) return;
       Values values = without_substeps(best_met_.values);
-      if (values.contains(name) && values[name] == value) continue;
-      values[name] = value;
-      const Candidate* candidate = attempt(values, best_met_.substeps);
-      if (!candidate) return;
-      if (target_.budget) {  // a cheaper step buys more of them
-        if (candidate->failure.empty() && candidate->cost.mid < 0.8 * *target_.budget) most(values);
-        continue;
+      for (const auto& [name, value] : change) values[name] = value;
+      if (canonical(values) != canonical(without_substeps(best_met_.values)))
+        try_beside_best(values);
+    }
+  }
+
+  /// Half and twice the sweeps of the best.
+  void other_sweeps() {
+    if (!worth_more()) return;
+    const int sweeps = std::stoi(best_met_.values[open_.sweeps()]);
+    for (const int other : {sweeps / 2, 2 * sweeps}) {
+      if (over_ || other < 1 || other > kMostSweeps) continue;
+      Values values = without_substeps(best_met_.values);
+      values[open_.sweeps()] = std::to_string(other);
+      try_beside_best(values);
+    }
+  }
+
+  /// These values with the substeps of the best, then with as many as they need themselves.
+  void try_beside_best(const Values& values) {
+    const Candidate* candidate = attempt(values, best_met_.substeps);
+    if (!candidate) return;
+    if (target_.budget) {  // a cheaper step buys more of them
+      if (candidate->failure.empty() && candidate->cost.mid < 0.8 * *target_.budget) most(values);
+      return;
+    }
+    int n = best_met_.substeps;
+    if (target_.meets(*candidate)) {
+      while (candidate && target_.meets(*candidate) && n > 1) {
+        n = std::min(n - 1, n * 3 / 4);
+        candidate = attempt(values, n);
       }
-      int n = best_met_.substeps;
-      if (target_.meets(*candidate)) {
-        while (candidate && target_.meets(*candidate) && n > 1) {
-          n = std::min(n - 1, n * 3 / 4);
-          candidate = attempt(values, n);
-        }
-      } else {  // less accurate, but perhaps so much cheaper that more substeps pay
-        while (candidate && !target_.meets(*candidate) && candidate->failure.empty() &&
-               1.4 * candidate->cost.mid < least(tried_) && n < kMostSubsteps) {
-          n = n + std::max(1, n / 3);
-          candidate = attempt(values, n);
-        }
+    } else {  // less accurate, but perhaps so much cheaper that more substeps pay
+      while (candidate && !target_.meets(*candidate) && candidate->failure.empty() &&
+             1.4 * candidate->cost.mid < least(tried_) && n < kMostSubsteps) {
+        n = n + std::max(1, n / 3);
+        candidate = attempt(values, n);
       }
     }
   }
@@ -276,19 +373,22 @@ class SettingSearch {
   const Evaluation& run_;
   OpenParameters open_;
   std::vector<Candidate> known_, tried_;
+  double dearest_;
   std::map<std::string, std::size_t> index_;
   std::optional<std::size_t> best_;
   std::vector<Met> met_;
   Met best_met_{0, {}, 1};
   bool over_ = false, hopeless_ = false;
+  bool at_floor_ = false;  ///< the last column ended because more substeps do not help
+  double floor_ = kNone;   ///< the error there
 };
 
 }  // namespace
 
 std::vector<Candidate> search_settings(const std::string& solver, const Target& target,
                                        const Evaluation& run, std::vector<Candidate> known,
-                                       SearchDepth depth) {
-  return SettingSearch(solver, target, run, std::move(known)).run(depth);
+                                       SearchDepth depth, double dearest) {
+  return SettingSearch(solver, target, run, std::move(known), dearest).run(depth);
 }
 
 std::string cheapest_setting(const std::string& solver) {

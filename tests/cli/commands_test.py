@@ -460,6 +460,44 @@ class Verbs(CommandLine):
                 self.assertGreater(other["quick_cost"], 0.3 * said["cost"][1])
         self.taut(*shlex.split(said["command"])[1:], "--rounds", 2, "--seconds", 0.002)
 
+    def test_every_solver_stands_among_the_bests_or_why_not(self):
+        answer = self.advise("--error", "1%", expect=None)
+        rows = {row["solver"]: row for row in rows_of(answer, "solvers")}
+        known = {row["name"] for row in rows_of(self.answer("list", "solvers"), "solvers")} - {"external", "positions"}
+        self.assertEqual(set(rows), known)
+        self.assertTrue(all(row["cost"] or row["note"] for row in rows.values()), rows)
+        self.assertGreater(sum(not row["cost"] for row in rows.values()), 0, "at most five are timed")
+
+    def test_a_study_is_searched_with_equal_time_for_all_and_runs_what_was_found(self):
+        (self.folder / "mine.toml").write_text('''
+question = "?"
+scenes = ["./small.toml"]
+solvers = ["jakobsen:threads=1", "bullet", "mass-spring"]
+searched = "mine-searched.toml"
+''')
+        self.assertIn("`taut advise --study mine` searches them", self.taut("run", "./mine.toml", expect=2).err)
+        answer = self.answer("advise", "--study", "./mine.toml", "--cpu", 0.02)
+        found = tomllib.loads((self.folder / "mine-searched.toml").read_text())
+        searched = {row["solver"]: row for row in rows_of(answer, "searched")}
+        for name in ("jakobsen:threads=1", "bullet", "mass-spring"):
+            rows = [row for row in found["tried"] if row["solver"].split(":")[0] == name.split(":")[0]]
+            self.assertEqual(len(rows), searched[name]["tried"])
+            self.assertTrue(rows[0]["cheapest"])
+            dearest = max(row.get("cost", 0) for row in rows)
+            self.assertLess(searched[name]["cpu"], 0.02 + 2 * dearest, "the last run alone may go beyond")
+            for kind in ("plain", "best"):
+                for level in (0.1, 0.03, 0.01, 0.003, 0.001):
+                    reach = [row for row in rows if "refused" not in row and row.get("error", 1) <= level
+                             and (kind == "best" or not any(f"{word}=" in row["solver"] for word in ("omega", "levels", "tethers", "stiffness")))]
+                    chosen = [row for row in rows if level in row.get(kind, [])]
+                    self.assertEqual(len(chosen), bool(reach), (name, kind, level))
+                    if reach:
+                        self.assertEqual(chosen[0]["cost"], min(row["cost"] for row in reach))
+                    elif kind == "best":
+                        self.assertTrue(any(f"{name}, stretch.rms <= {level}:" in why for why in found["missing"]))
+        chosen = [row["solver"] for row in found["tried"] if row.get("cheapest") or row.get("plain") or row.get("best")]
+        self.assertEqual(facts_of(self.answer("run", "./mine.toml"))["cases"], len(chosen))
+
     def test_advice_is_clear_only_when_it_was_confirmed_and_the_search_has_ended(self):
         for patience in [3, 120]:
             said = facts_of(self.advise("--error", "0.3%", "--patience", patience, expect=None))

@@ -26,13 +26,14 @@ experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|c
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/(study|results)/[a-z_]+.hpp
-experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|case|results|study|timing))/
+experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|case|results|study|timing|beside))/
+experiments/beside       | beside\.hpp
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
 experiments/history      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|baseline|history))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
-experiments/advise       | (core/model|experiments/(system|case|results|timing|advise))/
+experiments/advise       | (core/(model|io)|experiments/(answer|system|case|results|study|timing|require|advise))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <set>
 
@@ -48,6 +49,54 @@ iterations = [1, 2]
                                  "fall dt=1/32 jakobsen:iterations=2,precision=double",
                                  "fall dt=0.5 jakobsen:iterations=1,precision=double",
                                  "fall dt=0.5 jakobsen:iterations=2,precision=double"}));
+}
+
+TEST(Study, SettingsThatASearchChoseStandInThePlaceOfItsSolversSceneByScene) {
+  const Scratch scratch;
+  const auto file = scratch.path() / "mine.toml", searched = scratch.path() / "mine-searched.toml";
+  std::ofstream(file) << R"(
+question = "?"
+scenes = ["chain", "fall:time.duration=1"]
+solvers = ["jakobsen", "xpbd"]
+searched = "mine-searched.toml"
+)";
+  const auto message = [&] {
+    try {
+      cases_of(load_study(file.string()));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(
+      message().find("mine-searched.toml: no settings for scene 'chain': `taut advise --study "
+                     "mine` searches them"),
+      std::string::npos)
+      << message();
+  const double nan = std::nan("");
+  const std::vector<SearchedSetting> rows{
+      {"chain", "jakobsen:iterations=1,substeps=2", 0.02, 1e-4, "", false, {0.03}, {0.03, 0.1}},
+      {"chain", "jakobsen:iterations=9,substeps=1", 0.02, 3e-4, "", false, {}, {}},
+      {"chain", "xpbd:substeps=4", nan, nan, "exploded, \"at\" 2", false, {}, {}},
+      {"fall:time.duration=1", "xpbd:substeps=3", 0.5, 1e-4, "", true, {}, {}}};
+  std::ofstream(searched) << searched_toml("# as found\n", rows, {"chain, xpbd: it exploded"});
+  EXPECT_EQ(ids(load_study(file.string())),
+            (Strings{"chain jakobsen:iterations=1,substeps=2", "fall duration=1 xpbd:substeps=3"}));
+  const auto again = read_searched(searched);
+  ASSERT_EQ(again.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(again[i].solver, rows[i].solver);
+    EXPECT_EQ(again[i].refused, rows[i].refused);
+    EXPECT_EQ(again[i].plain, rows[i].plain);
+    EXPECT_EQ(again[i].best, rows[i].best);
+    EXPECT_EQ(std::isnan(again[i].error), std::isnan(rows[i].error));
+  }
+  std::ofstream(searched) << "tried = [\n  { scene = \"chain\", solver = \"jakobson\", best = 1, "
+                             "worst = 2 },\n]\n";
+  const std::string wrong = message();
+  for (const char* said :
+       {"mine-searched.toml:2:", "did you mean 'jakobsen'?", "'best'", "unknown key 'worst'"})
+    EXPECT_NE(wrong.find(said), std::string::npos) << said << " in " << wrong;
 }
 
 TEST(Study, WhatIsWrongWithItAndWithItsScenesIsSaidAtOnce) {

@@ -120,6 +120,65 @@ TEST(Search, BeginsWithWhatCostsLeast) {
             (std::vector<std::string>{"jakobsen", "xpbd:substeps=4", "mass-spring"}));
 }
 
+/// Springs of stiffness K lag behind by 20/K, however many substeps there are, and a stiff one
+/// needs the more of them.
+TEST(Search, StiffensSpringsThatCannotReachTheErrorAndNoOthers) {
+  const auto run = [](const std::string& setting) -> std::optional<Candidate> {
+    const Params params = parse_solver(setting).params;
+    EXPECT_EQ(params.real("structural"), params.real("shear")) << "both together";
+    const double stiffness = params.real("structural");
+    const double work = params.integer("substeps") * params.integer("iterations");
+    return Candidate{"vbd", setting, {work, work, work}, 20 / stiffness + stiffness / 1e5 / work};
+  };
+  const auto stiffest = [&](double error) {
+    double most = 0;
+    for (const Candidate& o : search_settings("vbd", {error, {}}, run, {}, SearchDepth::columns))
+      most = std::max(most, parse_solver(o.setting).params.real("structural"));
+    return most;
+  };
+  EXPECT_EQ(stiffest(0.01), 10000) << "the default does";
+  EXPECT_EQ(stiffest(0.001), 30000);
+  const Target soft{0.02, {}};
+  const Candidate best = best_of(search_settings("vbd", soft, run), soft);
+  EXPECT_LT(parse_solver(best.setting).params.real("structural"), 10000) << "an alternative";
+}
+
+/// More sweeps pay only at the penalty that is an alternative, and better by itself.
+TEST(Search, RepeatedItGoesOnFromWhatAnAlternativeMadeBest) {
+  int runs = 0;
+  const auto run = [&](const std::string& setting) -> std::optional<Candidate> {
+    ++runs;
+    const Params params = parse_solver(setting).params;
+    const double n = params.integer("substeps"), k = params.integer("iterations");
+    const bool fit = params.real("penalty") == 300;
+    const double cost = n * (20 + k), error = 1 / (n * (fit ? 2 * k : 1));
+    return Candidate{"admm", setting, {cost, cost, cost}, error};
+  };
+  const Target target{1.0 / 256, {}};
+  const auto found = [&](SearchDepth depth) {
+    return best_of(search_settings("admm", target, run, {}, depth), target);
+  };
+  const double once = found(SearchDepth::refined).cost.mid;
+  const double again = found(SearchDepth::repeated).cost.mid;
+  EXPECT_LT(again, 0.5 * once);
+  EXPECT_LE(again, 1.3 * (20 + 128)) << "128 sweeps of one substep";
+  EXPECT_LT(runs, 200) << "and it ends";
+}
+
+/// AVBD with its least stiffness explodes: nothing reaches the error before it is changed.
+TEST(Search, RepeatedItTriesAlternativesWhereNothingReachesTheError) {
+  const auto run = [](const std::string& setting) -> std::optional<Candidate> {
+    const Params params = parse_solver(setting).params;
+    const double work = params.integer("substeps") * params.integer("iterations");
+    const bool stiff = params.real("k-min") == 100;
+    return Candidate{"avbd", setting, {work, work, work}, stiff ? 1 / work : 1, ""};
+  };
+  const Target target{0.1, {}};
+  EXPECT_FALSE(target.meets(best_of(search_settings("avbd", target, run), target)));
+  EXPECT_TRUE(target.meets(
+      best_of(search_settings("avbd", target, run, {}, SearchDepth::repeated), target)));
+}
+
 TEST(Search, LeavesAloneWhatTheUserFixed) {
   Formula formula;
   const auto tried =

@@ -1,9 +1,12 @@
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
+#include "experiments/advise/equal_search.hpp"
 #include "experiments/advise/expected_cost.hpp"
+#include "experiments/advise/trial.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/require/require.hpp"
@@ -19,7 +22,6 @@ namespace taut::verb::advise {
 
 namespace {
 
-constexpr int kQuickSteps = 48;            ///< of the quick cost that guides the search
 constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
 constexpr std::size_t kMostRefused = 4;    ///< printed unless all are asked for
 constexpr double kSurelyDearer = 1.3;      ///< than a budget: more than a quick cost may be off
@@ -28,7 +30,8 @@ constexpr std::size_t kFewestFinalists = 2;
 constexpr int kFewestRounds = 2;  ///< with which finalists are timed where the time is short
 
 struct Options {
-  std::string scene, metric = kErrorMetric, error, out;
+  std::string scene, study, preset, metric = kErrorMetric, error, out;
+  double cpu = 8;     ///< s of each solver on a scene of a study
   double budget = 0;  ///< ms per frame; 0: not given
   double fps = 1 / kFrame;
   std::vector<std::string> solvers, settings, keep;
@@ -166,26 +169,10 @@ class Advisor {
   std::optional<Candidate> run_and_time(const std::string& setting, double deadline) {
     const double end = std::min(deadline, end_of_search());
     if (elapsed() >= end) return {};
-    const auto record = run_stored(make(setting), store_, {}, at(end));
-    if (!record) return {};
-    Candidate found{
-        record->solver, record->spec.solver, {}, std::abs(record->value(options_.metric)), {}};
-    if (!completed(record->status)) found.failure = describe(record->status);
-    if (const std::string why = beyond(*record, result_.limits); !why.empty())
-      found.failure += (found.failure.empty() ? "" : "; ") + why;
-    try {
-      TimingWorker worker(record->spec);
-      worker.give_up_at(at(end));
-      const StepTime step = worker.pilot_run(std::min(kQuickSteps, steps_done(*record)));
-      const double cost = step.cpu / record->dt;
-      found.cost = {cost, cost, cost};
-      slowdowns_.push_back(step.wall / step.cpu);
-    } catch (const TimeIsUp&) {
-      return {};
-    } catch (const std::runtime_error& error) {
-      found.failure = error.what();
-      found.cost.mid = std::nan("");
-    }
+    const auto trial = try_setting(make(setting), store_, options_.metric, result_.limits, at(end));
+    if (!trial) return {};
+    const Candidate& found = trial->candidate;
+    if (!std::isnan(found.cost.mid)) slowdowns_.push_back(trial->slowdown);
     progress() << "  " << number_text(elapsed(), 2) << " of " << number_text(options_.patience)
                << " s  " << parse_solver(setting).brief() << ": "
                << (found.failure.empty()
@@ -220,9 +207,7 @@ class Advisor {
   std::optional<double> quick_cost(const CaseSpec& spec) const {
     try {
       const Case one = make_case(spec);
-      TimingWorker worker(spec);
-      worker.give_up_at(at(options_.patience));
-      return worker.pilot_run(std::min(kQuickSteps, one.scene->steps)).cpu / one.scene->dt;
+      return quick_time(spec, one.scene->steps, at(options_.patience)).cpu / one.scene->dt;
     } catch (const std::runtime_error&) {
       return {};
     }
@@ -397,7 +382,35 @@ void add_nearest(Answer& answer, const Options& options, const Result& result) {
   answer.add({"quick_cost", "CPU time", options.frame()}, nearest->cost.mid);
 }
 
-/// Every solver's best beside the best of all.
+/// A solver that was not among those timed at the end: the cells of its row up to the error, and
+/// why.
+std::vector<Cell> not_timed(const Options& options, const Result& result,
+                            const std::string& solver) {
+  const auto refused = std::ranges::find(result.unsupported, solver, &Refused::solver);
+  if (refused != result.unsupported.end()) return {solver, "", {}, "unsupported: " + refused->why};
+  const std::string name(parse_solver(solver).entry->name);
+  const auto row = [&](std::size_t at, const std::string& why) -> std::vector<Cell> {
+    const Candidate& c = result.tried[at];
+    return {name, parse_solver(c.setting).brief(), c.error,
+            why + number_text(c.cost.mid, options.frame()) + " by its quick cost"};
+  };
+  if (const auto best = best_for(result.target, result.tried, name))
+    return row(*best, "reaches it, not timed beside the others: ");
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const Target any = result.target.error ? Target{{}, kAny} : Target{kAny, {}};
+  if (const auto nearest = best_for(any, result.tried, name))
+    return row(*nearest, "not reached by the settings tried; the nearest: ");
+  const auto tried = std::ranges::find(result.tried, name, &Candidate::solver);
+  return {name,
+          "",
+          {},
+          tried == result.tried.end()
+              ? "not tried: --patience had ended"
+              : "every setting tried was refused, such as " + parse_solver(tried->setting).brief() +
+                    ": " + tried->failure};
+}
+
+/// Every solver's best beside the best of all; one that is missing there stands there with why.
 Table solvers_of(const Options& options, const Result& result) {
   Table table{"solvers",
               result.cut.empty() ? "every solver's best" : "the cheapest so far of each solver",
@@ -425,6 +438,18 @@ Table solvers_of(const Options& options, const Result& result) {
       row.back() =
           nearest(solver, result.bench, result.recommendation, options.metric, options.fps);
     }
+  }
+  for (const std::string& solver : options.solvers) {
+    const auto timed =
+        std::ranges::find(result.recommendation.solvers, parse_solver(solver).entry->name,
+                          &SolverRecommendation::solver);
+    if (timed != result.recommendation.solvers.end() || result.too_dear) continue;
+    std::vector<Cell> cells = not_timed(options, result, solver);
+    const Cell why = cells.back();
+    cells.pop_back();
+    cells.resize(table.columns.size());
+    cells.back() = why;
+    table.rows.push_back(std::move(cells));
   }
   return table;
 }
@@ -507,7 +532,63 @@ Answer answer_of(const Options& options, const Result& result, double elapsed) {
   return answer;
 }
 
+/// What is written above the rows of a file of searched settings.
+std::string heading(const Study& study, const Options& options) {
+  return "# Written by `taut advise --study " + study.name +
+         (study.preset.empty() ? "" : " --preset " + study.preset) + " --cpu " +
+         number_text(options.cpu) + "`: every solver's levers, searched scene by scene with " +
+         number_text(options.cpu) +
+         " s of CPU\n# time for each solver: half of it without accelerators that others lack, the "
+         "rest with all. All that was tried, with its error (" +
+         options.metric +
+         ")\n# and its cost by a few steps [CPU s per simulated s]. `plain` and `best`: errors for "
+         "which it is the cheapest of its solver,\n# without accelerators and with them. "
+         "These are what the study runs and times afresh.\n";
+}
+
+/// Searches all solvers of a study and writes its file of settings.
+int search_study(const Options& options) {
+  const Study study = load_study(options.study, options.preset);
+  if (study.searched.empty())
+    throw InputError(study.file.string() + ": the study" +
+                     (study.preset.empty() ? "" : "'s preset " + study.preset) +
+                     " has no key 'searched': the file to write");
+  Store store(options.out);
+  store.prepare();
+  Answer answer{"advise", "study " + study.name + ", every solver on every scene"};
+  Table searched{"searched",
+                 "what was searched",
+                 {{"scene"},
+                  {"solver"},
+                  {"tried", "settings"},
+                  {"cpu", "CPU time", kTime},
+                  {"cut_off", "would have tried more"}}};
+  std::vector<SearchedSetting> rows;
+  std::vector<std::string> missing;
+  search_equally(
+      study, store, options.metric, {std::begin(kErrorLevels), std::end(kErrorLevels)}, options.cpu,
+      [&](const EqualSearch& one) {
+        progress() << one.scene << ", " << one.solver << ": " << one.rows.size() << " settings, "
+                   << number_text(one.cpu) << " s of CPU" << '\n';
+        searched.rows.push_back({one.scene, one.solver, one.rows.size(), one.cpu, one.cut_off});
+        rows.insert(rows.end(), one.rows.begin(), one.rows.end());
+        missing.insert(missing.end(), one.missing.begin(), one.missing.end());
+      });
+  std::filesystem::create_directories(study.searched.parent_path());
+  write_file(study.searched, searched_toml(heading(study, options), rows, missing));
+  answer.add({"file"}, study.searched.string());
+  answer.add(std::move(searched));
+  Table none{"missing", "no setting within an error", {{"why"}}};
+  for (const std::string& one : missing) none.rows.push_back({one});
+  answer.add(std::move(none));
+  print(answer, options.format);
+  return kPass;
+}
+
 int run(Options options) {
+  if (options.scene.empty() == options.study.empty())
+    throw InputError("advise what? A scene, or --study");
+  if (!options.study.empty()) return search_study(options);
   find_scene(options.scene);
   target_of(options);
   if (options.solvers.empty())
@@ -529,7 +610,14 @@ int run(Options options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "Name or path of a scene")->required();
+  app.add_option("SCENE", o.scene, "Name or path of a scene");
+  app.add_option("--study", o.study,
+                 "In place of a scene: searches every solver on every scene of this study, with "
+                 "equal CPU time for each, and writes the file that its key `searched` names");
+  add_preset(app, o.preset);
+  app.add_option("--cpu", o.cpu,
+                 "With --study: CPU time of each solver on a scene [s] (default: 8)")
+      ->check(above_zero_seconds());
   app.add_option("--error", o.error, "Reach this error (0.01 or 1%) at the least cost");
   app.add_option("--budget", o.budget, "Reach the least error within this CPU time per frame [ms]")
       ->check(above_zero());
@@ -565,15 +653,18 @@ TAUT_VERB(advise) = {
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
         "stretch.max\n  taut advise tunnel --error 1% --keep penetration.peak:1mm --keep "
         "tunnelling.count:0\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
+        "  taut advise --study trade --preset searched\n"
         "Exit: 0 found; 3 found, solvers not searched; 4 not reached; 6 the best does not repeat "
         "bit for bit",
     .answer =
         "best error cost again control same_bits confirmed certainty command searched seconds "
-        "patience complete cheapest cheapest_cost nearest quick_cost; "
+        "patience complete file cheapest cheapest_cost nearest quick_cost; "
         "solvers: solver setting error cost times peak_bytes note; "
         "kept: value limit best; "
         "without: effect share cost fits; "
         "refused: setting why; "
         "not_done: solver what; "
-        "tried: setting error quick_cost refused",
+        "tried: setting error quick_cost refused; "
+        "searched: scene solver tried cpu cut_off; "
+        "missing: why",
     .bind = taut::bind_verb<taut::verb::advise::add_options, taut::verb::advise::run>};

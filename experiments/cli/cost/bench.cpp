@@ -4,6 +4,7 @@
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/bench_answer.hpp"
+#include "experiments/timing/beside.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/two_builds.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 struct Options {
   std::vector<std::string> what, solvers, settings;
   std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
-  std::string preset, metric = kErrorMetric, out, against, keep_build;
+  std::string preset, metric = kErrorMetric, out, against, keep_build, beside;
   int rounds = 5;
   double seconds = 0.05;
   double tolerance = kTolerance;
@@ -86,6 +87,11 @@ int run(const Options& options) {
     return serve_timing(*one.scene, one.choice);
   }
   require_one_quiet_host();
+  if (!options.beside.empty()) {
+    if (!options.what.empty()) throw InputError("bench --beside takes no study or scene");
+    print(bench_beside(options.beside, options.rounds), options.format);
+    return kPass;
+  }
   if (!options.keep_build.empty()) {
     std::cout << keep_build(options.out, options.keep_build).string() << '\n';
     if (options.what.empty()) return kPass;
@@ -106,6 +112,9 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("WHAT", o.what, "Studies; or scenes, with --solver");
   app.add_option("--solver", o.solvers, "A solver to time on the scene; repeat it for each");
+  app.add_option("--beside", o.beside,
+                 "A checkout of public code, which you fetched yourself: what an iteration of it "
+                 "costs beside ours of the same method (experiments/beside/README.md)");
   add_settings(app, o.settings);
   add_preset(app, o.preset);
   add_judgement(app, o.metric, o.tolerance);
@@ -139,12 +148,14 @@ TAUT_VERB(bench) = {
         "jakobsen:iterations=1,substeps=16 --solver "
         "bullet:iterations=1,substeps=16\n  taut bench --keep-build before && taut bench "
         "regression "
-        "--against before\n  taut bench effects\n  taut bench scaling",
+        "--against before\n  taut bench effects\n  taut bench scaling\n  "
+        "taut bench --beside ../ShapeOp",
     .answer =
-        "machine host build; "
+        "machine host build times; "
         "scenes: scene control verdict; "
         "recommended: scene target solver setting error cost times answer; "
         "cases: scene case solver cost cpu wall peak_bytes error status times verdict remark; "
         "samples: scene case round cpu wall; "
+        "iterations: code each sweeps differs; "
         "against: case ratio control verdict wall wall_control",
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};

@@ -55,7 +55,8 @@ VideoWriter::VideoWriter(const std::filesystem::path& mp4, const Options& option
     std::vector<std::string> words = split(
         raw_input(options.width, options.height) + " -framerate " + rate +
         " -i - -vf scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
-        "format=yuv420p -c:v libx264 -preset medium -tune animation -threads 1 -g 12 -bf 2 -crf " +
+        "format=yuv420p -c:v libx264 -preset veryfast -tune animation -threads 1 -g 12 -bf 2 "
+        "-crf " +
         std::to_string(options.crf) +
         " -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv"
         " -movflags +faststart -map_metadata -1 -fflags +bitexact -flags:v +bitexact");

@@ -1,0 +1,170 @@
+#include "experiments/advise/equal_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "core/model/text.hpp"
+#include "experiments/advise/trial.hpp"
+#include "experiments/timing/search.hpp"
+
+namespace taut {
+
+namespace {
+
+constexpr double kShareWithoutAccelerators = 0.5;
+constexpr double kShareOfOneRun = 0.5;  ///< of the time of an error, to which substeps are doubled
+
+/// "jakobsen:omega=1,levels=1,tethers=off": what its text fixes is not searched.
+std::string without_accelerators(const std::string& solver) {
+  const SolverChoice choice = parse_solver(solver);
+  const auto colon = solver.find(':');
+  const auto given = param_items(colon == solver.npos ? "" : solver.substr(colon + 1));
+  std::string text = solver;
+  for (const std::string& name : parts_of(choice.entry->accuracy.accelerators))
+    if (std::ranges::find(given, name, &ParamItem::key) == given.end())
+      text = with(text, name + "=" + std::string(choice.params.value(name)));
+  return text;
+}
+
+bool is_plain(const std::string& setting, const std::string& solver) {
+  const SolverChoice one = parse_solver(setting), base = parse_solver(solver);
+  return std::ranges::all_of(
+      parts_of(one.entry->accuracy.accelerators),
+      [&](const std::string& name) { return one.params.value(name) == base.params.value(name); });
+}
+
+class SolverSearch {
+ public:
+  SolverSearch(const std::string& scene, const std::vector<std::string>& settings,
+               const std::string& solver, const std::string& metric, Store& store)
+      : scene_(scene), settings_(settings), solver_(solver), metric_(metric), store_(store) {
+    const std::vector<std::string> own = parse_scene(scene).settings;
+    settings_.insert(settings_.end(), own.begin(), own.end());
+    const Case one = make(solver);
+    duration_ = one.scene->duration();
+    limits_ = default_limits(*one.scene);
+    std::erase_if(limits_, [&](const KeptAnswer& limit) { return limit.name == metric; });
+    const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
+    if (!reasons.empty()) unsupported_ = reasons.front();
+  }
+
+  EqualSearch run(const std::vector<double>& errors, double seconds) {
+    if (unsupported_.empty()) {
+      evaluate(cheapest_setting(solver_), seconds);
+      const double plain = kShareWithoutAccelerators * seconds;
+      search(without_accelerators(solver_), errors, plain);
+      search(solver_, errors, seconds);
+    }
+    return found(errors);
+  }
+
+ private:
+  Case make(const std::string& solver) {
+    return maker_.make({parse_scene(scene_).name, settings_, parse_solver(solver).canonical()});
+  }
+
+  /// Each error with an equal share of what those before it have left.
+  void search(const std::string& solver, const std::vector<double>& errors, double seconds) {
+    auto left = static_cast<double>(errors.size());
+    for (const double error : errors) {
+      cut_off_ = false;
+      const double end = cpu_ + (seconds - cpu_) / left--;
+      const Evaluation run = [&](const std::string& setting) { return evaluate(setting, end); };
+      // Cheap settings first: one column of dear ones would use up the time of all others.
+      const double most = kShareOfOneRun * (end - cpu_) / duration_;
+      for (double dearest = most / 64; dearest <= most && !cut_off_; dearest *= 4) {
+        const Target target{error, {}};
+        const auto tried = search_settings(solver, target, run, {}, SearchDepth::repeated, dearest);
+        if (best_for(target, tried)) break;
+      }
+      cut_[error] = cut_off_;
+    }
+  }
+
+  std::optional<Candidate> evaluate(const std::string& text, double end) {
+    const std::string setting = parse_solver(text).canonical();
+    if (const auto known = at_.find(setting); known != at_.end()) return tried_[known->second];
+    if (cpu_ >= end) {
+      cut_off_ = true;
+      return {};
+    }
+    const auto trial = try_setting(make(setting), store_, metric_, limits_,
+                                   std::chrono::steady_clock::time_point::max());
+    cpu_ += trial->cpu;
+    at_[setting] = tried_.size();
+    tried_.push_back(trial->candidate);
+    return tried_.back();
+  }
+
+  EqualSearch found(const std::vector<double>& errors) const {
+    EqualSearch result{scene_, solver_, {}, {}, cpu_};
+    result.cut_off = std::ranges::any_of(cut_, [](const auto& one) { return one.second; });
+    for (const Candidate& c : tried_) {
+      const std::string setting = parse_solver(c.setting).brief();
+      result.rows.push_back({.scene = result.scene,
+                             .solver = setting,
+                             .error = c.error,
+                             .cost = c.cost.mid,
+                             .refused = c.failure});
+    }
+    if (!result.rows.empty()) result.rows.front().cheapest = true;
+    std::vector<Candidate> plain = tried_;
+    for (Candidate& c : plain)
+      if (!is_plain(c.setting, solver_)) c.failure = "accelerated";
+    for (const double error : errors) {
+      const Target target{error, {}};
+      if (const auto at = best_for(target, plain)) result.rows[*at].plain.push_back(error);
+      if (const auto at = best_for(target, tried_))
+        result.rows[*at].best.push_back(error);
+      else
+        result.missing.push_back(result.scene + ", " + solver_ + ", " + metric_ +
+                                 " <= " + shortest(error) + ": " + why_missing(error));
+    }
+    return result;
+  }
+
+  std::string why_missing(double error) const {
+    if (!unsupported_.empty()) return "cannot run it: " + unsupported_;
+    const auto nearest = best_for({{}, std::numeric_limits<double>::infinity()}, tried_);
+    const auto cut = cut_.find(error);
+    const std::string time =
+        cut != cut_.end() && cut->second ? ", its CPU time used up" : ", all its levers tried";
+    if (nearest)
+      return "at best " + number_text(tried_[*nearest].error, unit_of_value(metric_)) + " (" +
+             parse_solver(tried_[*nearest].setting).brief() + ")" + time;
+    return (tried_.empty() ? "nothing was tried" : tried_.back().failure) + time;
+  }
+
+  std::string scene_;
+  std::vector<std::string> settings_;
+  std::string solver_, metric_, unsupported_;
+  Store& store_;
+  CaseMaker maker_;
+  std::vector<KeptAnswer> limits_;
+  std::vector<Candidate> tried_;
+  std::map<std::string, std::size_t> at_;  ///< index into tried_ of a setting
+  double cpu_ = 0, duration_ = 0;
+  bool cut_off_ = false;        ///< of the error that is being searched
+  std::map<double, bool> cut_;  ///< of each, the last time
+};
+
+}  // namespace
+
+std::vector<EqualSearch> search_equally(const Study& study, Store& store, const std::string& metric,
+                                        const std::vector<double>& errors, double seconds,
+                                        const std::function<void(const EqualSearch&)>& after_each) {
+  if (!study.axes.empty())
+    throw InputError(study.file.string() + ": settings are searched of a study without axes");
+  std::vector<EqualSearch> all;
+  for (const std::string& scene : study.scenes)
+    for (const std::string& solver : study.solvers) {
+      all.push_back(
+          SolverSearch(scene, study.settings, solver, metric, store).run(errors, seconds));
+      after_each(all.back());
+    }
+  return all;
+}
+
+}  // namespace taut

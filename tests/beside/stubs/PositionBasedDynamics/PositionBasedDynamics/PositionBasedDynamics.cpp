@@ -1,0 +1,1 @@
+// XPBD.cpp needs nothing of it here.
