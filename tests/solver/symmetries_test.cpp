@@ -332,6 +332,8 @@ void compare(Scene scene, const std::string& solver, const Change& c) {
   if (!(far <= within)) return;
   for (const auto& [name, value] : was.record.values) {
     if (!sees_no(c, name)) continue;
+    // of a way in the world's frame and in half a second, and contact is told within a micrometre
+    if (name.starts_with("step.")) continue;
     const double now = is.record.value(name);
     const double want = value * factor(c, find_value(name).second->unit.si);
     if (std::isnan(want) && std::isnan(now)) continue;
