@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/reference/textbook.hpp"
 #include "core/solver/layout/order.hpp"
