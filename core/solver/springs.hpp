@@ -36,7 +36,7 @@ inline constexpr std::array kStiffness{
 
 /// What a search may try of them, of solvers whose iterations cost the more of them the stiffer.
 inline constexpr AccuracyParameters::Ladder kStiffnesses{"structural|shear",
-                                                         "1000|3000|10000|30000|100000"};
+                                                         "1000|3000|10000|30000|1e+05"};
 
 /// Spring constants [N/m] by family: the scene's, infinite where it leaves links rigid, or the
 /// solver's parameters.

@@ -144,6 +144,7 @@ SolverEntry entry_of(const py::object& type, const std::string& name, PythonEntr
       py::setattr(object, std::string(spec.name).c_str(), value_of(params, spec));
     return std::make_unique<PythonSolver>(std::move(object), scene, name);
   };
+  entry.declared_step = implicit_euler_of_a_frame;
   entry.unsupported = [held, name](const Scene& scene, const Params&) -> std::vector<std::string> {
     const py::gil_scoped_acquire own;
     if (!py::hasattr(held, "unsupported")) return {};

@@ -4,13 +4,13 @@
 #include <cstdlib>
 #include <cstring>
 
-extern "C" int statfs(const char*, struct statfs* about) {
+extern "C" [[gnu::visibility("default")]] int statfs(const char*, struct statfs* about) {
   std::memset(about, 0, sizeof *about);
   about->f_type = 0x6969;
   return 0;
 }
 
-extern "C" int gethostname(char* name, std::size_t size) {
+extern "C" [[gnu::visibility("default")]] int gethostname(char* name, std::size_t size) {
   std::strncpy(name, std::getenv("HOST_NAME"), size);
   return 0;
 }

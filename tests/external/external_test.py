@@ -119,7 +119,7 @@ class Toys(Programs):
         (self.solvers / "mine.toml").write_text(f"cmd = '{TOYS['cpp']}'\n")
         listed = self.answer("list", "solvers")
         self.assertEqual([s["summary"] for s in rows_of(listed, "solvers") if s["name"] == "mine"], ["Jakobsen's algorithm in C++"])
-        self.assertEqual([p["name"] for p in rows_of(listed, "parameters") if p["solver"] == "mine"], ["iterations"])
+        self.assertEqual([p["name"] for p in rows_of(listed, "parameters") if p["solver"] == "mine"], ["build", "iterations"])
         study = self.study(solvers=["mine", "jakobsen:substeps=1,order=mesh"], rest="[axes]\niterations = [1, 4]\n"
                            '[[plot]]\nkind = "convergence"\n')
         self.taut("run", study)

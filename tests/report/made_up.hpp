@@ -60,6 +60,7 @@ class Maker {
     r.values["face.max"] = 0;
     r.values["tunnelling.events"] = failure ? 0 : static_cast<double>(random_() % 3 * 28);
     r.values["tunnelling.count"] = 0;
+    if (!chance(0.1)) r.values["step.error"] = between(1e-5, 0.05);
   }
   bool chance(double p) { return uniform() < p; }
   double uniform() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }

@@ -17,7 +17,7 @@ TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
     const AccuracyParameters& accuracy = entry->accuracy;
     if (accuracy.substeps.empty() && accuracy.sweeps.empty()) continue;  // none is searched
     EXPECT_FALSE(accuracy.substeps.empty()) << name;
-    EXPECT_NE(accuracy.sweeps.empty(), accuracy.stiffness.parameters.empty())
+    EXPECT_FALSE(accuracy.sweeps.empty() && accuracy.stiffness.parameters.empty())
         << name << ": one of the two is what substeps are weighed against";
     for (const std::string_view number : {accuracy.substeps, accuracy.sweeps})
       if (!number.empty()) {
@@ -37,11 +37,12 @@ TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
   }
 }
 
-TEST(AccuracyParameters, StiffnessesRiseFromTheDefault) {
+TEST(AccuracyParameters, StiffnessesRiseAndHaveTheDefault) {
   for (const SolverEntry* entry : solvers())
     for (const std::string& parameter : parts_of(entry->accuracy.stiffness.parameters)) {
       const std::vector<std::string> values = parts_of(entry->accuracy.stiffness.values);
-      EXPECT_EQ(values.front(), parse_solver(std::string(entry->name)).params.value(parameter));
+      const auto own = parse_solver(std::string(entry->name)).params.value(parameter);
+      EXPECT_NE(std::ranges::find(values, own), values.end()) << entry->name;
       EXPECT_TRUE(
           std::ranges::is_sorted(values, {}, [](const std::string& v) { return std::stod(v); }));
     }

@@ -93,8 +93,12 @@ int run(const Options& options) {
     return kPass;
   }
   if (!options.keep_build.empty()) {
-    std::cout << keep_build(options.out, options.keep_build).string() << '\n';
-    if (options.what.empty()) return kPass;
+    const std::string kept = keep_build(options.out, options.keep_build).string();
+    if (options.what.empty()) {
+      print_files({kept}, options.format.json);
+      return kPass;
+    }
+    progress() << kept << '\n';
   }
   if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
   bool slower = false;
