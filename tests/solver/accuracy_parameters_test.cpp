@@ -41,7 +41,7 @@ TEST(AccuracyParameters, StiffnessesRiseAndHaveTheDefault) {
   for (const SolverEntry* entry : solvers())
     for (const std::string& parameter : parts_of(entry->accuracy.stiffness.parameters)) {
       const std::vector<std::string> values = parts_of(entry->accuracy.stiffness.values);
-      const auto own = parse_solver(std::string(entry->name)).params.value(parameter);
+      const std::string own(parse_solver(std::string(entry->name)).params.value(parameter));
       EXPECT_NE(std::ranges::find(values, own), values.end()) << entry->name;
       EXPECT_TRUE(
           std::ranges::is_sorted(values, {}, [](const std::string& v) { return std::stod(v); }));
