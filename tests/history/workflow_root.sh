@@ -8,6 +8,7 @@ build=$(readlink -f "$1")
 not_here() { echo "workflow_root: not run: $1"; exit 77; }
 
 [[ $(id -u) == 0 ]] || not_here "needs root"
+unshare --mount --pid --fork true 2>/dev/null || not_here "no namespaces here"
 command -v debootstrap >/dev/null || not_here "debootstrap is not installed"
 mirror=$(apt-get indextargets --format '$(RELEASE) $(COMPONENT) $(REPO_URI)' 2>/dev/null | awk '/^bookworm main /{ print $3; exit }')
 [[ -n $mirror ]] || not_here "this machine has no mirror of Debian 12"
@@ -20,7 +21,9 @@ cpack --config "$build/CPackConfig.cmake" -G DEB -B "$scratch/deb" >/dev/null
 cp "$scratch"/deb/taut_*.deb "$root/tmp/taut.deb"
 mkdir "$root/tmp/workflow"
 cp "$here/workflow_test.py" "$here"/../../experiments/external/{README.md,sdk/toy.py,sdk/taut_solver.py} "$root/tmp/workflow"
-in_root() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TMPDIR=/tmp "$@"; }
+in_root() {  # with /proc, by which taut finds itself
+  unshare --mount --pid --fork --mount-proc="$root/proc" chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TMPDIR=/tmp "$@"
+}
 in_root apt-get update >/dev/null
 in_root apt-get install -y --no-install-recommends python3 /tmp/taut.deb >"$scratch/log" 2>&1 || { tail -n 5 "$scratch/log"; exit 1; }
 in_root python3 /tmp/workflow/workflow_test.py /usr/bin /tmp/workflow/README.md /tmp/workflow
