@@ -343,7 +343,8 @@ class Walker {
       if (!most || std::abs(cost_of(one)) > std::abs(cost_of(*most))) most = &one;
     }
     if (!most) return false;
-    timed_ = most->id, end_ = cost_of(*most);
+    timed_ = most->id;
+    end_ = cost_of(*most);
     if (of_solver()) only_ = timed_;
     return true;
   }

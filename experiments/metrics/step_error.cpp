@@ -72,7 +72,10 @@ class StepErrors final : public Metric {
   bool follows(int step) const override {
     return error_ && declared_.substeps > 1 && (samples(step) || samples_first(step));
   }
-  void observe_within(const Snapshot& m) override { before_ = m.state, step_before_ = m.step; }
+  void observe_within(const Snapshot& m) override {
+    before_ = m.state;
+    step_before_ = m.step;
+  }
   void observe(const Snapshot& m) override {
     if (!error_) return;
     const int substeps = declared_.substeps;
@@ -80,8 +83,7 @@ class StepErrors final : public Metric {
     if (known && samples(m.step)) judge(m);
     if (known && samples_first(m.step)) add_missed(m);
     if (m.step == first_) end_ = m.state.x;
-    if (substeps == 1 && (samples(m.step + 1) || samples_first(m.step + 1)))
-      before_ = m.state, step_before_ = m.step;
+    if (substeps == 1 && (samples(m.step + 1) || samples_first(m.step + 1))) observe_within(m);
   }
   std::vector<double> finish() override {
     const double none = Summary::kNone;

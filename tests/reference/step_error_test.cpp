@@ -125,7 +125,8 @@ TEST(StepError, InContactHoldsWhatPushesAndRubsWhatSlips) {
   scene.mesh.rest = {Vec3(0, 0, 0)};
   scene.mesh.mass = {0.3};
   scene.start = {{Vec3(0, 0, 0)}, {Vec3(0, 0, 0)}};
-  scene.dt = h, scene.steps = 1;
+  scene.dt = h;
+  scene.steps = 1;
   const Vec3 normal(std::sin(slope), std::cos(slope), 0),
       down(std::cos(slope), -std::sin(slope), 0);
   scene.colliders = {{.shape = Plane{normal, 0}}};
@@ -158,7 +159,8 @@ TEST(StepError, OfASheetThatLiesOnABodyIsThatOfTheReference) {
     scene.start = {scene.mesh.rest, std::vector<Vec3>(81, Vec3::Zero())};
     scene.links = grid_links(scene.mesh, {true, true, false});
     scene.stiffness = {200, 200, 200};
-    scene.dt = 1.0 / 64, scene.steps = 1;
+    scene.dt = 1.0 / 64;
+    scene.steps = 1;
     scene.thickness = 0.005;
     scene.colliders = {{.shape = Ball{{0, 0, 0}, 0.2}, .motion = {}, .friction = friction}};
     scene.start = simulate(scene, "implicit", friction > 0 ? 40 : 14);

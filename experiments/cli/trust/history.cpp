@@ -44,7 +44,8 @@ int history(Options options) {
     walked.study = study_name(options.study);
   } else {
     const BaselineOptions how = baseline_options();
-    options.run = how.run, options.say = how.say;
+    options.run = how.run;
+    options.say = how.say;
     options.limits.bytes = 1e9 * options.disk;
     options.timing.progress = Countdown("case");
     walked = walk(options, store);
