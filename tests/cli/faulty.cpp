@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <limits>
+#include <random>
 #include <stdexcept>
 
 #include "core/model/solver.hpp"
@@ -67,7 +68,7 @@ class Faulty final : public Solver {
     if (mode_ == "stretch") state_.x[3].y() = 50;
     if (mode_ == "fork" || mode_ == "daemon") leave_behind();
     if (mode_ == "forge") forge();
-    if (mode_ == "random") state_.x[0].x() += 1e-3 * static_cast<double>(getpid() % 1000);
+    if (mode_ == "random") state_.x[0].x() += 1e-9 * (1.0 + std::random_device()() % 1'000'000);
     while (mode_ == "hang") usleep(1000);
     for (volatile int spun = 0; mode_ == "spin";) spun = spun + 1;
     while (mode_ == "print") std::cerr << std::string(1 << 20, 'x');
