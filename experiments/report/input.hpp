@@ -114,9 +114,6 @@ struct ReportInput {
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
   std::optional<StudyBench> bench;  ///< what accuracy costs; nullopt: not timed
-  /// Of cases of the bench that do what their scene does not accept, by key: what it is, "1 passage
-  /// through a collider". They are shown; they win nothing.
-  std::map<std::string, std::string> not_accepted = {};
   std::optional<Truths> truths;                 ///< nullopt: not run
   std::optional<Json> regressions;              ///< of the model; nullopt: not checked
   std::optional<Differences> differences = {};  ///< nullopt: one folder alone

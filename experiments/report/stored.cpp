@@ -278,18 +278,6 @@ std::vector<TimeSeries> stored_series(const Records& records, const std::string&
 
 namespace {
 
-/// What timed cases do that their scenes do not accept.
-void add_not_accepted(ReportInput& input) {
-  CaseMaker maker;
-  for (const SceneBench& scene : input.bench->scenes) {
-    if (scene.cases.empty()) continue;
-    const auto limits = default_limits(*maker.make(scene.cases.front().record.spec).scene);
-    for (const BenchedCase& c : scene.cases)
-      if (const std::string why = beyond(c.record, limits); !why.empty())
-        input.not_accepted[c.record.key] = why;
-  }
-}
-
 /// The first session of a study's own bench, else of that of the main job.
 void add_bench(ReportInput& input, const std::vector<Study>& studies, const Store& store) {
   std::vector<std::string> benched;
@@ -346,7 +334,7 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
     std::erase_if(input.bench->scenes, [](const SceneBench& scene) { return !scene.in_turns; });
     if (input.bench->scenes.empty()) input.bench.reset();
   }
-  if (input.bench) add_not_accepted(input);
+  if (input.bench) mark_not_accepted(*input.bench);
   for (const Study& study : studies) add_study(input, study, store, timed);
   complete_quoted(input, store);
   const ComparedSolvers compared = compared_solvers_of(input);

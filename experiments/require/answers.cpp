@@ -180,6 +180,15 @@ std::string beyond(const Record& record, const std::vector<KeptAnswer>& limits) 
   return said;
 }
 
+void mark_not_accepted(StudyBench& bench) {
+  CaseMaker maker;
+  for (SceneBench& scene : bench.scenes) {
+    if (scene.cases.empty()) continue;
+    const auto limits = default_limits(*maker.make(scene.cases.front().record.spec).scene);
+    for (BenchedCase& c : scene.cases) c.not_accepted = beyond(c.record, limits);
+  }
+}
+
 std::vector<std::string> default_answers(const Observation& full) {
   std::vector<std::string> names{kShapeAnswer};
   const auto& params = full.record.params;  // Bullet's "faces" are about normals

@@ -15,6 +15,7 @@
 #include "experiments/results/store.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/timing/statistics.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut {
 
@@ -139,6 +140,10 @@ inline constexpr double kMostStretch = 0.1;
 std::vector<KeptAnswer> default_limits(const Scene&);
 /// What a case does beyond these limits: "penetration.peak 3.1 mm, more than 1 mm"; "": nothing.
 std::string beyond(const Record&, const std::vector<KeptAnswer>&);
+
+/// Marks the cases of a bench that go beyond the default limits of their scenes (not_accepted):
+/// they are shown and win nothing. Throws InputError: a scene cannot be made.
+void mark_not_accepted(StudyBench&);
 
 /// What is kept unless something is asked for: shape, largest stretch, depth of vertices (and of
 /// faces, if the solver keeps them out), crossings, settling time; as far as the case has them.

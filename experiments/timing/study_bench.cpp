@@ -88,7 +88,7 @@ SceneBench scene_in(const Store& store, const StudyBench& study, const Database:
 
 void insert(Database& database, const StudyBench& study, const SceneBench& scene) {
   DigestedBench digested(study, scene);
-  for (const auto& [record, timing] : scene.cases) digested.add(record.key, timing);
+  for (const auto& [record, timing, not_accepted] : scene.cases) digested.add(record.key, timing);
   database.run(
       "INSERT INTO benches (study, host, build, machine, made, scene, in_turns, control_low, "
       "control, control_high, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
@@ -96,7 +96,7 @@ void insert(Database& database, const StudyBench& study, const SceneBench& scene
       static_cast<int>(scene.in_turns), scene.control.low, scene.control.mid, scene.control.high,
       digested.digest());
   const std::int64_t bench = database.number_of("SELECT last_insert_rowid()");
-  for (const auto& [record, timing] : scene.cases) {
+  for (const auto& [record, timing, not_accepted] : scene.cases) {
     database.run(
         "INSERT INTO timings (bench_id, key, peak_bytes, failure, remark) VALUES (?, ?, ?, ?, ?)",
         bench, record.key, timing.peak_bytes, timing.failure, timing.remark);
@@ -145,8 +145,16 @@ std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
     std::string failure = c.timing.failure;
     if (failure.empty() && !c.stable()) failure = describe(c.record.status);
     const std::string still = failure.empty() && of_strain ? hardly_moves(c.record) : "";
-    all.push_back({c.record.solver, c.record.spec.solver, c.cost(),
-                   std::abs(c.record.value(metric)), failure + still, !still.empty()});
+    if (failure.empty()) failure = still;
+    const bool refused = failure.empty() && !c.not_accepted.empty();
+    if (refused) failure = c.not_accepted;
+    all.push_back({.solver = c.record.solver,
+                   .setting = c.record.spec.solver,
+                   .cost = c.cost(),
+                   .error = std::abs(c.record.value(metric)),
+                   .failure = failure,
+                   .hardly_moves = !still.empty(),
+                   .not_accepted = refused});
   }
   return all;
 }

@@ -55,6 +55,7 @@ inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  
 struct BenchedCase {
   Record record;
   Timing timing;
+  std::string not_accepted = {};  ///< what it does that its scene does not accept: "" nothing
 
   /// CPU seconds per simulated second, with its 95 % interval over the samples.
   Interval cost() const;
@@ -107,7 +108,8 @@ StudyBench bench_study(
     const std::string& name, const std::vector<Record>&,
     const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of);
 
-/// Times cases of one scene whose physics are known.
+/// Times cases of one scene whose physics are known. Whether its scene accepts what a case does is
+/// said by mark_not_accepted().
 SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, const TimingOptions&);
 
 /// Names of the solvers in a bench, in order of appearance.

@@ -402,7 +402,7 @@ TEST(Winners, AreTheCheapestBesideWhatCannotBeToldAndWhatDoesNotCount) {
               {"ball", "bullet", 1, 1, 0.02, 5e-3},
               {"ball", "vbd", 1, 1, 0.005, 1e-3}});
   auto& cases = one.made.input.bench->scenes[0].cases;
-  one.made.input.not_accepted[cases[4].record.key] = "tunnelling.events 1, more than 0";
+  cases[4].not_accepted = "tunnelling.events 1, more than 0";
   const auto cells = one.map().rows.at(0).cells;
   ASSERT_EQ(cells.size(), std::size(kErrorLevels));
   ASSERT_EQ(cells[0].cheapest.size(), 2u) << "two costs within 5 % are alike";

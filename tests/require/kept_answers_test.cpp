@@ -94,6 +94,18 @@ TEST(KeptAnswers, LimitsByDefaultAreOfContactAndOfMotion) {
   EXPECT_EQ(limits("ball").at("tunnelling.events"), 0);
 }
 
+TEST(KeptAnswers, WhatASceneDoesNotAcceptIsMarkedInABench) {
+  BenchedCase through{still("ball", {}).record, {}};
+  through.record.spec = {"ball", {}, "jakobsen"};
+  BenchedCase kept = through;
+  through.record.values["tunnelling.events"] = 2;
+  kept.record.values["tunnelling.events"] = 0;
+  StudyBench bench{.study = "trade", .machine = "", .scenes = {{"ball", {}, {through, kept}}}};
+  mark_not_accepted(bench);
+  EXPECT_EQ(bench.scenes[0].cases[0].not_accepted, "tunnelling.events 2, more than 0");
+  EXPECT_EQ(bench.scenes[0].cases[1].not_accepted, "");
+}
+
 TEST(KeptAnswers, ByDefaultAreThoseThatTheCaseHas) {
   Observation full = still("ball", {});
   full.record.values = {{"stretch.max", 0.02},

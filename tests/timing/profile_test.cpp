@@ -38,6 +38,16 @@ TEST(Profiles, AreSharesOfProblemsWithinAFactorOfTheBest) {
   EXPECT_DOUBLE_EQ(found[0].share(3), 1);
 }
 
+TEST(Profiles, WhatASceneDoesNotAcceptWinsNothing) {
+  const double levels[] = {0.1};
+  BenchedCase through = timed("a", 1, 0.01);
+  through.not_accepted = "tunnelling.events 2, more than 0";
+  const auto found = performance_profiles(
+      {scene({through, timed("a", 8, 0.01), timed("b", 4, 0.01)})}, "e", levels);
+  EXPECT_EQ(found[0].ratios, std::vector<double>{2}) << "its dear setting counts";
+  EXPECT_EQ(found[1].ratios, std::vector<double>{1});
+}
+
 TEST(Profiles, AFailureIsInfinitelyDear) {
   const double levels[] = {0.1};
   const auto found = performance_profiles({scene({timed("a", 1, 0.01, Status::Kind::exploded),

@@ -1,6 +1,7 @@
 #include <cstdlib>
 
 #include "experiments/command_line/verb.hpp"
+#include "experiments/require/require.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/bench_answer.hpp"
@@ -25,13 +26,15 @@ struct Options {
 
 StudyBench bench(const StudyCases& study, const std::string& name, const Options& options) {
   Store store(options.out);
-  return bench_study(name, run_and_collect(study, store, "taut bench"),
-                     [&](const std::string& scene, std::size_t cases) {
-                       progress() << scene << ": timing " << cases << " cases\n";
-                       return TimingOptions{.rounds = options.rounds,
-                                            .seconds = options.seconds,
-                                            .progress = Countdown("timing round")};
-                     });
+  StudyBench timed = bench_study(name, run_and_collect(study, store, "taut bench"),
+                                 [&](const std::string& scene, std::size_t cases) {
+                                   progress() << scene << ": timing " << cases << " cases\n";
+                                   return TimingOptions{.rounds = options.rounds,
+                                                        .seconds = options.seconds,
+                                                        .progress = Countdown("timing round")};
+                                 });
+  mark_not_accepted(timed);
+  return timed;
 }
 
 StudyBench timed(const std::string& name, const Options& options) {

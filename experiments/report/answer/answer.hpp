@@ -27,10 +27,6 @@ SceneBench with_shared_parameters(SceneBench);
 /// "4 × 2, coloured": of cases of one scene those parameters that take several values.
 std::string setting_text(const SceneBench&, std::size_t at);
 
-/// The cases of a scene by their error in kErrorMetric; those that do what the scene does not
-/// accept (ReportInput::not_accepted) meet no target.
-std::vector<Candidate> candidates_of(const SceneBench&, const ReportInput&);
-
 /// If the settings of a solver that reach the error do not count: a cell of these words, with the
 /// state and the reason, such as "hardly moves: 5 % of the way".
 std::optional<Cell> only_uncounted(const std::vector<Candidate>&, const std::string& solver,

@@ -42,17 +42,6 @@ std::string link_orders(const std::vector<SceneBench>& scenes) {
   return join(all, ", ");
 }
 
-std::vector<Candidate> candidates_of(const SceneBench& bench, const ReportInput& input) {
-  std::vector<Candidate> all = bench.candidates(kErrorMetric);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (const auto why = input.not_accepted.find(bench.cases[i].record.key);
-        why != input.not_accepted.end() && all[i].failure.empty()) {
-      all[i].failure = why->second;
-      all[i].not_accepted = true;
-    }
-  return all;
-}
-
 std::optional<Cell> only_uncounted(const std::vector<Candidate>& candidates,
                                    const std::string& solver, double error,
                                    const std::string& words) {
@@ -135,8 +124,8 @@ class Costs {
       : solvers_(solvers), list_(list) {
     for (const SceneBench& bench : input.bench->scenes) {
       const SceneBench shared = with_shared_parameters(bench);
-      all_.push_back({bench, candidates_of(bench, input)});
-      shared_.push_back({shared, candidates_of(shared, input)});
+      all_.push_back({bench, bench.candidates(kErrorMetric)});
+      shared_.push_back({shared, shared.candidates(kErrorMetric)});
     }
     list.use(kErrorMetric), list.use("cpu.per_second");
   }

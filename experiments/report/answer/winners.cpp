@@ -39,7 +39,7 @@ class SceneWinners {
  public:
   SceneWinners(const SceneBench& bench, const ReportInput& input, CaseList& list)
       : bench_(with_shared_parameters(bench)), input_(input), list_(list) {
-    candidates_ = candidates_of(bench_, input);
+    candidates_ = bench_.candidates(kErrorMetric);
   }
 
   WinnerRow row() {

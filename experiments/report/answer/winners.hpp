@@ -51,7 +51,7 @@ struct Said {
 
 /// Who wins where: a row for each scene of a bench. A setting counts if its case completed, its
 /// cloth moves where the scene has a reference in motion, and it keeps what its scene asks for
-/// (ReportInput::not_accepted). Cases that use what another solver of the scene lacks are left out.
+/// (BenchedCase::not_accepted). Cases that use what another solver of the scene lacks are left out.
 struct WinnerMap {
   std::vector<WinnerRow> rows;
   double noise = 0;  ///< how far identical code differed from itself, at most, as a share

@@ -133,7 +133,7 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, Json& charts, Answer
   for (const SceneBench& bench : study.scenes) {
     const std::vector<Record> records = StudyBench{"", "", {bench}}.records();
     shared.push_back(with_shared_parameters(bench));
-    const CostScene scene{shared.back(), refs, candidates_of(shared.back(), input)};
+    const CostScene scene{shared.back(), refs, shared.back().candidates(kErrorMetric)};
     Json one{{"scene", bench.scene}};
     try {
       add_by_id(one, "charts", json_of(cost_chart(bench, records), refs), charts);
