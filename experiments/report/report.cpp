@@ -25,16 +25,19 @@ namespace {
 
 Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
 
-/// "Jakobsen and Bullet", "7 cloth solvers on 7 scenes", or what the input says.
-std::string report_title(const ReportInput& input, const ComparedSolvers& compared) {
+/// "Jakobsen and Bullet", "8 cloth solvers on 20 scenes" of all cases, or what the input says.
+std::string report_title(const ReportInput& input) {
   if (!input.title.empty()) return input.title;
   constexpr std::size_t kMostNames = 3;
-  if (compared.all.size() > kMostNames)
-    return std::to_string(compared.all.size()) + " cloth solvers on " +
-           std::to_string(compared.scenes.size()) +
-           (compared.scenes.size() == 1 ? " scene" : " scenes");
-  std::vector<std::string> names;
-  for (const ComparedSolver& solver : compared.all) names.push_back(solver_title(solver.name));
+  std::vector<std::string> names, scenes;
+  for (const StudyResult& study : input.studies)
+    for (const Record& r : study.records) {
+      push_unique(names, solver_title(r.solver));
+      push_unique(scenes, r.scene);
+    }
+  if (names.size() > kMostNames)
+    return std::to_string(names.size()) + " cloth solvers on " + std::to_string(scenes.size()) +
+           (scenes.size() == 1 ? " scene" : " scenes");
   return joined(names);
 }
 
@@ -90,7 +93,7 @@ class Builder {
 
  private:
   Json meta(std::size_t listed) const {
-    Json one{{"title", report_title(input_, compared_)}};
+    Json one{{"title", report_title(input_)}};
     add_if(one, "question", input_.question);
     one["build"] = Json::object();
     for (const auto& [what, value] : input_.provenance)
@@ -398,7 +401,7 @@ std::string make_report(const ReportInput& input) {
   const ComparedSolvers compared = compared_solvers_of(input);
   const std::string answer = escape_html(join(in_few_lines(input), "\n") + "\n\n" +
                                          to_text(answer_of(input, compared, list)));
-  const std::string title = escape_html(report_title(input, compared));
+  const std::string title = escape_html(report_title(input));
   const std::string_view page = page_file("index.html");
   std::string html;
   for (std::size_t at = 0; at < page.size();) {

@@ -29,14 +29,16 @@ function contender(one, over) {
     explained([plainArithmetic(one.arithmetic), one.links && `springs of ${one.links}`].filter(Boolean).join(', '), {className: 'how'}));
 }
 
-function winnerCell(cell) {
-  if (!cell.cheapest) return el('td', {className: 'none'}, '–', el('small', {}, ' ', cell.why));
+/** A cell; on a phone, where the columns stand below each other, it says which error it is of. */
+function winnerCell(cell, level) {
+  const node = (props, ...content) => el('td', {...props, 'data-level': level}, el('div', {}, content));
+  if (!cell.cheapest) return node({className: 'none'}, '–', el('small', {}, ' ', cell.why));
   const {cheapest, next, times} = cell, passed = cell.passed_over ?? [];
   const over = cheapest.length === 1 && (next ? el('div', {className: 'over', title:
     `${shown(next.cost[1], frameCost, 2)} by ${solverOf(next.solver).title}, ${next.setting}: ` +
     `${number(times[0])} to ${number(times[2])} times as much`}, el('b', {}, `${number(times[1], 2)}×`),
     ` cheaper than ${short(solverOf(next.solver).title, 24)}`) : el('div', {className: 'over'}, 'no other reaches it'));
-  return el('td', {}, cheapest.map((one) => contender(one, over)),
+  return node({}, cheapest.map((one) => contender(one, over)),
     cheapest.length > 1 && el('small', {}, 'noise cannot tell them apart'),
     passed.length > 0 && el('small', {className: 'passed', title: passed.map(({solver, why}) => `${solverOf(solver).title}: ${why}`).join('\n')},
       `not counted: ${passed.map(({solver}) => solverOf(solver).title).join(', ')}`));
@@ -49,7 +51,7 @@ function winnersCard() {
   const bySteps = titles((row) => row.judged_by_steps), unjudged = titles((row) => !row.motion_judged && !row.judged_by_steps);
   const line = (row) => {
     const node = el('tr', {}, el('th', {scope: 'row'}, scenes.has(row.scene) ? choice({scene: row.scene, at: 'scenes'}, {}, row.title) : row.title,
-      !row.motion_judged && el('small', {}, row.judged_by_steps ? 'motion judged by its steps' : 'motion not judged')), row.cells.map(winnerCell));
+      !row.motion_judged && el('small', {}, row.judged_by_steps ? 'motion judged by its steps' : 'motion not judged')), row.cells.map((cell, i) => winnerCell(cell, shown(levels[i], error, 2))));
     state.watch(() => node.classList.toggle('chosen', chosenScene() === row.scene));
     return node;
   };
