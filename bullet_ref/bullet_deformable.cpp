@@ -231,9 +231,10 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
       {{"integration", implicit ? "backward Euler, " + std::string(params.value("newton")) +
                                       " Newton step(s), conjugate gradients"
                                 : "symplectic Euler, explicit springs"},
-       {"links", "springs of " + bullet_ref::short_text(stiffness(scene, params).value_or(0)) +
-                     " N/m, all families" +
-                     (scene.stiffness == kRigid ? "; the scene's are rigid" : "")},
+       {kLinksSetting,
+        "springs of " + bullet_ref::short_text(stiffness(scene, params).value_or(0)) +
+            " N/m, all families" + (scene.stiffness == kRigid ? "; the scene's are rigid" : ""),
+        "", stiffness(scene, params).value_or(std::nan(""))},
        {"spring damping",
         bullet_ref::short_text(params.real("spring-damping")) + " N s/m (default 0.05)"},
        {"gravity", "the scene's, by btDeformableGravityForce (default: none)"},

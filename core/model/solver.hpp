@@ -88,6 +88,8 @@ struct ResolvedSetting {
 using ResolvedSettings = std::vector<ResolvedSetting>;
 /// A setting that the page shows with each solver, by its token.
 inline constexpr std::string_view kLinkOrder = "link order";
+/// What links are: its number is the stiffness of structural ones [N/m], NaN of rigid ones.
+inline constexpr std::string_view kLinksSetting = "links";
 /// The one of that name; nullptr: there is none.
 const ResolvedSetting* find_setting(const ResolvedSettings&, std::string_view name);
 

@@ -121,7 +121,8 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const ResolvedSettings own{
-      {"links", is_rigid(scene, params) ? "rigid" : describe_springs(scene, params)},
+      is_rigid(scene, params) ? ResolvedSetting(kLinksSetting, "rigid")
+                              : describe_springs(scene, params),
       {"links solved",
        "all at once by a sparse LDLT, factored as set-up; other pins or links factor again"},
       {"work unit", "solutions of the whole system, not projections"}};

@@ -115,7 +115,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params,
-                                 {{"links", "rigid"},
+                                 {{kLinksSetting, "rigid"},
                                   {"vertex order", std::string(params.choice("order"))},
                                   {"work unit", "vertices, not projections"}},
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);

@@ -790,7 +790,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const std::size_t moving = to_index(scene.mesh.size()) - scene.pins.size();
   const ResolvedSettings own{
-      {"links", describe_springs(scene, params)},
+      describe_springs(scene, params),
       {"links solved", std::string(params.is("integrator", "bdf2")       ? "BDF2"
                                    : params.is("integrator", "midpoint") ? "the midpoint rule"
                                                                          : "implicit Euler") +

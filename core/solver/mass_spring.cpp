@@ -156,10 +156,10 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
-  return loop::resolved_settings(scene, params,
-                                 {{"links", describe_springs(scene, params)},
-                                  {"work unit", "spring evaluations, not projections"}},
-                                 "as forces");
+  return loop::resolved_settings(
+      scene, params,
+      {describe_springs(scene, params), {"work unit", "spring evaluations, not projections"}},
+      "as forces");
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "double|float"}};

@@ -377,7 +377,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const ResolvedSettings own{
-      {"links", describe_springs(scene, params)},
+      describe_springs(scene, params),
       {"links solved",
        std::string(params.is("method", "lbfgs") ? "L-BFGS, "
                    : params.is("method", "ncg") ? "nonlinear conjugate gradients, "

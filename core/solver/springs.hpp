@@ -94,13 +94,16 @@ inline std::vector<std::string> unsupported_of_springs(const Scene& scene, const
 }
 
 /// For the resolved settings.
-inline std::string describe_springs(const Scene& scene, const Params& params) {
+inline ResolvedSetting describe_springs(const Scene& scene, const Params& params) {
   const auto k = stiffnesses(scene, params);
-  return "Hooke springs: " + join(kFamilies, ", ", [&](Family family) {
-           const double of_family = k[static_cast<std::size_t>(family)];
-           return std::string(to_string(family)) + " " +
-                  (std::isinf(of_family) ? "rigid" : shortest(of_family) + " N/m");
-         });
+  const auto of_family = [&](Family family) {
+    const double one = k[static_cast<std::size_t>(family)];
+    return std::string(to_string(family)) + " " +
+           (std::isinf(one) ? "rigid" : shortest(one) + " N/m");
+  };
+  const double structural = k[static_cast<std::size_t>(Family::structural)];
+  return {kLinksSetting, "Hooke springs: " + join(kFamilies, ", ", of_family), "",
+          std::isinf(structural) ? std::nan("") : structural};
 }
 
 }  // namespace taut

@@ -77,7 +77,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params,
-                                 {{"links", describe_springs(scene, params)},
+                                 {describe_springs(scene, params),
                                   {"vertex order", std::string(params.choice("order"))},
                                   {"work unit", "vertices, not projections"}},
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);

@@ -68,15 +68,15 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const auto all = compliances(scene, params);
+  const auto of_family = [&](Family family) {
+    return std::string(to_string(family)) + " " + shortest(all[static_cast<std::size_t>(family)]);
+  };
+  const double structural = all[static_cast<std::size_t>(Family::structural)];
   return loop::resolved_settings(
       scene, params,
       {{"projection", "exact, multipliers " + std::string(params.choice("multipliers"))},
-       {"links", "compliance in m/N: " + join(kFamilies, ", ",
-                                              [&](Family family) {
-                                                return std::string(to_string(family)) + " " +
-                                                       shortest(
-                                                           all[static_cast<std::size_t>(family)]);
-                                              })},
+       {kLinksSetting, "compliance in m/N: " + join(kFamilies, ", ", of_family), "",
+        structural > 0 ? 1 / structural : std::nan("")},
        loop::link_order(params)});
 }
 

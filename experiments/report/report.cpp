@@ -177,22 +177,24 @@ class Builder {
           for (const auto& [key, value] : other_settings(*compared.cases.front()))
             settings += (settings.empty() ? "" : ", ") + key + "=" + retyped(value);
       one["settings"] = settings;
-      add_if(one, "arithmetic", arithmetic_of(solver));
+      add_if(one, "arithmetic", arithmetics_of(solver));
       all.push_back(std::move(one));
     }
     return all;
   }
 
   /// Of the compared cases and, if otherwise, of the timed ones: "double; timed: float".
-  std::string arithmetic_of(const std::string& solver) const {
+  std::string arithmetics_of(const std::string& solver) const {
     std::vector<std::string> compared, timed;
     for (const ComparedSolver& one : compared_.all)
       if (one.name == solver)
-        for (const Record* r : one.cases) push_unique(compared, arithmetic(*r, input_.vectors));
+        for (const Record* r : one.cases)
+          push_unique(compared, arithmetic_of(*r, input_.vectors).text());
     if (input_.bench)
       for (const SceneBench& scene : input_.bench->scenes)
         for (const BenchedCase& c : scene.cases)
-          if (c.record.solver == solver) push_unique(timed, arithmetic(c.record, input_.vectors));
+          if (c.record.solver == solver)
+            push_unique(timed, arithmetic_of(c.record, input_.vectors).text());
     const std::string one = join(compared, " or "), other = join(timed, " or ");
     return one == other || other.empty() ? one : one.empty() ? other : one + "; timed: " + other;
   }

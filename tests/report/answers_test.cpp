@@ -297,16 +297,18 @@ TEST(PageAnswers, TheLargestStepSaysAtWhichWork) {
 
 TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   Record r = synthetic::record("hang", "jakobsen", 1, 1.0 / 64);
-  EXPECT_EQ(arithmetic(r, "avx2"), "double");
+  EXPECT_EQ(arithmetic_of(r, "avx2").text(), "double");
   r.params = {{"precision", "float"}, {"simd", "scalar"}};
-  EXPECT_EQ(arithmetic(r, "avx2"), "float, scalar");
+  EXPECT_EQ(arithmetic_of(r, "avx2").text(), "float, scalar");
   r.params["simd"] = "auto";
-  EXPECT_EQ(arithmetic(r, "avx2"), "float × 8 (avx2)");
-  EXPECT_EQ(arithmetic(r, ""), "float, vectors");
+  EXPECT_EQ(arithmetic_of(r, "avx2").text(), "float × 8 (avx2)");
+  EXPECT_EQ(arithmetic_of(r, "avx2").brief(), "float × 8");
+  EXPECT_EQ(arithmetic_of(r, "avx2").meaning(), "single precision, 8 numbers in one instruction");
+  EXPECT_EQ(arithmetic_of(r, "").text(), "float, vectors");
   r.params["precision"] = "double";
-  EXPECT_EQ(arithmetic(r, "avx512"), "double × 8 (avx512)");
+  EXPECT_EQ(arithmetic_of(r, "avx512").text(), "double × 8 (avx512)");
   r.params = {{"simd", "auto"}};
-  EXPECT_EQ(arithmetic(r, "avx2"), "double") << "no kernels of its own precision";
+  EXPECT_EQ(arithmetic_of(r, "avx2").text(), "double") << "no kernels of its own precision";
   EXPECT_EQ(link_order(r), "");
   r.resolved_settings.emplace_back(kLinkOrder, "the scene's", "mesh order");
   EXPECT_EQ(link_order(r), "mesh order");
@@ -428,7 +430,7 @@ TEST(Winners, HaveTheirRangeInASentenceAndTheirLinksInTheirCell) {
   for (auto& c : one.made.input.bench->scenes[0].cases)
     if (c.record.solver == "pd")
       c.record.resolved_settings = {
-          {"links", "Hooke springs: structural 1000 N/m, shear 1000 N/m"}};
+          {kLinksSetting, "Hooke springs: structural 1000 N/m", "", 1000}};
   EXPECT_EQ(one.said(), "Jakobsen is cheapest in 5 of 5 cells, by 3.0 to 9.0 times.");
   const WinnerRow row = one.map().rows.at(0);
   EXPECT_EQ(row.cells[0].next->links, "1000 N/m");

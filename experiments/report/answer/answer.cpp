@@ -30,21 +30,37 @@ std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit& u
   return columns;
 }
 
-std::string arithmetic(const Record& r, const std::string& vectors) {
+std::string Arithmetic::brief() const {
+  return lanes == 0 ? precision : precision + " × " + std::to_string(lanes);
+}
+
+std::string Arithmetic::text() const {
+  if (instructions.empty()) return precision;
+  return lanes == 0 ? precision + ", " + instructions : brief() + " (" + instructions + ")";
+}
+
+std::string Arithmetic::meaning() const {
+  const std::string text = precision == "float" ? "single precision" : "double precision";
+  return lanes == 0 ? text : text + ", " + std::to_string(lanes) + " numbers in one instruction";
+}
+
+Arithmetic arithmetic_of(const Record& r, const std::string& vectors) {
   const auto param = [&](const char* name) {
     const auto at = r.params.find(name);
     return at == r.params.end() ? std::string() : at->second;
   };
-  const std::string precision = param("precision");
-  if (precision.empty()) return "double";  // its links have no kernels of vectors
-  const std::string simd = param("simd") == "auto" ? vectors : param("simd");
-  if (simd.empty()) return precision + (param("simd").empty() ? "" : ", vectors");
+  Arithmetic all{.precision = param("precision")};
+  if (all.precision.empty()) return {};  // its links have no kernels of vectors
+  const bool automatic = param("simd") == "auto";
+  all.instructions = automatic ? vectors : param("simd");
+  if (all.instructions.empty()) {
+    if (automatic) all.instructions = "vectors";
+    return all;
+  }
   for (const auto& [name, bytes] :
        {std::pair<const char*, int>{"sse2", 16}, {"avx2", 32}, {"avx512", 64}})
-    if (simd == name)
-      return precision + " × " + std::to_string(bytes / (precision == "float" ? 4 : 8)) + " (" +
-             simd + ")";
-  return precision + ", " + simd;
+    if (all.instructions == name) all.lanes = bytes / (all.precision == "float" ? 4 : 8);
+  return all;
 }
 
 std::string link_order(const Record& r) {

@@ -16,22 +16,10 @@ namespace taut::report {
 
 namespace {
 
-/// "1000 N/m" of "Hooke springs: structural 1000 N/m, shear 1000 N/m, bend 100 N/m", for bend links
-/// have another part; "": the links are rigid.
+/// "1000 N/m", of links that are not rigid.
 std::string links_text(const Record& r) {
-  const ResolvedSetting* links = find_setting(r.resolved_settings, "links");
-  if (!links || links->compared() == "rigid") return "";
-  const std::string_view text = links->text;
-  std::set<std::string> all;
-  for (const std::string& part : parts_of(text.substr(text.find(": ") + 1), ',')) {
-    if (part.find("bend") != part.npos) continue;
-    const auto at = part.find_last_of("0123456789");
-    const auto from = at == part.npos ? at : part.find_last_of(' ', at);
-    all.insert(from == part.npos ? part : part.substr(from + 1));
-  }
-  if (text.starts_with("compliance"))
-    return all == std::set<std::string>{"0"} ? "" : "a compliance of " + join(all, ", ") + " m/N";
-  return join(all, ", ");
+  const ResolvedSetting* links = find_setting(r.resolved_settings, kLinksSetting);
+  return links && std::isfinite(links->number) ? shortest(links->number) + " N/m" : "";
 }
 
 /// Of one scene: what is timed, and what of it counts.
@@ -61,7 +49,7 @@ class SceneWinners {
     const Record& r = bench_.cases[at].record;
     return {r.solver,
             setting_text(bench_, at),
-            arithmetic(r, input_.vectors),
+            arithmetic_of(r, input_.vectors),
             links_text(r),
             candidates_[at].cost,
             candidates_[at].error,
@@ -232,7 +220,7 @@ std::string line_of(const WinnerRow& row, std::size_t level) {
       row.title + " at " + quantity(kErrorMetric).text(kErrorLevels[level], 1) + ": ";
   if (cell.cheapest.empty()) return head + "nobody, " + cell.why;
   const auto said = [](const Contender& one) {
-    return solver_title(one.solver) + " " + one.setting + ", " + one.arithmetic +
+    return solver_title(one.solver) + " " + one.setting + ", " + one.arithmetic.text() +
            (one.links.empty() ? "" : ", springs of " + one.links) + ": " +
            (one.bound ? "at most " : "") + shown(kFrameCost, one.cost.mid);
   };
@@ -252,21 +240,6 @@ std::string certainty_text(double noise) {
          shown(kShare, noise) + ".";
 }
 
-namespace {
-
-std::string meaning_of(const std::string& arithmetic) {
-  const bool single = arithmetic.starts_with("float");
-  const auto times = arithmetic.find(" × ");
-  const std::string lanes =
-      times == std::string::npos ? "one number" : std::string(arithmetic.substr(times + 4, 2));
-  return std::string(single ? "single precision" : "double precision") +
-         (times == std::string::npos
-              ? ""
-              : ", " + lanes.substr(0, lanes.find(' ')) + " numbers in one instruction");
-}
-
-}  // namespace
-
 std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<const Record*>& records,
                                                           const std::string& vectors) {
   std::map<std::string, std::string> orders, arithmetics, parameters;
@@ -275,8 +248,8 @@ std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<cons
   for (const Record* r : records) {
     const Work work = work_of(*r);
     works = works || (work.substeps > 0 && work.sweeps > 0);
-    const std::string own = arithmetic(*r, vectors);
-    arithmetics[own.substr(0, own.find(" ("))] = meaning_of(own);
+    const Arithmetic own = arithmetic_of(*r, vectors);
+    arithmetics[own.brief()] = own.meaning();
     if (const ResolvedSetting* order = find_setting(r->resolved_settings, kLinkOrder))
       orders[order->compared()] = order->text.substr(0, order->text.find(';'));
     for (const std::string& name : labelled_parameters(r->solver))

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/report/answer/answer.hpp"
 #include "experiments/report/answer/case_list.hpp"
 #include "experiments/report/input.hpp"
 
@@ -13,10 +14,10 @@ namespace taut::report {
 /// One timed setting that reaches an error.
 struct Contender {
   std::string solver;
-  std::string setting;     ///< "1 × 10, coloured"
-  std::string arithmetic;  ///< "float × 8 (avx2)"
-  std::string links;       ///< what its links are made of, if they are not rigid: "1000 N/m"
-  Interval cost;           ///< CPU s per simulated s
+  std::string setting;  ///< "1 × 10, coloured"
+  Arithmetic arithmetic;
+  std::string links;  ///< stiffness of its structural links, if they are not rigid: "1000 N/m"
+  Interval cost;      ///< CPU s per simulated s
   double error = 0;
   std::string key;     ///< of its case, short
   bool bound = false;  ///< no cheaper setting of the solver was tried: its cost is at most this

@@ -40,7 +40,7 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
   std::set<std::string> shown;
   for (const Record* r : refs.cases()) {
     shown.insert(r->solver);
-    push_unique(computing[arithmetic(*r, input.vectors)], solver_title(r->solver));
+    push_unique(computing[arithmetic_of(*r, input.vectors).text()], solver_title(r->solver));
   }
   if (computing.size() > 1)
     points.push_back(

@@ -9,8 +9,9 @@ namespace taut::report {
 namespace {
 
 Json json_of(const Contender& one) {
-  Json json{{"solver", one.solver}, {"setting", one.setting}, {"arithmetic", one.arithmetic},
-            {"cost", one.cost},     {"error", one.error},     {"case", one.key}};
+  Json json{
+      {"solver", one.solver}, {"setting", one.setting}, {"arithmetic", one.arithmetic.brief()},
+      {"cost", one.cost},     {"error", one.error},     {"case", one.key}};
   add_if(json, "links", one.links);
   if (one.bound) json["at_most"] = true;
   return json;

@@ -26,7 +26,7 @@ function contender(one, over) {
   const cost = (one.at_most ? '≤ ' : '') + shown(one.cost[1], frameCost, 2);
   return el('div', {className: 'contender'}, named(one.solver), over,
     el('div', {className: 'price'}, caseLink(one.case, cost), ' ', explained(one.setting)),
-    explained([plainArithmetic(one.arithmetic), one.links && `springs of ${one.links}`].filter(Boolean).join(', '), {className: 'how'}));
+    explained([one.arithmetic, one.links && `springs of ${one.links}`].filter(Boolean).join(', '), {className: 'how'}));
 }
 
 /** A cell; on a phone, where the columns stand below each other, it says which error it is of. */
