@@ -118,7 +118,7 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   options.width = film.studied ? 960 : 704;
   options.height = film.studied ? 400 : 320;
   options.crf = film.studied ? 28 : 30;
-  options.quality.finest_sheet = 33;  // quads of three to eight pixels
+  options.quality = RenderQuality::draft();  // quads of three to eight pixels
   options.width = options.width / PageLayout::columns_of(std::min(panels, 3)) * columns / 2 * 2;
   if (rows > 1) options.height = options.width / columns * 4 / 5 * rows / 2 * 2;
   return options;

@@ -202,29 +202,28 @@ void append_ball(RenderMesh& mesh, const Vec3f& centre, float radius, int segmen
 
 namespace {
 
-RenderMesh ball_mesh(const Ball& ball, double inset) {
+RenderMesh ball_mesh(const Ball& ball, double inset, int segments) {
   RenderMesh mesh;
   append_ball(mesh, ball.center.cast<float>(),
-              static_cast<float>(std::max(ball.radius - inset, 0.5 * ball.radius)), 72, 0);
+              static_cast<float>(std::max(ball.radius - inset, 0.5 * ball.radius)), segments, 0);
   return mesh;
 }
 
 /// A box whose edges are rounded by `radius`: points of the cube's faces, pulled to within the
 /// smaller box and pushed out by the radius.
-RenderMesh box_mesh(const Box& box, double inset, double rounding) {
-  constexpr int kPieces = 28;
+RenderMesh box_mesh(const Box& box, double inset, double rounding, int pieces) {
   const Vec3 half = (box.half_extents.array() - inset).max(box.half_extents.array() * 0.5);
   const double radius = std::min(rounding, 0.4 * half.minCoeff());
   const Vec3 inner = half.array() - radius;
   RenderMesh mesh;
   // Points crowd towards the edges, where the rounding is.
-  const auto place = [](int k) {
-    const double s = 2.0 * k / kPieces - 1;
+  const auto place = [pieces](int k) {
+    const double s = 2.0 * k / pieces - 1;
     return s * (1.5 - 0.5 * s * s);
   };
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0})
-      append_surface(mesh, kPieces, kPieces, 0, [&](int j, int i) {
+      append_surface(mesh, pieces, pieces, 0, [&](int j, int i) {
         Vec3 p;
         p[axis] = sign * half[axis];
         p[(axis + 1) % 3] = place(i) * half[(axis + 1) % 3];
@@ -238,13 +237,13 @@ RenderMesh box_mesh(const Box& box, double inset, double rounding) {
   return mesh;
 }
 
-RenderMesh plane_mesh(const Plane& plane, double inset, const Vec3& centre, double reach) {
-  constexpr int kPieces = 48;
+RenderMesh plane_mesh(const Plane& plane, double inset, const Vec3& centre, double reach,
+                      int pieces) {
   const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
   const Vec3 foot = centre - plane.normal * (plane.normal.dot(centre) - plane.offset + inset);
   RenderMesh mesh;
-  append_surface(mesh, kPieces, kPieces, 0, [&](int j, int i) {
-    const double a = reach * (2.0 * i / kPieces - 1), b = reach * (2.0 * j / kPieces - 1);
+  append_surface(mesh, pieces, pieces, 0, [&](int j, int i) {
+    const double a = reach * (2.0 * i / pieces - 1), b = reach * (2.0 * j / pieces - 1);
     return std::pair<Vec3f, Vec3f>((foot + a * u + b * v).cast<float>(),
                                    plane.normal.cast<float>());
   });
@@ -252,17 +251,17 @@ RenderMesh plane_mesh(const Plane& plane, double inset, const Vec3& centre, doub
 }
 
 /// A ball whose halves are apart.
-RenderMesh capsule_mesh(const Capsule& capsule, double inset) {
-  constexpr int kSegments = 72, kRings = kSegments / 2;
+RenderMesh capsule_mesh(const Capsule& capsule, double inset, int segments) {
+  const int rings = segments / 2;
   const double radius = std::max(capsule.radius - inset, 0.5 * capsule.radius);
   const Vec3 side = capsule.beside(), along = capsule.to - capsule.from;
   const Vec3 up = along.isZero(0) ? Vec3(Vec3::UnitX()) : along.normalized();
   const Vec3 other = side.cross(up);
   RenderMesh mesh;
-  append_surface(mesh, kRings + 1, kSegments, 0, [&](int j, int i) {
-    const bool upper = j <= kRings / 2;  // the middle ring is there twice
-    const double down = std::numbers::pi * (upper ? j : j - 1) / kRings;
-    const double turn = 2 * std::numbers::pi * i / kSegments;
+  append_surface(mesh, rings + 1, segments, 0, [&](int j, int i) {
+    const bool upper = j <= rings / 2;  // the middle ring is there twice
+    const double down = std::numbers::pi * (upper ? j : j - 1) / rings;
+    const double turn = 2 * std::numbers::pi * i / segments;
     const Vec3 out =
         std::cos(down) * up + std::sin(down) * (std::cos(turn) * side + std::sin(turn) * other);
     return std::pair<Vec3f, Vec3f>(
@@ -281,10 +280,14 @@ double liftable(const Plane&, const Scene& scene) { return 0.04 * extent(scene);
 
 RenderMesh collider_mesh(const Collider& collider, double t, const ColliderLook& look) {
   const Shape shape = shape_at(collider, t);
-  if (const auto* ball = std::get_if<Ball>(&shape)) return ball_mesh(*ball, look.inset);
-  if (const auto* box = std::get_if<Box>(&shape)) return box_mesh(*box, look.inset, look.rounding);
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule_mesh(*capsule, look.inset);
-  return plane_mesh(std::get<Plane>(shape), look.inset, look.centre, look.reach);
+  if (const auto* ball = std::get_if<Ball>(&shape))
+    return ball_mesh(*ball, look.inset, look.segments);
+  if (const auto* box = std::get_if<Box>(&shape))
+    return box_mesh(*box, look.inset, look.rounding, 2 * look.segments / 5);
+  if (const auto* capsule = std::get_if<Capsule>(&shape))
+    return capsule_mesh(*capsule, look.inset, look.segments);
+  return plane_mesh(std::get<Plane>(shape), look.inset, look.centre, look.reach,
+                    2 * look.segments / 3);
 }
 
 void lift_out_of_colliders(RenderMesh& mesh, const Scene& scene, double t, double clearance) {

@@ -54,6 +54,7 @@ struct ColliderLook {
   double rounding = 0;         ///< m: radius of a box's edges, which coarse triangles cut
   Vec3 centre = Vec3::Zero();  ///< planes are a square patch around this point
   double reach = 1;            ///< m, half its side
+  int segments = 72;           ///< of a full circle; flat faces have pieces in proportion
 };
 /// A collider at its place at time t.
 RenderMesh collider_mesh(const Collider&, double t, const ColliderLook&);

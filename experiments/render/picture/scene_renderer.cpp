@@ -270,7 +270,8 @@ SceneRenderer::SceneRenderer(const Scene& scene, const std::vector<RecordedRun>&
       scale_{options.colour_by, options.range},
       mesher_(scene, options.quality.finest_sheet),
       renderer_(gl_, options.width, options.height, options.quality.supersampling,
-                options.quality.light) {
+                options.quality.light),
+      last_(runs.size()) {
   options_.to = std::min(options_.to, scene.duration());
   choose_scale();
   placing_ =
@@ -316,13 +317,13 @@ std::vector<RenderMesh> SceneRenderer::meshes(const Frame& frame, const Vec3& ce
                    vertex_values(scene_, ColourBy::penetration, frame.state, frame.t))};
   lift_out_of_colliders(meshes[0], scene_, frame.t, placing_.inset);
   const ColliderLook look{placing_.inset, 0.7 * mesher_.mean_rest_length(), centre,
-                          1.2 * placing_.radius};
+                          1.2 * placing_.radius, options_.quality.segments};
   for (const Collider& collider : scene_.colliders)
     if (&collider != placing_.floor) meshes.push_back(collider_mesh(collider, frame.t, look));
   RenderMesh& pins = meshes.emplace_back();
   for (const int pin : scene_.pins)
     append_ball(pins, frame.state.x[to_index(pin)].cast<float>(),
-                static_cast<float>(0.009 * extent(scene_)), 16, 0);
+                static_cast<float>(0.009 * extent(scene_)), options_.quality.segments / 4, 0);
   return meshes;
 }
 
@@ -347,7 +348,13 @@ bool SceneRenderer::in_sight(std::size_t run, double t) const {
 }
 
 Image SceneRenderer::panel(std::size_t index, double t) const {
-  const auto& frame = runs_[index].at(t);
+  const Frame& frame = runs_[index].at(t);
+  Drawn& last = last_[index];
+  if (last.frame != &frame) last = {&frame, draw(frame)};
+  return last.image;
+}
+
+Image SceneRenderer::draw(const Frame& frame) const {
   const Vec3 moved = placing_.follows ? centroid(runs_, frame.t) : Vec3::Zero();
   const Vec3 centre = placing_.centre + moved;
   const std::vector<RenderMesh> meshes = this->meshes(frame, centre);

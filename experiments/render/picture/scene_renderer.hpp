@@ -84,10 +84,11 @@ struct RenderQuality {
   LightQuality light;
   int supersampling = 1;
   int finest_sheet = 64;  ///< quads along a side after refinement
+  int segments = 72;      ///< of a circle of a collider; pins have a quarter of them
 
-  static RenderQuality draft() { return {{9, 96, 64}, 1, 33}; }
-  static RenderQuality video() { return {{12, 128, 96}, 1, 66}; }
-  static RenderQuality still() { return {{96, 256, 224}, 2, 132}; }
+  static RenderQuality draft() { return {{9, 96, 64}, 1, 33, 40}; }
+  static RenderQuality video() { return {{12, 128, 96}, 1, 66, 60}; }
+  static RenderQuality still() { return {{96, 256, 224}, 2, 132, 72}; }
 };
 
 struct SceneRendererOptions {
@@ -113,6 +114,7 @@ class SceneRenderer {
   const SceneRendererOptions& options() const { return options_; }
   /// Depth [m] below a collider from which cloth is hatched: 0.2 % of the scene's extent.
   double hatch_depth() const { return 0.002 * extent(scene_); }
+  /// Of a run that has ended it is drawn once.
   Image panel(std::size_t run, double t) const;
   /// Where its vertices lie in the panel: x and y from -1 to 1, y upwards.
   std::vector<Eigen::Vector2f> projected(std::size_t run, double t) const;
@@ -124,6 +126,7 @@ class SceneRenderer {
  private:
   void choose_scale();
   std::vector<double> sampled_times() const;
+  Image draw(const Frame&) const;
   /// Cloth, colliders, pins; in this order.
   std::vector<RenderMesh> meshes(const Frame&, const Vec3& centre) const;
   const Scene& scene_;
@@ -135,6 +138,11 @@ class SceneRenderer {
   Renderer renderer_;
   Placing placing_;
   std::vector<Light> lights_;
+  struct Drawn {
+    const Frame* frame = nullptr;
+    Image image;
+  };
+  mutable std::vector<Drawn> last_;  ///< of each run
 };
 
 }  // namespace taut
