@@ -23,15 +23,16 @@ constexpr double kRigidHardness = 1e6;
 constexpr int kMultiplierRounds = 3;
 /// Of all stiffness at a vertex, that of its contact.
 constexpr double kContactHardness = 1e4;
-constexpr double kNearly = 1e-6;  ///< m, of a gap: such a vertex touches, until it is pulled
+/// Of the scene's extent, a gap: such a vertex touches, until it is pulled.
+constexpr double kNearly = 1e-6;
 /// Steps of Newton's method: two, and more while the last is beyond a share of all.
 constexpr int kMostSteps = 4;
 constexpr double kBelieved = 0.3;  ///< the last, of all
 constexpr double kSmall = 0.1, kMostRatio = 0.8;
 /// Of the way that is missed, what the last round may still move it.
 constexpr double kMostMoved = 0.3;
-/// m, RMS: steps of Newton's method that are less are taken for rounding. Contact does not come
-/// nearer, for what touches and slips is told by kNearly.
+/// Of the scene's extent, RMS: steps of Newton's method that are less are taken for rounding.
+/// Contact does not come nearer, for what touches and slips is told by kNearly.
 constexpr double kRounded = 1e-9, kRoundedInContact = 1e-5;
 /// How often a linear system is solved for the tensions and the forces of contact in it.
 constexpr int kRounds = 2, kRoundsOfLengths = 3, kSecondRounds = 1, kRoundsInContact = 6,
@@ -42,7 +43,10 @@ constexpr int kRounds = 2, kRoundsOfLengths = 3, kSecondRounds = 1, kRoundsInCon
 class StepError::Work {
  public:
   Work(const Scene& scene, const Stiffness& stiffness)
-      : scene_(scene), bending_(make_bending(scene)), column_(scene.mesh.mass.size(), kPin) {
+      : scene_(scene),
+        extent_(extent(scene)),
+        bending_(make_bending(scene)),
+        column_(scene.mesh.mass.size(), kPin) {
     std::vector<bool> pinned(column_.size());
     for (const int pin : scene.pins) pinned[to_index(pin)] = true;
     for (std::size_t i = 0; i < column_.size(); ++i)
@@ -83,8 +87,8 @@ class StepError::Work {
     const double ratio = square > 0 ? std::clamp(along / square, 0.0, kMostRatio) : 0;
     for (std::size_t i = 0; i < moving_.size(); ++i) all[i] += ratio / (1 - ratio) * way_[i];
     out.distance = rms(all);
-    out.believed =
-        out.last <= std::max(kBelieved * out.distance, contact ? kRoundedInContact : kRounded);
+    out.believed = out.last <= std::max(kBelieved * out.distance,
+                                        extent_ * (contact ? kRoundedInContact : kRounded));
     return out;
   }
 
@@ -96,7 +100,7 @@ class StepError::Work {
     keeps_lengths_ = true;
     const bool found = newton(x, scene_.colliders.empty() ? kRoundsOfLengths : kRoundsInContact);
     keeps_lengths_ = false;
-    if (!found || moved_ > std::max(kMostMoved * rms(way_), kRoundedInContact)) return {};
+    if (!found || moved_ > std::max(kMostMoved * rms(way_), extent_ * kRoundedInContact)) return {};
     Points all(x.size(), Vec3::Zero());
     for (std::size_t k = 0; k < moving_.size(); ++k) all[moving_[k]] = way_[k];
     return all;
@@ -260,8 +264,9 @@ class StepError::Work {
         touch.gap = s.distance - scene_.thickness;
         const Vec3 way = at - carried_[c * moving_.size() + k];
         touch.slip = way - s.normal.dot(way) * s.normal;
-        if (new_touches_ && touch.gap <= kNearly)
-          touch.kind = touch.slip.norm() > kNearly ? Touch::Kind::slips : engaged(c);
+        const double nearly = kNearly * extent_;
+        if (new_touches_ && touch.gap <= nearly)
+          touch.kind = touch.slip.norm() > nearly ? Touch::Kind::slips : engaged(c);
       }
     new_touches_ = false;
   }
@@ -368,6 +373,7 @@ class StepError::Work {
   }
 
   const Scene& scene_;
+  double extent_;  ///< m
   std::vector<BendingElement> bending_;
   std::vector<int> column_;          ///< [n] place among those that move
   std::vector<std::size_t> moving_;  ///< vertices

@@ -8,12 +8,14 @@
 //
 // alpha [m/N] is the inverse of a spring constant. The arithmetic is compliant_excess
 // (core/solver/simd/distance.hpp), the step core/solver/loop.cpp; with alpha = 0 every bit is that
-// of jakobsen:projection=exact.
+// of jakobsen:projection=exact. method=global solves all links at once instead
+// (core/solver/xpbd_global.hpp).
 #include <algorithm>
 
 #include "core/model/text.hpp"
 #include "core/solver/constraints/relaxation.hpp"
 #include "core/solver/loop.hpp"
+#include "core/solver/xpbd_global.hpp"
 
 namespace taut::solver::xpbd {
 
@@ -29,6 +31,12 @@ constexpr auto kParams = loop::with_common(
      ParamSpec::choice("multipliers", "keep", "keep|reset",
                        "from sweep to sweep within a substep, as published; or 0 before each, "
                        "which loses the compliance"),
+     ParamSpec::choice("method", "sweeps", "sweeps|global",
+                       "link after link, as published; or all at once, a sparse LDLT in each "
+                       "iteration (fast projection): 3 of them, with substeps=1, are about right"),
+     ParamSpec::choice("primal", "off", "off|on",
+                       "of method=global: minimise implicit Euler's energy, with a line search, "
+                       "so that iterations end at its step; without contact"),
      kOrderParam, ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"), kLayoutParam,
      loop::kTethers});
 
@@ -46,6 +54,9 @@ std::array<double, kFamilies.size()> compliances(const Scene& scene, const Param
 template <class Real>
 loop::Links<Real> make_links(const loop::Setup& setup) {
   const Params& params = setup.params;
+  if (params.is("method", "global"))
+    return make_global_links<Real>(setup, stiffness_of(setup.scene, params),
+                                   params.is("primal", "on"));
   const double h = setup.scene.dt / params.integer("substeps");
   Compliances links{.over_h2 = compliances(setup.scene, params)};
   for (double& compliance : links.over_h2) compliance /= h * h;
@@ -66,23 +77,51 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return loop::make(scene, params, make_links<float>, make_links<double>);
 }
 
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons = loop::unsupported(scene, params);
+  const bool primal = params.is("primal", "on");
+  if (params.is("method", "sweeps")) {
+    if (primal) reasons.emplace_back("primal=on is of method=global");
+    return reasons;
+  }
+  if (params.is("multipliers", "reset"))
+    reasons.emplace_back("multipliers=reset is of method=sweeps");
+  if (!primal) return reasons;
+  const std::string own = "primal=on minimises an energy of links alone: it knows no ";
+  if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
+    reasons.push_back(own + "contact");
+  if (scene.bending) reasons.push_back(own + "bending");
+  if (params.is("tethers", "on")) reasons.push_back(own + "tethers");
+  return reasons;
+}
+
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const auto all = compliances(scene, params);
   const auto of_family = [&](Family family) {
     return std::string(to_string(family)) + " " + shortest(all[static_cast<std::size_t>(family)]);
   };
   const double structural = all[static_cast<std::size_t>(Family::structural)];
+  const ResolvedSetting links(kLinksSetting,
+                              "compliance in m/N: " + join(kFamilies, ", ", of_family), "",
+                              structural > 0 ? 1 / structural : std::nan(""));
+  if (params.is("method", "sweeps"))
+    return loop::resolved_settings(
+        scene, params,
+        {{"projection", "exact, multipliers " + std::string(params.choice("multipliers"))},
+         links,
+         loop::link_order(params)});
   return loop::resolved_settings(
       scene, params,
-      {{"projection", "exact, multipliers " + std::string(params.choice("multipliers"))},
-       {kLinksSetting, "compliance in m/N: " + join(kFamilies, ", ", of_family), "",
-        structural > 0 ? 1 / structural : std::nan("")},
-       loop::link_order(params)});
+      {links,
+       {"links solved", std::string("all at once by a sparse LDLT, analysed once as set-up") +
+                            (params.is("primal", "on") ? ", down implicit Euler's energy" : "")},
+       {"work unit", "factorisations of the links' system, not projections"}});
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
+  if (params.is("method", "global")) return {};
   for (const double compliance : compliances(scene, params))
     if (compliance != 0) return {};
   if (!params.is("order", "mesh") || params.is("tethers", "on")) return {};
@@ -93,19 +132,20 @@ LinearModel linear_model(const Scene& scene, const Params& params) {
 }  // namespace
 }  // namespace taut::solver::xpbd
 
-TAUT_SOLVER(xpbd) = {.name = "xpbd",
-                     .title = "XPBD",
-                     .summary = "Compliant position-based dynamics with substeps",
-                     .source = "Macklin, Mueller, Chentanez 2016; Macklin et al. 2019",
-                     .params = taut::solver::xpbd::kParams,
-                     .make = taut::solver::xpbd::make,
-                     .unsupported = taut::loop::unsupported,
-                     .resolved_settings = taut::solver::xpbd::resolved_settings,
-                     .declared_step = taut::implicit_euler,
-                     .accuracy = {.substeps = "substeps",
-                                  .sweeps = "iterations",
-                                  .alternatives = taut::solver::xpbd::kAlternatives,
-                                  .labelled = "substeps|iterations|precision",
-                                  .accelerators = "tethers|threads"},
-                     .optional_effects = taut::loop::kOptionalEffects,
-                     .linear_model = taut::solver::xpbd::linear_model};
+TAUT_SOLVER(xpbd) = {
+    .name = "xpbd",
+    .title = "XPBD",
+    .summary = "Compliant position-based dynamics with substeps",
+    .source = "Macklin, Mueller, Chentanez 2016; Macklin et al. 2019; Goldenthal et al. 2007",
+    .params = taut::solver::xpbd::kParams,
+    .make = taut::solver::xpbd::make,
+    .unsupported = taut::solver::xpbd::unsupported,
+    .resolved_settings = taut::solver::xpbd::resolved_settings,
+    .declared_step = taut::implicit_euler,
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .alternatives = taut::solver::xpbd::kAlternatives,
+                 .labelled = "substeps|iterations|precision",
+                 .accelerators = "tethers|threads"},
+    .optional_effects = taut::loop::kOptionalEffects,
+    .linear_model = taut::solver::xpbd::linear_model};

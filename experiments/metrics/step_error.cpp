@@ -16,10 +16,41 @@ constexpr int kEvery = 16, kMostSamples = 8;
 constexpr std::size_t kMostVertices = 2500;
 /// Of the steps judged, those that must be believed.
 constexpr double kEnough = 0.5;
-/// s, in which a cloth shows whether it moves, and in how many of whose steps that is looked at; of
-/// its size, what it has to move at least.
-constexpr double kFirst = 0.5, kLeastWay = 0.05;
-constexpr int kFirstSamples = 8;
+/// Of sqrt(L/g), L the scene's extent: in it a cloth shows whether it moves, half a second where a
+/// square metre hangs; steps of it where there is no gravity. In how many of its steps that is
+/// looked at; of L, what the cloth has to move at least.
+constexpr double kFirst = 1.3, kLeastWay = 0.05;
+constexpr int kFirstWithoutGravity = 32, kFirstSamples = 8;
+
+/// Steps in which a cloth shows whether it moves.
+int first_steps(const Scene& scene) {
+  const double g = scene.gravity.norm();
+  const double steps =
+      g > 0 ? kFirst * std::sqrt(extent(scene) / g) / scene.dt : kFirstWithoutGravity;
+  return static_cast<int>(std::lround(std::min<double>(steps, scene.steps)));
+}
+
+/// The velocity [m/s] of the frame from which a cloth is seen that hangs on nothing: that of its
+/// start.
+Vec3 mean_velocity(const Scene& scene) {
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < scene.mesh.mass.size(); ++i) {
+    momentum += scene.mesh.mass[i] * scene.start.v[i];
+    mass += scene.mesh.mass[i];
+  }
+  return momentum / mass;
+}
+
+/// The way [m] until time t that is none of the cloth's own: the mean of its pins, or without any
+/// that of its start.
+Vec3 way_of_frame(const Scene& scene, double t) {
+  if (scene.pins.empty()) return t * mean_velocity(scene);
+  Vec3 sum = Vec3::Zero();
+  for (const int pin : scene.pins)
+    sum += pin_position(scene, pin, t) - scene.start.x[static_cast<std::size_t>(pin)];
+  return sum / static_cast<double>(scene.pins.size());
+}
 
 /// From which step a case is off, is what its solver declares, and nothing else of it is known: the
 /// state before a step, or before its last substep, and the one behind it.
@@ -42,11 +73,12 @@ class StepErrors final : public Metric {
       {.name = kShareBySteps,
        .unit = kSignedShare,
        .help =
-           "share of the way that the cloth would have gone in the first half second if no step "
+           "share of the way that the cloth would have gone in the time T = 1.3 sqrt(size/g), half "
+           "a second of a square metre, if no step "
            "had missed any of the exact step at the lengths that the links have: w.(w + l) "
-           "over |w + l|^2, w its way, l the sum of (0.5 s - t) times the velocity that the "
-           "step at t misses; 0 of a cloth that stands still; none if it would hardly have "
-           "moved, at most 5 % of its size",
+           "over |w + l|^2, w its way beside its pins', l the sum of (T - t) times the velocity "
+           "that the step at t misses; 0 of a cloth that stands still; none if it would hardly "
+           "have moved, at most 5 % of its size",
        .window = Window::none,
        .title = "share of the way, by what its steps miss"},
       {"step.error.believed", kSignedShare,
@@ -58,7 +90,7 @@ class StepErrors final : public Metric {
   explicit StepErrors(const Scene& scene)
       : scene_(scene),
         every_(std::max(kEvery, (scene.steps + kMostSamples - 1) / kMostSamples)),
-        first_(std::min(scene.steps, static_cast<int>(std::lround(kFirst / scene.dt)))),
+        first_(first_steps(scene)),
         first_every_(std::max(1, first_ / kFirstSamples)),
         lost_(scene.start.x.size(), Vec3::Zero()) {}
 
@@ -127,8 +159,9 @@ class StepErrors final : public Metric {
       return Summary::kNone;
     double along = 0, square = 0;
     const std::vector<std::size_t> free = free_vertices(scene_);
+    const Vec3 frame = way_of_frame(scene_, first_ * scene_.dt);
     for (const std::size_t i : free) {
-      const Vec3 way = end_[i] - scene_.start.x[i],
+      const Vec3 way = end_[i] - scene_.start.x[i] - frame,
                  full = way + first_count_ / first_believed_ * lost_[i];
       along += way.dot(full);
       square += full.squaredNorm();
@@ -153,7 +186,7 @@ class StepErrors final : public Metric {
   std::optional<reference::StepError> error_;  ///< none: no value
   State before_;
   int step_before_ = -1;
-  std::vector<Vec3> lost_, end_;  ///< m; the places half a second after the start
+  std::vector<Vec3> lost_, end_;  ///< m; the places after the first steps
   double first_count_ = 0, first_believed_ = 0;
   int count_ = 0;
   double believed_ = 0, sum_ = 0, peak_ = 0;  ///< steps, m, m

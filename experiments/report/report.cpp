@@ -58,7 +58,7 @@ class Builder {
     if (input_.bench) cost = json_of_cost(input_, refs_, charts_, tables_);
     if (input_.differences) differences = json_of(*input_.differences, refs_, tables_);
     Json steps = json_of_steps(input_, refs_, charts_, tables_);
-    Json limits = json_of_limits(input_, tables_);
+    Json limits = json_of_limits(input_, refs_, tables_);
     Json history = json_of_history(input_, refs_);
     Json method = this->method();
     Json cases = this->cases();

@@ -7,8 +7,7 @@
 
 #include "core/model/text.hpp"
 #include "core/reference/fit.hpp"
-#include "core/reference/implicit_step.hpp"
-#include "experiments/truths/truth.hpp"
+#include "experiments/truths/first_step.hpp"
 
 namespace taut {
 
@@ -32,26 +31,6 @@ double constraint_error(const Scene& s, const State& state) {
   return std::sqrt(sum);
 }
 
-Scene elastic(Scene s, double stiffness) {
-  s.stiffness = {stiffness, stiffness, stiffness};
-  return s;
-}
-
-Scene hung_sheet(int side) {
-  Scene s = under_gravity(bare::sheet(side, side, {.shear = true}));
-  s.pins = {0, side - 1};
-  return s;
-}
-
-/// Pinned by its top edge, it begins 45 degrees aside.
-Scene swinging_sheet(int side) {
-  Scene s = hung_sheet(side);
-  s.pins.clear();
-  for (int i = 0; i < side; ++i) s.pins.push_back(i);
-  for (Vec3& x : s.start.x) x = Vec3(x.x(), x.y() * std::sqrt(0.5), x.y() * std::sqrt(0.5));
-  return s;
-}
-
 /// Kinetic and potential energy [J].
 double energy(const Scene& s, const State& state) {
   double sum = 0;
@@ -59,32 +38,6 @@ double energy(const Scene& s, const State& state) {
     sum += s.mesh.mass[i] * (kG * state.x[i].y() + state.v[i].squaredNorm() / 2);
   return sum;
 }
-
-/// The first step of a scene, and how far from its exact end iterations leave it.
-class FirstStep {
- public:
-  explicit FirstStep(const Scene& s)
-      : scene_(s), step_(s, s.start, 0, s.stiffness), exact_(step_.minimum(s.start.x).x) {}
-
-  double distance(std::string_view solver, int iterations) const {  ///< RMS [m]
-    return step_.distance(end(solver, iterations), exact_);
-  }
-  double residual(std::string_view solver, int iterations) const {  ///< N
-    return step_.residual(end(solver, iterations));
-  }
-  /// From where the vertices would go without links [m].
-  double way() const { return step_.distance(step_.prediction(), exact_); }
-
- private:
-  std::vector<Vec3> end(std::string_view solver, int iterations) const {
-    return Simulation(scene_, with(solver, "iterations=" + std::to_string(iterations)), 1)
-        .state()
-        .x;
-  }
-  Scene scene_;
-  reference::ImplicitStep step_;
-  std::vector<Vec3> exact_;
-};
 
 }  // namespace
 
@@ -232,38 +185,6 @@ TAUT_TRUTH(liu_newton, 8, 24, "Projective Dynamics converges to Newton's step",
   s.start = Simulation(s, "implicit", 16).state();
   findings.below("pd", "distance from it after 1000 iterations", "m",
                  FirstStep(s).distance("pd", 1000), 1e-9);
-}
-
-TAUT_TRUTH(xpbd_fixed_point, 8, 26,
-           "the sweeps of XPBD come to rest beside implicit Euler's step, not on it",
-           "Chen et al., Primal residual reduction with XPBD and hyperelasticity, Computers and "
-           "Graphics 2024, abstract") {
-  Scene s = elastic(swinging_sheet(12), 1e4);
-  const std::string solver = "xpbd:substeps=1,order=mesh,precision=double";
-  if (!can_run(findings, solver, s)) return;
-  s.start = Simulation(s, "implicit", 32).state();
-  const FirstStep step(s);
-  const double end = step.distance(solver, 16384);
-  findings.holds(solver, "16384 sweeps end more than a micrometre from it", end > 1e-6);
-  findings.equal(solver, "distance after 16384 over 8192 sweeps", "1",
-                 end / step.distance(solver, 8192), 1, 0.02);
-  findings.below("implicit", "distance of Newton's method from it", "m",
-                 step.distance("implicit", 100), 1e-9);
-}
-
-TAUT_TRUTH(lbfgs_factor, 8, 27,
-           "Projective Dynamics is L-BFGS without pairs, and with them it is faster",
-           "Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation, TOG 2017, "
-           "abstract") {
-  Scene s = elastic(swinging_sheet(12), 1e3);
-  if (!can_run(findings, "pd:method=lbfgs", s)) return;
-  s.start = Simulation(s, "implicit", 32).state();
-  const FirstStep step(s);
-  const double plain = step.distance("pd", 10);
-  findings.equal("pd:method=lbfgs,history=0", "distance after ten iterations over pd's", "1",
-                 step.distance("pd:method=lbfgs,history=0", 10) / plain, 1, 1e-9);
-  findings.below("pd:method=lbfgs", "distance after 60 iterations over pd's", "1",
-                 step.distance("pd:method=lbfgs", 60) / step.distance("pd", 60), 0.5);
 }
 
 TAUT_TRUTH(wang_chebyshev, 8, 25,

@@ -4,6 +4,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/report/answer/answer.hpp"
+#include "experiments/report/answer/failure_map.hpp"
 #include "experiments/report/answer/winners.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/study/study.hpp"
@@ -439,6 +440,58 @@ TEST(Winners, HaveTheirRangeInASentenceAndTheirLinksInTheirCell) {
   EXPECT_EQ(line_of(row, 2),
             "hang at 1\u00A0%: Jakobsen 1 × 1, double: 1.1\u00A0ms a frame; 9.0 (9.0 to 9.0) times "
             "cheaper than Projective Dynamics");
+}
+
+/// Cases of a study over stiffness.
+struct Stiffened {
+  Record& add(const std::string& stiffness, const std::string& solver, double share, double strain,
+              double energy) {
+    Record r = synthetic::record("swing", solver, 16, 1.0 / 64);
+    if (!stiffness.empty())
+      r.spec.overrides.push_back("links.stiffness={ structural = " + stiffness + " }");
+    r.values = {{"step.share", share}, {"stretch.rms", strain}, {"energy.peak", energy}};
+    return records.emplace_back(r);
+  }
+  std::vector<Record> records;
+};
+
+TEST(FailureMap, SaysTheFirstThatHoldsAndTheNumbersBehindIt) {
+  Stiffened made;
+  const double none = std::nan("");
+  made.add("1e3", "jakobsen", 0.24, 0.004, 1);
+  made.add("1e6", "jakobsen", 0.26, 0.004, 1);
+  made.add("1e3", "xpbd", 0.91, 0.004, 0.03);
+  made.add("1e6", "xpbd", 0.1, 0.006, 0.01);
+  made.add("1e3", "bullet", none, 0.004, 0.01);
+  made.add("1e6", "bullet", 1, 0.5, 1).status = {Status::Kind::extreme, "stretch", 3, 1};
+  made.add("1e6", "pd", 1, 0, 0).status = {Status::Kind::unsupported, "no balls", -1, -1};
+  const Table table = failure_map(made.records, nullptr);
+  ASSERT_EQ(table.columns.size(), 3u);
+  EXPECT_EQ(table.columns[1].heading, "swing, structural = 1e3");
+  EXPECT_EQ(table.columns[2].heading, "swing, structural = 1e6");
+  ASSERT_EQ(table.rows.size(), 4u);
+  EXPECT_EQ(table.rows[0][1].text(), "freezes");
+  EXPECT_EQ(table.rows[0][2].text(), "late");
+  EXPECT_EQ(table.rows[1][1].text(), "gains energy");
+  EXPECT_EQ(table.rows[1][2].text(), "strains");
+  EXPECT_EQ(table.rows[2][1].text(), "right");
+  EXPECT_EQ(table.rows[2][2].text(), "extreme");
+  EXPECT_EQ(table.rows[3][2].text(), "cannot: no balls");
+  EXPECT_EQ(table.rows[3][2].state, Cell::State::refused);
+  EXPECT_TRUE(table.rows[3][1].empty()) << "was not run";
+  EXPECT_EQ(table.rows[0][1].note, "24\u00A0% of the way, strain 0.40\u00A0%, energy 1 m g L");
+  EXPECT_EQ(table.rows[2][1].note, "strain 0.40\u00A0%, energy 0.010 m g L")
+      << "its way is not known";
+}
+
+TEST(FailureMap, IsOfCasesThatDifferInStiffnessAlone) {
+  Stiffened made;
+  made.add("", "jakobsen", 1, 0, 0);
+  EXPECT_TRUE(failure_map(made.records, nullptr).rows.empty());
+  made.add("1e3", "jakobsen", 1, 0, 0);
+  EXPECT_TRUE(failure_map(made.records, nullptr).rows.empty()) << "one stiffness";
+  made.add("1e4", "jakobsen", 1, 0, 0);
+  EXPECT_EQ(failure_map(made.records, nullptr).columns.size(), 3u);
 }
 
 }  // namespace

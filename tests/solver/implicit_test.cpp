@@ -160,6 +160,36 @@ TEST(KeptMultipliers, HoldSlackClothWithTwoIterations) {
     EXPECT_LT((end.x[to_index(l.b)] - end.x[to_index(l.a)]).norm(), 1.02 * l.rest);
 }
 
+/// A step in which anything touches is Newton's own, and tensions begin anew: what falls on a ball
+/// and what lies on it is where it is without them, if iterations are enough.
+TEST(KeptMultipliers, FallOnABallAndRestThereAsWithoutThem) {
+  for (const bool rests : {false, true}) {
+    Scene scene = hanging_sheet(9, 9);
+    scene.stiffness = {1e3, 1e3, 1};
+    for (Vec3& x : scene.start.x) x = {x.x() - 0.5, rests ? 0.31 : 0.36, x.y() + 0.5};
+    scene.pins = rests ? std::vector{0, 8, 72, 80} : std::vector<int>{};
+    scene.damping = rests ? 5 : 0;
+    scene.thickness = 0.005;
+    scene.colliders = {{.shape = Ball{Vec3::Zero(), 0.3}, .friction = 0.5}};
+    const std::string newton = "implicit:iterations=50";
+    const int steps = rests ? 192 : 32;
+    const State end = simulate(scene, newton + ",multipliers=keep", steps);
+    EXPECT_LT(largest_distance(end.x, simulate(scene, newton, steps).x), 1e-8) << rests;
+    double deepest = 1;
+    for (const Vec3& x : end.x) deepest = std::min(deepest, x.norm());
+    EXPECT_NEAR(deepest, 0.305, 1e-6) << "it touches";
+  }
+}
+
+TEST(KeptMultipliers, RefuseRigidLinksAsSpringsDo) {
+  Scene scene = hanging_sheet(3, 3);
+  scene.stiffness[0] = 1e3;
+  const SolverChoice choice = parse_solver("implicit:multipliers=keep");
+  const std::vector<std::string> why = choice.entry->unsupported(scene, choice.params);
+  ASSERT_EQ(why.size(), 2u);
+  EXPECT_EQ(why[0], "shear links are rigid: springs need their stiffness in [links] stiffness");
+}
+
 /// Along its axis a spring between a pin and a mass is linear: z of a step is known.
 Scene oscillator(double dt) {
   Scene scene = hanging_sheet(1, 2, {true, false, false});

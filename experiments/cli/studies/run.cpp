@@ -5,6 +5,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/main_job_end.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/report/answer/failure_map.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/results/builds.hpp"
 #include "experiments/study/campaign.hpp"
@@ -77,9 +78,15 @@ Answer answer_of(const CampaignProgress& campaign, const std::vector<Study>& stu
   statuses.detail = true;
   answer.add(std::move(statuses));
   for (const Study& study : studies)
-    for (const std::string& value : options.values)
-      answer.add(
-          table_of(study, store, value, studies.size() > 1 ? study.name + " " + value : value));
+    for (const std::string& value : options.values) {
+      const std::string name = studies.size() > 1 ? study.name + " " + value : value;
+      if (value != report::kFailureMap) {
+        answer.add(table_of(study, store, value, name));
+        continue;
+      }
+      const std::vector<Record> records = collect(study, store).records;
+      answer.add(report::failure_map(records, nullptr)).name = name;
+    }
   return answer;
 }
 
@@ -205,9 +212,10 @@ void add_options(CLI::App& app, Options& options) {
       ->allow_extra_args(false)
       ->needs("STUDY");
   app.add_option("--table", options.values,
-                 "Then print this value of a metric, settings by scenes; repeat it for each")
+                 "Then print this value of a metric, settings by scenes, or failure_map, who is "
+                 "right at which stiffness; repeat it for each")
       ->allow_extra_args(false)
-      ->check(metric_value());
+      ->check(metric_value() | CLI::IsMember({report::kFailureMap}));
   app.add_flag("--verbose", options.verbose, "A line for each case as it ends");
   app.add_flag("--no-report", options.no_report, "Run the main job without its report");
   add_json(app, options.json, "How the cases ended, and the tables,");
@@ -227,5 +235,6 @@ TAUT_VERB(run) = {.name = "run",
                   .answer =
                       "results store cases ran stored; "
                       "statuses: status cases; "
+                      "failure_map: solver *; "
                       "*: setting *",
                   .bind = taut::bind_verb<taut::verb::run::add_options, taut::verb::run::run>};

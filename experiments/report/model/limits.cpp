@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/report/answer/failure_map.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
@@ -46,8 +47,13 @@ Table frontier_table(const std::vector<ParameterFrontier>& frontiers) {
 
 }  // namespace
 
-Json json_of_limits(const ReportInput& input, Answer& tables) {
+Json json_of_limits(const ReportInput& input, CaseList& refs, Answer& tables) {
   Json limits;
+  for (const StudyResult& study : input.studies)
+    if (Table map = failure_map(study.records, &refs); !map.rows.empty()) {
+      add_table(limits, std::move(map), tables);
+      break;  // the first study that has one
+    }
   Table table{"required",
               "The smallest model that keeps a scene's answers",
               {},

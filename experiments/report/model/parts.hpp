@@ -36,8 +36,8 @@ Json json_of_cost(const ReportInput&, CaseList&, Json& charts, Answer& tables);
 Json json_of(const Differences&, CaseList&, Answer& tables);
 /// How values went from build to build, study by study; null: of one build alone.
 Json json_of_history(const ReportInput&, CaseList&);
-/// What scenes require and how far solvers go; null without either.
-Json json_of_limits(const ReportInput&, Answer& tables);
+/// What scenes require, how far solvers go and where their methods fail; null without any.
+Json json_of_limits(const ReportInput&, CaseList&, Answer& tables);
 /// What iterations inside one step bring, scene by scene; null: no step was followed.
 Json json_of_steps(const ReportInput&, CaseList&, Json& charts, Answer& tables);
 /// What publications assert, with verdicts: as its truths say now, if they were checked.

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/model/bending.hpp"
+#include "core/solver/panel_factor.hpp"
+#include "core/solver/springs.hpp"
+
+namespace taut::solver::implicit {
+
+using Vector = Eigen::VectorXd;
+
+/// A spring's part of the Hessian: isotropic I + axial u u^T [N/m].
+struct SpringHessian {
+  double isotropic = 0, axial = 0;
+  Vec3 u = Vec3::UnitX();
+  Eigen::Matrix3d matrix() const {
+    return isotropic * Eigen::Matrix3d::Identity() + axial * u * u.transpose();
+  }
+  Vec3 times(const Vec3& v) const { return isotropic * v + axial * u.dot(v) * u; }
+};
+
+/// H = M/h^2 + springs + bending + contact, over the vertices that move; vectors have three numbers
+/// for each of them. Its linear systems are solved by a sparse LDLT, whose pattern is analysed
+/// once, or by conjugate gradients with a block Jacobi preconditioner.
+class Hessian {
+ public:
+  /// Of springs and bending that outlive it. w: inverse masses [1/kg].
+  Hessian(const std::vector<Spring>& springs, const std::vector<BendingElement>& bending,
+          std::span<const double> w, bool factored, Simd simd);
+
+  int size() const { return 3 * static_cast<int>(mass_.size()); }
+  /// Where the vertex is in vectors; kPinned: it does not move.
+  int column(std::size_t vertex) const { return column_[vertex]; }
+  double mass(std::size_t vertex) const { return mass_[to_index(column_[vertex]) / 3]; }
+  SpringHessian& block(std::size_t spring) { return blocks_[spring]; }
+  /// What contact adds at a vertex that moves [N/m].
+  void clear_contacts() { contacts_.clear(); }
+  void add_contact(std::size_t vertex, const Eigen::Matrix3d& block) {
+    contacts_.emplace_back(column_[vertex], block);
+  }
+  bool factored() const { return !diagonal_.empty(); }
+  static constexpr int kPinned = -1;
+
+  /// p [m] of H p = right [N]; false: H is not positive definite.
+  bool solve(double h, const Vector& right, Vector& p);
+
+  /// H v without the masses' part; pins do not move.
+  Vector elastic_times(const Vector& v) const {
+    return elastic_times(v, [](std::size_t) { return Vec3(Vec3::Zero()); });
+  }
+  /// pin(vertex): its way [m].
+  template <class Pin>
+  Vector elastic_times(const Vector& v, const Pin& pin) const {
+    Vector out = Vector::Zero(v.size());
+    const auto at = [&](std::size_t vertex) -> Vec3 {
+      return column_[vertex] < 0 ? pin(vertex) : Vec3(v.segment<3>(column_[vertex]));
+    };
+    for (std::size_t j = 0; j < springs_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 pull = blocks_[j].times(at(b) - at(a));
+      if (column_[a] >= 0) out.segment<3>(column_[a]) -= pull;
+      if (column_[b] >= 0) out.segment<3>(column_[b]) += pull;
+    }
+    for (const BendingElement& e : bending_) {
+      const Vec3 pull = e.stiffness * e.value(at);
+      for (std::size_t i = 0; i < e.size; ++i)
+        if (const int c = column_[to_index(e.vertex[i])]; c >= 0)
+          out.segment<3>(c) += e.weight[i] * pull;
+    }
+    for (const auto& [column, block] : contacts_)
+      out.segment<3>(column) += block * v.segment<3>(column);
+    return out;
+  }
+
+  std::size_t factor_entries() const { return factor_.entries(); }
+  std::size_t bytes() const;
+
+ private:
+  /// Of 3 x 3 numbers in the matrix; null: an end is pinned.
+  struct Block {
+    double* first = nullptr;
+    std::size_t stride = 0;
+    double& operator()(int r, int c) const { return first[to_index(r) * stride + to_index(c)]; }
+  };
+
+  void analyse(Simd simd);
+  template <class Add>
+  void each_bending(const Add& add) const;
+  void add_diagonal(int column, const Eigen::Matrix3d& block);
+  void fill(double h);
+  Vector times(double h, const Vector& v) const;
+  bool conjugate_gradients(double h, const Vector& right, Vector& p) const;
+
+  const std::vector<Spring>& springs_;
+  const std::vector<BendingElement>& bending_;
+  std::vector<int> column_;
+  std::vector<double> mass_;  ///< kg, of those that move
+  std::vector<SpringHessian> blocks_;
+  std::vector<std::pair<int, Eigen::Matrix3d>> contacts_;
+  PanelFactor factor_;                          ///< empty: conjugate gradients
+  std::vector<Block> diagonal_;                 ///< [those that move]
+  std::vector<Block> beside_;                   ///< [springs]
+  std::vector<std::pair<Block, double>> bent_;  ///< [N/m] of bending, times unity
+  Vector in_order_;                             ///< in the order of elimination
+};
+
+}  // namespace taut::solver::implicit

@@ -1,0 +1,273 @@
+#include "core/solver/xpbd_global.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/solver/global_system.hpp"
+#include "core/solver/panel_factor.hpp"
+#include "core/solver/springs.hpp"
+
+namespace taut {
+
+namespace {
+
+/// a of rigid links, of the matrix' mean diagonal.
+constexpr double kSoftnessOfRigid = 1e-9;
+/// Of a step's slope, that the energy has to fall by; and how often a step is halved, at most.
+constexpr double kFalls = 1e-4;
+constexpr int kMostHalvings = 40;
+
+template <class Real>
+class GlobalLinks final : public Pass<Real> {
+ public:
+  GlobalLinks(const loop::Setup& s, std::vector<Spring> springs, bool primal)
+      : springs_(std::move(springs)),
+        w_(s.w.begin(), s.w.end()),
+        mobility_(w_),
+        primal_(primal),
+        links_(springs_.size()),
+        right_(springs_.size()) {
+    analyse(s.simd);
+  }
+
+  void begin(Particles<Real>& p, double, double h) override {
+    y_ = positions(p);
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const double k = springs_[j].stiffness;
+      links_[j].softness = std::isinf(k) ? kSoftnessOfRigid * mean_diagonal_ : 1 / (k * h * h);
+      links_[j].lambda = 0;
+    }
+  }
+
+  void apply(Particles<Real>& p, double, double) override {
+    std::vector<Vec3> x = positions(p);
+    look_at(x);
+    if (primal_) resist_across();
+    const std::vector<Vec3> astray = primal_ ? away_from_forces(x) : std::vector<Vec3>();
+    fill();
+    if (!factor_.factor()) {
+      x.assign(x.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    } else {
+      solve(astray);
+      const std::vector<Vec3> way = way_of_solution(astray);
+      const double share = primal_ ? share_that_falls(x, way) : 1;
+      for (std::size_t j = 0; j < links_.size(); ++j) links_[j].lambda += share * right_[rank_[j]];
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] += share * way[i];
+    }
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (w_[i] > 0) p.x.set(i, x[i].template cast<Real>());
+  }
+
+  std::vector<PassCost> cost() const override {
+    return {{.pass = "links, all at once",
+             .items = springs_.size(),
+             .bytes = springs_.size() * (sizeof(Spring) + sizeof(Linked) + sizeof(double)) +
+                      y_.size() * sizeof(Vec3) + 2 * w_.size() * sizeof(double)},
+            {.pass = "LDLT of the links, entries of its factor",
+             .items = factor_.entries(),
+             .bytes = factor_.bytes() + beside_.size() * sizeof beside_[0] +
+                      diagonal_.size() * sizeof diagonal_[0] + rank_.size() * sizeof rank_[0]}};
+  }
+
+ private:
+  struct Linked {
+    double softness = 0;    ///< a [1/kg], of this substep
+    double lambda = 0;      ///< kg m
+    double excess = 0;      ///< C [m], at x
+    Vec3 u = Vec3::Zero();  ///< unit, at x; 0 where there is no direction
+  };
+  /// An entry of the matrix to which a vertex that two links share adds its mobility times u.u.
+  struct Shared {
+    double* at;
+    std::uint32_t one, other, vertex;
+    double sign;  ///< -1 where one link ends and the other begins, else 1
+  };
+
+  void analyse(Simd simd) {
+    std::vector<std::vector<std::size_t>> at(w_.size());  // links of each vertex that moves
+    for (std::size_t j = 0; j < springs_.size(); ++j)
+      for (const std::size_t v : {springs_[j].a, springs_[j].b}) {
+        mean_diagonal_ += w_[v] / static_cast<double>(springs_.size());
+        if (w_[v] > 0) at[v].push_back(j);
+      }
+    std::vector<PanelFactor::Pair> pairs;
+    const auto each_pair = [&](const auto& add) {
+      for (std::size_t v = 0; v < at.size(); ++v)
+        for (std::size_t k = 0; k < at[v].size(); ++k)
+          for (std::size_t l = 0; l < k; ++l) add(v, at[v][k], at[v][l]);
+    };
+    each_pair([&](std::size_t, std::size_t one, std::size_t other) {
+      pairs.push_back({static_cast<int>(one), static_cast<int>(other)});
+    });
+    factor_ = PanelFactor(springs_.size(), pairs, 1, simd);
+    rank_.resize(springs_.size());
+    for (std::size_t k = 0; k < rank_.size(); ++k) rank_[to_index(factor_.order()[k])] = k;
+    for (const std::size_t rank : rank_) diagonal_.push_back(factor_.at(rank, rank));
+    each_pair([&](std::size_t v, std::size_t one, std::size_t other) {
+      const auto [low, high] = std::minmax(rank_[one], rank_[other]);
+      const bool same_end = (springs_[one].a == v) == (springs_[other].a == v);
+      beside_.push_back({factor_.at(high, low), static_cast<std::uint32_t>(one),
+                         static_cast<std::uint32_t>(other), static_cast<std::uint32_t>(v),
+                         same_end ? 1.0 : -1.0});
+    });
+  }
+
+  void look_at(const std::vector<Vec3>& x) {
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const Vec3 d = x[springs_[j].b] - x[springs_[j].a];
+      const double length = d.norm();
+      links_[j].excess = length - springs_[j].rest;
+      links_[j].u = length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
+    }
+  }
+
+  void fill() {
+    factor_.clear();
+    for (std::size_t j = 0; j < links_.size(); ++j)
+      *diagonal_[j] = mobility_[springs_[j].a] + mobility_[springs_[j].b] + links_[j].softness;
+    for (const Shared& s : beside_)
+      *s.at += s.sign * mobility_[s.vertex] * links_[s.one].u.dot(links_[s.other].u);
+  }
+
+  /// The masses of the primal step.
+  void resist_across() {
+    std::vector<double> across(w_.size(), 0.0);  // kg
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const double length = links_[j].excess + rest;
+      if (!(length > 0 && links_[j].lambda < 0)) continue;
+      across[a] -= links_[j].lambda / length;
+      across[b] -= links_[j].lambda / length;
+    }
+    for (std::size_t i = 0; i < w_.size(); ++i)
+      if (w_[i] > 0) mobility_[i] = 1 / (1 / w_[i] + across[i]);
+  }
+
+  /// V M p, p: how far x is from where the multipliers' forces, in the directions at x, take y [m].
+  std::vector<Vec3> away_from_forces(const std::vector<Vec3>& x) const {
+    std::vector<Vec3> p = x;
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] -= y_[i];
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 push = links_[j].lambda * links_[j].u;
+      p[a] += w_[a] * push;
+      p[b] -= w_[b] * push;
+    }
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (w_[i] > 0) p[i] *= mobility_[i] / w_[i];
+    return p;
+  }
+
+  /// right_ becomes dlambda, in the order of elimination.
+  void solve(const std::vector<Vec3>& astray) {
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const Linked& l = links_[j];
+      double& right = right_[rank_[j]];
+      right = -(l.excess + l.softness * l.lambda);
+      if (primal_) right += l.u.dot(astray[springs_[j].b] - astray[springs_[j].a]);
+    }
+    factor_.solve_one(right_.data());
+  }
+
+  /// V J^T dlambda, less `astray`.
+  std::vector<Vec3> way_of_solution(const std::vector<Vec3>& astray) const {
+    std::vector<Vec3> way(w_.size(), Vec3::Zero());
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 push = right_[rank_[j]] * links_[j].u;
+      way[a] -= mobility_[a] * push;
+      way[b] += mobility_[b] * push;
+    }
+    for (std::size_t i = 0; i < astray.size(); ++i)
+      if (w_[i] > 0) way[i] -= astray[i];
+    return way;
+  }
+
+  /// h^2 times implicit Euler's energy [kg m^2].
+  double energy(const std::vector<Vec3>& x) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (w_[i] > 0) sum += (x[i] - y_[i]).squaredNorm() / (2 * w_[i]);
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const double c = (x[b] - x[a]).norm() - rest;
+      sum += c * c / (2 * links_[j].softness);
+    }
+    return sum;
+  }
+  /// Its gradient at x [kg m]; 0 for pins.
+  std::vector<Vec3> gradient(const std::vector<Vec3>& x) const {
+    std::vector<Vec3> g(x.size(), Vec3::Zero());
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      const auto& [a, b, rest, stiffness] = springs_[j];
+      const Vec3 d = x[b] - x[a];
+      const double length = d.norm();
+      if (length == 0) continue;
+      const Vec3 pull = (length - rest) / (links_[j].softness * length) * d;
+      g[a] -= pull;
+      g[b] += pull;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i)
+      g[i] = w_[i] > 0 ? Vec3(g[i] + (x[i] - y_[i]) / w_[i]) : Vec3(Vec3::Zero());
+    return g;
+  }
+  static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+    return sum;
+  }
+
+  /// 1 or the first of its halves with which the energy falls (Armijo); 0: rounding is all that is
+  /// left.
+  double share_that_falls(const std::vector<Vec3>& x, const std::vector<Vec3>& way) const {
+    const std::vector<Vec3> g = gradient(x);
+    const double before = energy(x), slope = dot(g, way);
+    double share = 1;
+    std::vector<Vec3> trial(x.size());
+    for (int halvings = 0; halvings < kMostHalvings; ++halvings, share /= 2) {
+      for (std::size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + share * way[i];
+      const double now = energy(trial);
+      if (now <= before + kFalls * share * slope) return share;
+      // near the minimum, differences of the energy are rounding: the gradient decides
+      if (now > before * (1 + 1e-12)) continue;
+      const std::vector<Vec3> left = gradient(trial);
+      if (dot(left, left) < dot(g, g)) return share;
+    }
+    return 0;
+  }
+
+  std::vector<Spring> springs_;
+  std::vector<double> w_;         ///< [n] 1/kg
+  std::vector<double> mobility_;  ///< [n] 1/kg, of the matrix: V with primal=on, else W
+  bool primal_;
+  std::vector<Vec3> y_;  ///< [n] m
+  std::vector<Linked> links_;
+  double mean_diagonal_ = 0;  ///< 1/kg
+  PanelFactor factor_;
+  std::vector<std::size_t> rank_;  ///< [links] in the order of elimination
+  std::vector<double*> diagonal_;  ///< [links]
+  std::vector<Shared> beside_;
+  std::vector<double> right_;  ///< m, then kg m; in the order of elimination
+};
+
+}  // namespace
+
+template <class Real>
+loop::Links<Real> make_global_links(const loop::Setup& s,
+                                    const std::array<double, kFamilies.size()>& stiffness,
+                                    bool primal) {
+  std::vector<Spring> springs = make_springs(s.scene, s.w, stiffness);
+  loop::Links<Real> links{.layout = Layout::packed(s.w.size())};
+  if (!springs.empty())
+    links.pass = std::make_unique<GlobalLinks<Real>>(s, std::move(springs), primal);
+  return links;
+}
+template loop::Links<float> make_global_links(const loop::Setup&,
+                                              const std::array<double, kFamilies.size()>&, bool);
+template loop::Links<double> make_global_links(const loop::Setup&,
+                                               const std::array<double, kFamilies.size()>&, bool);
+
+}  // namespace taut

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+
+#include "core/solver/loop.hpp"
+
+namespace taut {
+
+/// XPBD's links solved all at once, by Newton's method on the multipliers: the fast projection of
+/// Goldenthal et al., Efficient Simulation of Inextensible Cloth (SIGGRAPH 2007), with compliance;
+/// the outer iteration of multigrid-accelerated XPBD (MGPBD) with a direct solver in its place.
+///
+/// With C = |x_b - x_a| - rest and its gradients J at x, W the inverse masses, a = 1/(K h^2),
+/// lambda = 0 and x = y at every substep, an iteration is
+///
+///     (J W J^T + a) dlambda = -(C + a lambda),   lambda += dlambda,   x += W J^T dlambda
+///
+/// -lambda/h^2 is the tension [N]. Once C + a lambda = 0, x is a step of implicit Euler with
+/// the directions that each dlambda had, which differ from those at x where links turn within a
+/// step. With primal=on, p = x - y - W J^T lambda says by how much, M = W^-1, and
+///
+///     (J V J^T + a) dlambda = -(C + a lambda) + J V M p,   x += s (V J^T dlambda - V M p)
+///
+/// is a step of Gauss and Newton down implicit Euler's energy, which s in (0, 1] makes fall: its
+/// end is implicit Euler's step itself. V is W where no link pulls; else masses are larger in it by
+/// what tension resists across links, -lambda/|d| of each, without which (V = W) steps overshoot
+/// and 64 of them leave a thousand times as much.
+///
+/// Rigid links have 1e-9 of the matrix' mean diagonal for a: a sheet with shear links has more
+/// links than places to choose, and without it no factor. The matrix couples links that share a
+/// vertex that moves; its pattern is analysed once, its factor made in every iteration, both in
+/// double precision. Where there is no factor, places are NaN, which ends a case as exploded.
+///
+/// Contact and bending are projected by the loop after each solution, as after sweeps: what lies on
+/// a ball is 2 mm from where `implicit` has it after 20 solutions and trembles, 6 mm after 200
+/// sweeps. A compressed link pushes along a direction that turns away under it: a sheet that is
+/// slack blows up with few solutions, and ends as extreme or exploded
+/// (results/benchmarks/failure-map.md).
+///
+/// stiffness: K [N/m] by family; infinite: rigid.
+template <class Real>
+loop::Links<Real> make_global_links(const loop::Setup&,
+                                    const std::array<double, kFamilies.size()>& stiffness,
+                                    bool primal);
+
+}  // namespace taut
