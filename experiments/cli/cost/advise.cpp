@@ -138,7 +138,7 @@ TAUT_VERB(advise) = {
         "taut advise hang --error 1%\n  taut advise ball --budget 4 --metric "
         "stretch.max\n  taut advise tunnel --error 1% --keep penetration.peak:1mm --keep "
         "tunnelling.count:0\n  taut advise my/scene.toml --error 0.001 --solver jakobsen --json\n"
-        "  taut advise --study trade --preset searched\n"
+        "  taut advise --study trade --preset quick\n"
         "Exit: 0 found; 3 found, solvers not searched; 4 not reached; 6 the best does not repeat "
         "bit for bit",
     .answer =
