@@ -43,7 +43,8 @@ TEST(Profiles, WhatASceneDoesNotAcceptWinsNothing) {
   BenchedCase through = timed("a", 1, 0.01);
   through.not_accepted = "tunnelling.events 2, more than 0";
   const auto found = performance_profiles(
-      {scene({through, timed("a", 8, 0.01), timed("b", 4, 0.01)})}, "e", levels);
+      {scene({through, timed("a", 8, 0.01), timed("b", 9, 0.01), timed("b", 4, 0.01)})}, "e",
+      levels);
   EXPECT_EQ(found[0].ratios, std::vector<double>{2}) << "its dear setting counts";
   EXPECT_EQ(found[1].ratios, std::vector<double>{1});
 }
