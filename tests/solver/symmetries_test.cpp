@@ -242,7 +242,7 @@ std::vector<std::string> texts() {
                                "jakobsen:tethers=on,levels=2,omega=1.3,contact=after",
                                "jakobsen:method=jacobi-averaged,chebyshev=0.5,contact=discrete",
                                "xpbd:structural=1e-4,shear=1e-3,iterations=3,tethers=on",
-                               "xpbd:structural=1e-4,shear=1e-3,iterations=2,method=global",
+                               "xpbd:structural=1e-4,shear=1e-3,bend=1e-2,iterations=3,method=global",
                                "mass-spring:drag=0.002,drag-at=central,bend=0",
                                "mass-spring:integrator=symplectic-euler,drag=0.002",
                                "pd:anderson=3",
