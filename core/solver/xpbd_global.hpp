@@ -27,7 +27,9 @@ namespace taut {
 /// and 64 of them leave a thousand times as much.
 ///
 /// Rigid links have 1e-9 of the matrix' mean diagonal for a: a sheet with shear links has more
-/// links than places to choose, and without it no factor. The matrix couples links that share a
+/// links than places to choose, and without it no factor. What such links leave to choose takes up
+/// rounding by as much as 1e9 times: where contact pushes against it, too, two runs that differ by
+/// rounding part within a dozen steps. The matrix couples links that share a
 /// vertex that moves; its pattern is analysed once, its factor made in every iteration, both in
 /// double precision. Where there is no factor, places are NaN, which ends a case as exploded.
 ///

@@ -122,6 +122,31 @@ TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   EXPECT_EQ(model["scenes"][0]["maps"].size(), 2U);
 }
 
+/// Of a study over stiffness, with what a step costs where that was measured.
+TEST(Model, HasTheFailureMap) {
+  ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
+  for (const char* stiffness : {"1e3", "1e6"}) {
+    Record r = synthetic::record("swing", "jakobsen", 4, 1.0 / 64);
+    r.spec.overrides = {std::string("links.stiffness={ structural = ") + stiffness + " }"};
+    r.key += stiffness;
+    r.values = {{"step.share", 0.1}, {"stretch.rms", 0.001}};
+    input.studies[0].records.push_back(r);
+  }
+  input.bench = StudyBench{"one", "a machine", {}};
+  BenchedCase timed{.record = input.studies[0].records[1], .timing = {}};
+  timed.timing.samples = {0.002};
+  timed.timing.wall = {0.002};
+  input.bench->scenes.push_back({.scene = "swing", .control = {1, 1, 1}, .cases = {timed}});
+  const Json model = model_of(input);
+  EXPECT_EQ(model["limits"]["tables"], Json{"failure_map"});
+  const Json& table = model["tables"]["failure_map"];
+  EXPECT_EQ(table["rows"][0][1], "freezes");
+  EXPECT_EQ(table["rows"][0][2], "freezes");
+  int with_cost = 0;
+  for (const Json& note : table["notes"]) with_cost += note.value("note", "").ends_with(" a step");
+  EXPECT_EQ(with_cost, 1);
+}
+
 /// Every id that something names exists, once; every quantity has its entry in the glossary.
 void check_references(const Json& model) {
   std::map<std::string, int> ids;

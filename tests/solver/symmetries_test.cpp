@@ -238,20 +238,21 @@ Scene scene_of(unsigned n) {
 
 /// Every registered solver as it is, and what else it can do.
 std::vector<std::string> texts() {
-  std::vector<std::string> all{"jakobsen:order=mesh,substeps=1,projection=exact,faces=on",
-                               "jakobsen:tethers=on,levels=2,omega=1.3,contact=after",
-                               "jakobsen:method=jacobi-averaged,chebyshev=0.5,contact=discrete",
-                               "xpbd:structural=1e-4,shear=1e-3,iterations=3,tethers=on",
-                               "xpbd:structural=1e-4,shear=1e-3,iterations=2,method=global",
-                               "mass-spring:drag=0.002,drag-at=central,bend=0",
-                               "mass-spring:integrator=symplectic-euler,drag=0.002",
-                               "pd:anderson=3",
-                               "pd:chebyshev=0.5",
-                               "admm:links=elastic,multipliers=keep,penalty-ratio=2",
-                               "vbd:start=inertia,chebyshev=0.5,damping=1e-3",
-                               "avbd:start=inertia,order=mesh",
-                               "bullet:reorder=on,faces=off",
-                               "bullet-deformable:implicit=false,substeps=16,spring-damping=0.01"};
+  std::vector<std::string> all{
+      "jakobsen:order=mesh,substeps=1,projection=exact,faces=on",
+      "jakobsen:tethers=on,levels=2,omega=1.3,contact=after",
+      "jakobsen:method=jacobi-averaged,chebyshev=0.5,contact=discrete",
+      "xpbd:structural=1e-4,shear=1e-3,iterations=3,tethers=on",
+      "xpbd:structural=1e-4,shear=1e-3,bend=1e-2,iterations=3,method=global",
+      "mass-spring:drag=0.002,drag-at=central,bend=0",
+      "mass-spring:integrator=symplectic-euler,drag=0.002",
+      "pd:anderson=3",
+      "pd:chebyshev=0.5",
+      "admm:links=elastic,multipliers=keep,penalty-ratio=2",
+      "vbd:start=inertia,chebyshev=0.5,damping=1e-3",
+      "avbd:start=inertia,order=mesh",
+      "bullet:reorder=on,faces=off",
+      "bullet-deformable:implicit=false,substeps=16,spring-damping=0.01"};
   for (const SolverEntry* entry : solvers()) all.emplace_back(entry->name);
   std::ranges::replace(all, "implicit", "implicit:iterations=6");  // 50 cost as much as all others
   return all;
