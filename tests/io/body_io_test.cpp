@@ -79,7 +79,8 @@ TEST_F(BodyFiles, FacesThatLookInwardAreTurnedAndCornersAtOnePlaceAreOne) {
   write("b.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv 1 0 0\nvt 0 0\nf 1 2 3\nf 5 4 6\nf 1 3 4\n"
         "f 2 4 3\n");
-  const auto& body = std::get<MeshBody>(scene("file = \"b.obj\"\n").colliders.at(0).shape);
+  const Scene s = scene("file = \"b.obj\"\n");
+  const auto& body = std::get<MeshBody>(s.colliders.at(0).shape);
   EXPECT_NEAR(body.mesh->volume(), 1.0 / 6, 1e-15);
   EXPECT_TRUE(body.mesh->closed());
 }
@@ -115,9 +116,8 @@ TEST_F(BodyFiles, WhatIsWrongWithAFileIsNamedByItsLine) {
   // a doubled sheet
   EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n"),
               "encloses no volume");
-  EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1e9 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"
-                             "f 2 3 4\n"),
-              "reaches farther");
+  write("b.obj", std::string(kTetrahedron).replace(10, 1, "2"));
+  EXPECT_SAYS(errors("file = \"b.obj\"\nscale = 1e6\n"), "reaches farther");
 }
 
 TEST_F(BodyFiles, AllOfItIsSaidAtOnce) {

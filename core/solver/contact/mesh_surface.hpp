@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/model/collider.hpp"
 #include "core/model/triangle_mesh.hpp"
 #include "core/solver/simd/contact.hpp"
 
