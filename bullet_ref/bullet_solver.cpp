@@ -229,9 +229,17 @@ ResolvedSettings library_settings(const Scene& scene, const Params& params) {
 
 ResolvedSettings contact_settings(const Scene& scene, const Params& params,
                                   const std::string& default_voxel) {
-  return {{"margin", short_text(scene.thickness + params.real("margin")) + " m (default 0.25)"},
-          {"distance field", "trilinear, voxel " + short_text(params.real("voxel")) +
-                                 " m (default " + default_voxel + ")"}};
+  ResolvedSettings lines{
+      {"margin", short_text(scene.thickness + params.real("margin")) + " m (default 0.25)"},
+      {"distance field", "trilinear, voxel " + short_text(params.real("voxel")) + " m (default " +
+                             default_voxel + ")"}};
+  if (std::ranges::any_of(scene.colliders, [](const Collider& c) {
+        return std::holds_alternative<MeshBody>(c.shape);
+      }))
+    lines.emplace_back("body of triangles",
+                       "each triangle a hull 0.06 m thick on both of its sides "
+                       "(BT_SOFTBODY_TRIANGLE_EXTRUSION), whatever the body's sides are");
+  return lines;
 }
 
 std::string short_text(double value) {

@@ -1,15 +1,19 @@
 #include "bullet_ref/rigid_colliders.hpp"
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bullet_ref/bullet_solver.hpp"
+#include "core/model/triangle_mesh.hpp"
 
 namespace taut {
 
@@ -77,8 +81,59 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above, const Slab& slab)
     const Vec3 along = capsule->to - capsule->from;
     return {tilt(along.isZero(0) ? Vec3(Vec3::UnitY()) : along.normalized()), capsule->middle()};
   }
+  if (const auto* body = std::get_if<MeshBody>(&shape)) return {body->rotation, body->center};
   const Box& box = std::get<Box>(shape);
   return {box.rotation, box.center};
+}
+
+/// A body's triangles as Bullet has them, and the shape, which refers to them.
+class TriangleShape {
+ public:
+  explicit TriangleShape(const TriangleMesh& mesh) {
+    for (const Vec3& x : mesh.vertices())
+      for (const double c : x) vertices_.push_back(static_cast<btScalar>(c));
+    for (const Triangle& t : mesh.triangles()) indices_.insert(indices_.end(), t.begin(), t.end());
+    btIndexedMesh part;
+    part.m_numTriangles = static_cast<int>(mesh.triangles().size());
+    part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(indices_.data());
+    part.m_triangleIndexStride = 3 * sizeof(int);
+    part.m_numVertices = static_cast<int>(mesh.vertices().size());
+    part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices_.data());
+    part.m_vertexStride = 3 * sizeof(btScalar);
+    array_.addIndexedMesh(part, PHY_INTEGER);
+    constexpr bool kCompressed = true;  // boxes of the tree, as is Bullet's habit
+    shape_.emplace(&array_, kCompressed);
+    shape_->setMargin(0);
+  }
+  btBvhTriangleMeshShape& shape() { return *shape_; }
+
+ private:
+  std::vector<btScalar> vertices_;
+  std::vector<int> indices_;
+  btTriangleIndexVertexArray array_;
+  std::optional<btBvhTriangleMeshShape> shape_;
+};
+
+/// From the arrays that the shape itself refers to.
+std::shared_ptr<const TriangleMesh> triangles_of(const btBvhTriangleMeshShape& shape) {
+  const unsigned char *vertices = nullptr, *indices = nullptr;
+  int vertex_count = 0, vertex_stride = 0, triangle_count = 0, triangle_stride = 0;
+  PHY_ScalarType number{}, index{};
+  shape.getMeshInterface()->getLockedReadOnlyVertexIndexBase(
+      &vertices, vertex_count, number, vertex_stride, &indices, triangle_stride, triangle_count,
+      index);
+  std::vector<Vec3> x;
+  for (int v = 0; v < vertex_count; ++v) {
+    const auto* at = reinterpret_cast<const btScalar*>(vertices + v * vertex_stride);
+    x.emplace_back(at[0], at[1], at[2]);
+  }
+  std::vector<Triangle> triangles;
+  for (int t = 0; t < triangle_count; ++t) {
+    const auto* at = reinterpret_cast<const int*>(indices + t * triangle_stride);
+    triangles.push_back({at[0], at[1], at[2]});
+  }
+  shape.getMeshInterface()->unLockReadOnlyVertexBase(0);
+  return std::make_shared<const TriangleMesh>(std::move(x), std::move(triangles));
 }
 
 std::unique_ptr<btCollisionShape> make_shape(const Shape& shape, const Slab& slab) {
@@ -110,8 +165,13 @@ struct RigidColliders::Body {
         motion(collider.motion),
         is_plane(std::holds_alternative<Plane>(collider.shape)),
         follows(slab.follows()),
-        shape(make_shape(collider.shape, slab)),
-        rigid(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape.get())) {
+        body(std::get_if<MeshBody>(&collider.shape)
+                 ? std::make_unique<TriangleShape>(*std::get<MeshBody>(collider.shape).mesh)
+                 : nullptr),
+        sides(body ? std::get<MeshBody>(collider.shape).sides : MeshBody::Sides::out),
+        shape(body ? nullptr : make_shape(collider.shape, slab)),
+        rigid(btRigidBody::btRigidBodyConstructionInfo(
+            0, nullptr, body ? static_cast<btCollisionShape*>(&body->shape()) : shape.get())) {
     rigid.setFriction(static_cast<btScalar>(collider.friction));
     rigid.setRestitution(0);
     if (!motion.at_rest()) {
@@ -142,7 +202,9 @@ struct RigidColliders::Body {
   RigidPose start;
   Motion motion;
   bool is_plane;
-  double follows;  ///< m, of a slab
+  double follows;                       ///< m, of a slab
+  std::unique_ptr<TriangleShape> body;  ///< null: another shape
+  MeshBody::Sides sides;                ///< of a body, which Bullet does not know
   std::unique_ptr<btCollisionShape> shape;
   btRigidBody rigid;
 };
@@ -187,14 +249,17 @@ std::vector<Collider> RigidColliders::read_back(double t) const {
     const Vec3 origin = pivot + turned * (moved - pivot);
     Collider collider{.motion = body->motion,
                       .friction = static_cast<double>(body->rigid.getFriction())};
-    if (const auto* ball = dynamic_cast<const btSphereShape*>(body->shape.get())) {
+    const btCollisionShape* shape = body->rigid.getCollisionShape();
+    if (const auto* triangles = dynamic_cast<const btBvhTriangleMeshShape*>(shape)) {
+      collider.shape = MeshBody{triangles_of(*triangles), origin, rotation, body->sides};
+    } else if (const auto* ball = dynamic_cast<const btSphereShape*>(shape)) {
       collider.shape = Ball{origin, static_cast<double>(ball->getRadius())};
-    } else if (const auto* round = dynamic_cast<const btCapsuleShape*>(body->shape.get())) {
+    } else if (const auto* round = dynamic_cast<const btCapsuleShape*>(shape)) {
       const Vec3 half = static_cast<double>(round->getHalfHeight()) * (rotation * Vec3::UnitY());
       collider.shape =
           Capsule{origin - half, origin + half, static_cast<double>(round->getRadius())};
     } else {
-      const auto& box = dynamic_cast<const btBoxShape&>(*body->shape);
+      const auto& box = dynamic_cast<const btBoxShape&>(*shape);
       const Vec3 half = from_bullet(box.getHalfExtentsWithoutMargin());
       const Vec3 normal = rotation * Vec3::UnitY();
       if (body->is_plane)

@@ -184,6 +184,22 @@ int beside(const std::vector<int>& face, int of, int other) {
   return before == other ? after : before;
 }
 
+/// For each vertex the first one that is where it is.
+std::vector<int> first_at_each_place(const std::vector<Vec3>& vertices) {
+  std::vector<int> sorted(vertices.size()), first(vertices.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  const auto place = [&](int v) {
+    const Vec3& x = vertices[to_index(v)];
+    return std::array{x[0], x[1], x[2]};
+  };
+  std::ranges::stable_sort(sorted, {}, place);
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const bool same = k > 0 && place(sorted[k]) == place(sorted[k - 1]);
+    first[to_index(sorted[k])] = same ? first[to_index(sorted[k - 1])] : sorted[k];
+  }
+  return first;
+}
+
 /// Keywords that say nothing about the shape.
 constexpr std::string_view kOfOthers[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
 /// What other programs add to it and no cloth of ours has: plastic and moving cloth, its edges and
@@ -368,6 +384,41 @@ Polygons parse_obj(const std::string& file, const std::string& text) {
 
 Polygons read_obj(const std::filesystem::path& path) {
   return parse_obj(path.string(), read_text(path, kMostMeshBytes));
+}
+
+BodySurface parse_body_obj(const std::string& file, const std::string& text) {
+  SurfaceErrors errors(file);
+  ObjReader reader(file, errors);
+  reader.read(text);
+  const Polygons polygons = reader.take();
+  errors.throw_if_any();
+  if (polygons.faces.empty()) errors.report(1, "no face: a body needs one at least");
+  judge_faces(polygons, errors);
+  errors.throw_if_any();
+  BodySurface body{
+      polygons.vertices, make_mesh(polygons, 1, Lumping::equal).triangles, {}, polygons.skipped};
+  for (std::size_t f = 0; f < polygons.faces.size(); ++f)
+    body.triangle_lines.insert(body.triangle_lines.end(), polygons.faces[f].size() - 2,
+                               polygons.face_lines[f]);
+  const std::vector<int> first = first_at_each_place(body.vertices);
+  for (std::size_t t = 0; t < body.triangles.size(); ++t) {
+    std::array<Vec3, 3> x;
+    double longest2 = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      body.triangles[t][k] = first[to_index(body.triangles[t][k])];
+      x[k] = body.vertices[to_index(body.triangles[t][k])];
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      longest2 = std::max(longest2, (x[(k + 1) % 3] - x[k]).squaredNorm());
+    if (!(triangle_area(x[0], x[1], x[2]) > 1e-9 * longest2))
+      errors.report(body.triangle_lines[t], "a triangle of the face has no area");
+  }
+  errors.throw_if_any();
+  return body;
+}
+
+BodySurface read_body_obj(const std::filesystem::path& path) {
+  return parse_body_obj(path.string(), read_text(path, kMostMeshBytes));
 }
 
 }  // namespace taut

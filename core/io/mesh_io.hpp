@@ -31,6 +31,23 @@ Polygons read_obj(const std::filesystem::path&);
 /// The same for text that is already in memory; `file` is for the messages.
 Polygons parse_obj(const std::string& file, const std::string& text);
 
+/// A body of triangles, as a collider is one.
+struct BodySurface {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<int> triangle_lines;  ///< where the face of each stands in the file
+  std::map<std::string, int> skipped;
+};
+
+/// Reads such a file as a body: faces are cut into triangles as make_mesh() cuts them, vertices
+/// that coincide are one, and any number of faces may share an edge. Throws InputError with file
+/// and line of everything that is malformed, of faces that name a vertex which is not there or one
+/// twice, cross themselves or have no area, and of a file without a face.
+BodySurface read_body_obj(const std::filesystem::path&);
+
+/// The same for text that is already in memory.
+BodySurface parse_body_obj(const std::string& file, const std::string& text);
+
 /// Area of the surface [m^2] if the vertices are in m.
 double area(const Polygons&);
 

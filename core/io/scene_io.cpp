@@ -93,20 +93,26 @@ Vec3 middle(const Plane&) { return Vec3::Zero(); }
 Vec3 middle(const Ball& ball) { return ball.center; }
 Vec3 middle(const Box& box) { return box.center; }
 Vec3 middle(const Capsule& capsule) { return capsule.middle(); }
+Vec3 middle(const MeshBody& body) { return body.center; }
 
-Collider read_collider(Section& section) {
+Collider read_collider(Section& section, const std::filesystem::path& folder) {
   Collider collider;
   section.need({"type"});
-  const std::string type = section.choice("type", {"plane", "ball", "box", "capsule"}, "");
+  const std::string type = section.choice("type", {"plane", "ball", "box", "capsule", "mesh"}, "");
   if (type == "plane") collider.shape = Plane();
   if (type == "ball") collider.shape = Ball();
   if (type == "box") collider.shape = Box();
   if (type == "capsule") collider.shape = Capsule();
+  if (type == "mesh") collider.shape = MeshBody();
   if (type.empty())
     section.know("collider");  // which of them belong here is not known
   else
     std::visit([&](auto& shape) { read_keys(section, "collider", shape); }, collider.shape);
   if (Box* box = std::get_if<Box>(&collider.shape)) box->rotation = read_rotation(section);
+  if (MeshBody* body = std::get_if<MeshBody>(&collider.shape)) {
+    body->rotation = read_rotation(section);
+    body->mesh = read_body(section, folder, body->sides);
+  }
   read_keys(section, "collider", collider);
   const Vec3 pivot = std::visit([](const auto& shape) { return middle(shape); }, collider.shape);
   collider.motion = read_motion(section, "collider", pivot);
@@ -125,10 +131,10 @@ Vec3 initial_velocity(const Motion& motion, const Vec3& x) {
 }
 
 /// Reads every [[collider]].
-void read_colliders(Section& root, Scene& scene) {
+void read_colliders(Section& root, const std::filesystem::path& folder, Scene& scene) {
   for (const Value* item : root.tables("collider")) {
     Section section(root.diagnostics(), *item, "[[collider]]");
-    scene.colliders.push_back(read_collider(section));
+    scene.colliders.push_back(read_collider(section, folder));
   }
 }
 
@@ -347,6 +353,15 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
                       " m deep; move one of them, or set start_inside = \"resolve\" in [cloth]");
 }
 
+/// Which side of a thin body the cloth is on is known as long as it keeps off it.
+void judge_thin(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
+  const MeshBody* body = std::get_if<MeshBody>(&collider.shape);
+  if (!body || body->sides != MeshBody::Sides::both || scene.thickness > 0) return;
+  root.diagnostics().report(item.place,
+                            "a body with sides = \"both\" is thin: it keeps the cloth out only at "
+                            "a 'thickness' in [cloth] above 0");
+}
+
 /// What moves for a time step or longer moves as `velocity` would have it, however fast: no jump.
 void judge_path(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const auto& path = collider.motion.path;
@@ -392,6 +407,7 @@ void check_contact(Section& root, const FileKeys& said, Scene& scene) {
   for (std::size_t k = 0; k < items.size() && k < scene.colliders.size(); ++k) {
     judge_start(*items[k], root, scene.colliders[k], scene);
     judge_path(*items[k], root, scene.colliders[k], scene);
+    judge_thin(*items[k], root, scene.colliders[k], scene);
   }
   judge_sizes(root, said, scene);
   if (!scene.self_collision) return;
@@ -435,7 +451,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   if (root.table("wind")) read("wind", said, scene.wind.emplace()).finish();
   if (root.table("self_collision"))
     read("self_collision", said, scene.self_collision.emplace()).finish();
-  read_colliders(root, scene);
+  read_colliders(root, path.parent_path(), scene);
   read_pin_motions(root, built, scene);
   Section time = read("time", said, scene);
   time.finish();

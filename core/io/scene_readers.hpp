@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/io/document.hpp"
 #include "core/io/fabrics.hpp"
 #include "core/model/scene_keys.hpp"
+#include "core/model/triangle_mesh.hpp"
 
 // What scene_io.cpp and cloth_io.cpp read a scene with.
 
@@ -35,6 +37,11 @@ void read_keys(Section& section, std::string_view of, Part& part) {
 /// if there is no mesh to go on with.
 bool read_cloth(Section&, const std::filesystem::path& folder, const Fabric*, const FileKeys&,
                 Scene&);
+
+/// Reads the file of a [[collider]] that is a mesh, relative to `folder`, with 'scale' and 'sides'.
+/// Null, and reported with file and line, if it is no body.
+std::shared_ptr<const TriangleMesh> read_body(Section&, const std::filesystem::path& folder,
+                                              MeshBody::Sides);
 
 /// The vertices that a value names: a vertex number, a pair [i, j], the name of an edge or corner
 /// of a grid ("top", "bottom-left"), a box {min, max} or a ball {center, radius} around rest

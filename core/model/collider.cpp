@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/model/triangle_mesh.hpp"
+
 namespace taut {
 
 namespace {
@@ -49,13 +51,21 @@ Surface surface_of(const Box& box, const Vec3& p) {
   return {distance, box.rotation * normal};
 }
 
+Surface surface_of(const MeshBody& body, const Vec3& p) {
+  const NearestPlace place = body.mesh->nearest(body.rotation.conjugate() * (p - body.center));
+  const Vec3 normal = body.rotation * place.normal;
+  if (body.sides == MeshBody::Sides::both && place.distance < 0) return {-place.distance, -normal};
+  return {place.distance, normal};
+}
+
 }  // namespace
 
 std::string_view type_name(const Shape& shape) {
   return std::visit(Overload{[](const Plane&) { return std::string_view("plane"); },
                              [](const Ball&) { return std::string_view("ball"); },
                              [](const Box&) { return std::string_view("box"); },
-                             [](const Capsule&) { return std::string_view("capsule"); }},
+                             [](const Capsule&) { return std::string_view("capsule"); },
+                             [](const MeshBody&) { return std::string_view("mesh"); }},
                     shape);
 }
 
@@ -115,6 +125,11 @@ Shape shape_at(const Collider& collider, double t) {
                                capsule.from = motion.moved(capsule.from, t);
                                capsule.to = motion.moved(capsule.to, t);
                                return capsule;
+                             },
+                             [&](MeshBody body) -> Shape {
+                               body.center = motion.moved(body.center, t);
+                               body.rotation = motion.rotation(t) * body.rotation;
+                               return body;
                              }},
                     collider.shape);
 }

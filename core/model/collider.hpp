@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -7,6 +8,8 @@
 #include "core/model/vec3.hpp"
 
 namespace taut {
+
+class TriangleMesh;
 
 /// Solid below the plane { x : normal . x = offset }.
 struct Plane {
@@ -35,7 +38,19 @@ struct Capsule {
   Vec3 beside() const;  ///< a unit vector across the axis; up, if it has no length
 };
 
-using Shape = std::variant<Plane, Ball, Box, Capsule>;
+/// A body of triangles (core/model/triangle_mesh.hpp): solid, or thin with two sides.
+struct MeshBody {
+  enum class Sides {
+    out,  ///< solid behind its triangles, which leave no gap and look outward
+    both  ///< thin: the cloth is kept on the side on which it is
+  };
+  std::shared_ptr<const TriangleMesh> mesh;  ///< in the body's own frame; never null in a Scene
+  Vec3 center = Vec3::Zero();                ///< m, where the frame's origin is
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< frame -> world
+  Sides sides = Sides::out;
+};
+
+using Shape = std::variant<Plane, Ball, Box, Capsule, MeshBody>;
 std::string_view type_name(const Shape&);
 
 /// A prescribed rigid motion: known in advance, never influenced by the cloth. Displacement is
@@ -70,7 +85,8 @@ Shape shape_at(const Collider&, double t);
 
 /// Distance from p to the surface, negative inside, and its gradient: both exact, also inside a box
 /// and past its edges and corners. Where the gradient is not unique (a ball's centre, a
-/// capsule's axis, a box's medial axis) one of the valid ones is given, always the same.
+/// capsule's axis, a box's or a body's medial axis) one of the valid ones is given, always the
+/// same. A thin body has no inside: its gradient leads away from it.
 struct Surface {
   double distance = 0;  ///< m
   Vec3 normal = Vec3::UnitY();

@@ -8,6 +8,7 @@
 
 #include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
+#include "core/model/triangle_mesh.hpp"
 
 namespace taut {
 
@@ -43,6 +44,11 @@ class Bytes {
     std::visit([&](const auto& shape) { add("collider", shape); }, c.shape);
     if (const Box* box = std::get_if<Box>(&c.shape))
       for (const double q : box->rotation.coeffs()) add(q);
+    if (const MeshBody* body = std::get_if<MeshBody>(&c.shape)) {
+      for (const double q : body->rotation.coeffs()) add(q);
+      add(body->mesh->vertices());
+      add(body->mesh->triangles());
+    }
     add(c.motion), add("collider", c);
   }
   void add(const Bending& b) { add(b.warp), add(b.weft), add("bending", b); }

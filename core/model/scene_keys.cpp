@@ -130,7 +130,7 @@ const SceneKey kKeys[] = {
         .left_out_as("law of the wind"),
 
     other("collider.type", "string", "", "", "needed", "\"plane\"",
-          "\"plane\", \"ball\", \"box\" or \"capsule\""),
+          "\"plane\", \"ball\", \"box\", \"capsule\" or \"mesh\""),
     direction("collider.normal", &Plane::normal, "[0, 1, 0.2]", "plane: points out of the solid"),
     number("collider.offset", &Plane::offset, "m", Range::within(kFar), "-1",
            "plane: of all its points along the unit normal"),
@@ -142,7 +142,7 @@ const SceneKey kKeys[] = {
         .need(),
     other("collider.rotation", "rotation", "degrees", "not zero", "none",
           "{ axis = [0, 1, 0], angle = 45 }",
-          "box: axis and angle, or a quaternion `[w, x, y, z]` of any length"),
+          "box, mesh: axis and angle, or a quaternion `[w, x, y, z]` of any length"),
     vector("collider.from", &Capsule::from, "m", Range::within(kFar), "[0, -1, 0]",
            "capsule: one end of its axis")
         .need(),
@@ -151,6 +151,15 @@ const SceneKey kKeys[] = {
         .need(),
     number("collider.radius", &Capsule::radius, "m", Range::positive(kFar), "0.3", "capsule")
         .need(),
+    other("collider.file", "string", "", "", "needed for a mesh", "\"box.obj\"",
+          "mesh: OBJ file, relative to the scene; vertices that coincide are one"),
+    other("collider.scale", "number", "1", "1e-6 to 1e6", "1", "0.01",
+          "mesh: metres per unit of its file"),
+    vector("collider.center", &MeshBody::center, "m", Range::within(kFar), "[0, -1, 0]",
+           "mesh: where its file's origin is"),
+    choice("collider.sides", &MeshBody::sides, "out|both", "\"both\"",
+           "mesh: solid and closed, or thin; a thin one needs a `cloth.thickness`, and keeps the "
+           "cloth on the side on which it is"),
     number("collider.friction", &Collider::friction, "1", Range::non_negative(1e3), "0.5",
            "Coulomb's coefficient")
         .left_out_as("friction"),

@@ -65,8 +65,9 @@ struct SceneKey {
                    Vec3 Wind::*, Wind::Law Wind::*, double SelfCollision::*, double Bending::*,
                    Vec3 Bending::*, double Collider::*, Vec3 Motion::*, double Plane::*,
                    Vec3 Plane::*, double Ball::*, Vec3 Ball::*, Vec3 Box::*, double Capsule::*,
-                   Vec3 Capsule::*, double FileKeys::*, Vec3 FileKeys::*, bool FileKeys::*,
-                   Lumping FileKeys::*, FileKeys::Inside FileKeys::*>;
+                   Vec3 Capsule::*, Vec3 MeshBody::*, MeshBody::Sides MeshBody::*,
+                   double FileKeys::*, Vec3 FileKeys::*, bool FileKeys::*, Lumping FileKeys::*,
+                   FileKeys::Inside FileKeys::*>;
 
   std::string_view path;       ///< "forces.damping"; "summary": at the top of the file
   Member member = {};          ///< its initialiser is the default

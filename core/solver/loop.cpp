@@ -290,6 +290,12 @@ template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<dou
 /// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
 /// would ever begin to fall.
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  const auto is_thin = [](const Collider& c) {
+    const MeshBody* body = std::get_if<MeshBody>(&c.shape);
+    return body && body->sides == MeshBody::Sides::both;
+  };
+  if (params.is("faces", "on") && std::ranges::any_of(scene.colliders, is_thin))
+    return {"faces=on: on which side of a thin body a face is, is known of its vertices alone"};
   if (!in_float(params)) return {};
   const double h = scene.dt / params.integer("substeps");
   const double farthest = coordinates(scene).first;

@@ -256,8 +256,8 @@ Program::Loaded Program::load(const Scene& scene, const Params& params) const {
 
 std::vector<std::string> Program::unsupported(const Scene& scene, const Params& params) {
   if (!hello_) return {};  // make() says why
-  if (!hello_->second)
-    if (std::vector<std::string> unknown = beyond_first(scene); !unknown.empty()) return unknown;
+  if (std::vector<std::string> unknown = beyond(hello_->version_spoken, scene); !unknown.empty())
+    return unknown;
   const std::lock_guard lock(mutex_);
   Loaded loaded = load(scene, params);
   const std::vector<std::string> cannot = loaded.answer.cannot;

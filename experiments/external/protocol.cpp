@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <variant>
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
+#include "core/model/triangle_mesh.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::external {
@@ -56,17 +58,23 @@ Json json_of(const Collider& collider) {
   Json one{{"type", type_name(collider.shape)}};
   one.update(
       std::visit([](const auto& shape) { return json_of("collider", shape); }, collider.shape));
-  if (const Box* box = std::get_if<Box>(&collider.shape)) {
-    const Eigen::Quaterniond& q = box->rotation;
+  const auto turn = [&](const Eigen::Quaterniond& q) {
     one["rotation"] = {q.w(), q.x(), q.y(), q.z()};
+  };
+  if (const Box* box = std::get_if<Box>(&collider.shape)) turn(box->rotation);
+  if (const MeshBody* body = std::get_if<MeshBody>(&collider.shape)) {
+    turn(body->rotation);
+    one["vertices"] = json_of(body->mesh->vertices());
+    one["triangles"] = body->mesh->triangles();
   }
   one.update(json_of("collider", collider));
   one["motion"] = json_of(collider.motion);
   return one;
 }
 
-constexpr std::string_view kProtocol = "taut-solver/1";
-constexpr std::string_view kSecond = "taut-solver/2";  ///< knows what beyond_first() names
+/// Each knows what was there before it, too; beyond() names what came with it.
+constexpr std::string_view kProtocols[] = {"taut-solver/1", "taut-solver/2", "taut-solver/3"};
+constexpr std::string_view kFormats[] = {"taut-scene/1", "taut-scene/2", "taut-scene/3"};
 constexpr double kLargestInteger = 2147483647;
 
 /// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
@@ -169,14 +177,20 @@ Json stiffness(const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> beyond_first(const Scene& scene) {
-  std::vector<std::string> all = elastic_links(scene);
-  if (std::ranges::any_of(scene.colliders, [](const Collider& c) {
-        return std::holds_alternative<Capsule>(c.shape);
-      }))
-    all.emplace_back("a capsule");
-  if (scene.bending) all.emplace_back("bending stiffness");
-  for (std::string& key : later_keys(scene)) all.push_back(std::move(key));
+std::vector<std::string> beyond(int version, const Scene& scene) {
+  const auto is_there = []<class T>(const Scene& s, std::type_identity<T>) {
+    return std::ranges::any_of(
+        s.colliders, [](const Collider& c) { return std::holds_alternative<T>(c.shape); });
+  };
+  std::vector<std::string> all;
+  if (version < 2) {
+    all = elastic_links(scene);
+    if (is_there(scene, std::type_identity<Capsule>())) all.emplace_back("a capsule");
+    if (scene.bending) all.emplace_back("bending stiffness");
+    for (std::string& key : later_keys(scene)) all.push_back(std::move(key));
+  }
+  if (version < 3 && is_there(scene, std::type_identity<MeshBody>()))
+    all.emplace_back("a body of triangles");
   return all;
 }
 
@@ -188,7 +202,7 @@ std::string scene_file(const Scene& scene) {
     motions.push_back({{"vertices", group.vertices}, {"motion", json_of(group.motion)}});
   for (const Collider& collider : scene.colliders) colliders.push_back(json_of(collider));
   const auto& grid = scene.mesh.grid;
-  Json file{{"format", "taut-scene/1"},
+  Json file{{"format", kFormats[0]},
             {"name", scene.name},
             {"vertices", scene.mesh.size()},
             {"grid", grid ? Json{grid->nu, grid->nv} : Json()},
@@ -208,7 +222,8 @@ std::string scene_file(const Scene& scene) {
             {"self_collision",
              scene.self_collision ? json_of("self_collision", *scene.self_collision) : Json()}};
   file.update(json_of("forces", scene)), file.update(json_of("cloth", scene));
-  if (!beyond_first(scene).empty()) file["format"] = "taut-scene/2";
+  for (int version : {1, 2})
+    if (!beyond(version, scene).empty()) file["format"] = kFormats[version];
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
   if (scene.bending) {
     file["bending"] = json_of("bending", *scene.bending);  // whose key `warp` is the direction
@@ -225,12 +240,11 @@ static_assert(std::endian::native == std::endian::little, "states are little-end
 std::unique_ptr<const Hello> read_hello(const Json& answer) {
   const JsonReader j = reader(answer, "hello");
   const std::string protocol = j.at("protocol").text();
-  if (protocol != kProtocol && protocol != kSecond)
-    j.at("protocol")
-        .fail("'" + protocol + "' is neither '" + std::string(kProtocol) + "' nor '" +
-              std::string(kSecond) + "'");
+  const auto known = std::ranges::find(kProtocols, protocol);
+  if (known == std::end(kProtocols))
+    j.at("protocol").fail("'" + protocol + "' is none of " + join(kProtocols, ", "));
   auto hello = std::make_unique<Hello>();
-  hello->second = protocol == kSecond;
+  hello->version_spoken = static_cast<int>(known - std::begin(kProtocols)) + 1;
   hello->name = j.at("name").text();
   hello->version = j.at("version").text();
   hello->summary = text_or(j, "summary", hello->name);
@@ -243,7 +257,7 @@ std::unique_ptr<const Hello> read_hello(const Json& answer) {
 }
 
 std::unique_ptr<const Hello> say_hello(Connection& connection) {
-  const Json answer = connection.ask({{"op", "hello"}, {"protocol", kProtocol}});
+  const Json answer = connection.ask({{"op", "hello"}, {"protocol", kProtocols[0]}});
   return judged(connection, [&] { return read_hello(answer); });
 }
 

@@ -14,7 +14,7 @@ namespace taut::external {
 /// What a program answers to "hello".
 struct Hello {
   std::string name, version, summary, source;
-  bool second = false;       ///< it speaks taut-solver/2
+  int version_spoken = 1;    ///< n of taut-solver/n
   std::string unmeasurable;  ///< why its time says nothing; "": it does
   std::vector<ParamSpec> params;
   std::deque<std::string> texts;  ///< what the views of `params` see
@@ -53,10 +53,10 @@ double take_steps(Connection&, double t, double dt, int count);
 bool agrees(double word, double clock, double empty);
 void store_state(Connection&, int vertices, State&);
 
-/// What of a scene came with the second version, a few words each: elastic links, capsules,
-/// bending. A
-/// program that speaks the first is not asked for such a scene.
-std::vector<std::string> beyond_first(const Scene&);
+/// What of a scene came after that version of the protocol, a few words each: with the second
+/// elastic links, capsules, bending and keys that came later; with the third bodies of triangles. A
+/// program that speaks an earlier one is not asked for such a scene.
+std::vector<std::string> beyond(int version, const Scene&);
 
 /// The scene as a program gets it: JSON, everything resolved, SI units, doubles in shortest exact
 /// form. Every key stands in experiments/external/README.md.

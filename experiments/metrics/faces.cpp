@@ -1,18 +1,49 @@
+#include <set>
+
 #include "core/model/index.hpp"
 #include "core/model/triangle.hpp"
+#include "core/model/triangle_mesh.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
 namespace {
 
+/// Depth of the deepest point of a triangle in a solid body, to 1 % of its longest side; `at_least`
+/// where it is no deeper. Both in the body's frame. A depth changes by no more than the way, so
+/// that a part which cannot be deeper than what is known needs no closer look.
+double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_least) {
+  double longest = 0;
+  Eigen::AlignedBox3d around;
+  for (std::size_t c = 0; c < 3; ++c) {
+    longest = std::max(longest, (triangle[(c + 1) % 3] - triangle[c]).norm());
+    around.extend(triangle[c]);
+  }
+  if (!around.intersects(body.box())) return at_least;
+  double deepest = at_least;
+  std::vector<Corners> parts{triangle};
+  while (!parts.empty()) {
+    const Corners t = parts.back();
+    parts.pop_back();
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    double reach = 0;
+    for (const Vec3& corner : t) reach = std::max(reach, (corner - middle).norm());
+    const double depth = -body.nearest(middle).distance;
+    deepest = std::max(deepest, depth);
+    if (depth + reach <= deepest + 0.01 * longest) continue;
+    const Vec3 ab = (t[0] + t[1]) / 2, bc = (t[1] + t[2]) / 2, ca = (t[2] + t[0]) / 2;
+    parts.insert(parts.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
+  }
+  return deepest;
+}
+
 class Faces final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
       {.name = "face.max",
        .unit = kErrorLength,
-       .help = "largest depth of a point of a face below the surface of a ball, box or capsule, "
-               "thickness not counted, in the last second",
+       .help = "largest depth of a point of a face below the surface of a ball, box, capsule or "
+               "solid body of triangles, thickness not counted, in the last second",
        .in_series = true,
        .title = "largest penetration of faces",
        .kept = true},
@@ -30,9 +61,12 @@ class Faces final : public Metric {
       {"face.ball", kErrorLength, "face.max of the balls alone"},
       {"face.box", kErrorLength, "face.max of the boxes alone"},
       {"face.capsule", kErrorLength, "face.max of the capsules alone"},
+      {"face.mesh", kErrorLength,
+       "face.max of the bodies of triangles alone, to 1 % of a face's longest side"},
       {"face.passages", kErrorCount,
-       "how often the middle of a ball, a corner of a box or a place of a capsule's axis goes "
-       "through a face, returns included; their ways are straight from step to step",
+       "how often the middle of a ball, a corner of a box, a place of a capsule's axis or a vertex "
+       "of a body of triangles goes through a face, returns included; their ways are straight from "
+       "step to step (a body's: in its own frame)",
        false, Window::run, "passages through faces"},
   };
   static bool measures(const Scene& scene) {
@@ -43,36 +77,48 @@ class Faces final : public Metric {
     for (const Triangle& face : scene.mesh.triangles)
       if (!std::all_of(face.begin(), face.end(), pinned)) faces_.push_back(face);
     for (const Collider& c : scene.colliders)
-      if (!std::holds_alternative<Plane>(c.shape)) colliders_.push_back(c);
+      if (std::holds_alternative<MeshBody>(c.shape))
+        bodies_.push_back(c);
+      else if (!std::holds_alternative<Plane>(c.shape))
+        colliders_.push_back(c);
   }
 
   void observe(const Snapshot& m) override {
     const bool at_end = end_.contains(m.step);
     count_passages(m);
     const Depths d = measure(m);
-    any_.add(m.step, at_end, d.max());
+    if (has_depth()) any_.add(m.step, at_end, d.max());
     if (has<Ball>()) ball_.add(m.step, at_end, d.ball);
     if (has<Box>()) box_.add(m.step, at_end, d.box);
     if (has<Capsule>()) capsule_.add(m.step, at_end, d.capsule);
+    if (has_solid_body()) mesh_.add(m.step, at_end, d.mesh);
     if (has_round())
       geometry_.add(m.step, at_end, d.geometry), excess_.add(m.step, at_end, d.excess);
   }
   std::vector<double> finish() override {
-    return {any_.max(),  any_.peak(), geometry_.max(), excess_.max(),
-            ball_.max(), box_.max(),  capsule_.max(),  static_cast<double>(passages_)};
+    return {any_.max(),     any_.peak(), geometry_.max(),
+            excess_.max(),  ball_.max(), box_.max(),
+            capsule_.max(), mesh_.max(), static_cast<double>(passages_)};
   }
   std::vector<double> now(const Snapshot& m) const override {
     constexpr double none = Summary::kNone;
     const Depths d = measure(m);
     const bool round = has_round();
-    return {d.max(), none, round ? d.geometry : none, round ? d.excess : none, none, none,
-            none,    none};
+    return {has_depth() ? d.max() : none,
+            none,
+            round ? d.geometry : none,
+            round ? d.excess : none,
+            none,
+            none,
+            none,
+            none,
+            none};
   }
 
  private:
   struct Depths {
-    double ball = 0, geometry = 0, excess = 0, box = 0, capsule = 0;
-    double max() const { return std::max({ball, box, capsule}); }
+    double ball = 0, geometry = 0, excess = 0, box = 0, capsule = 0, mesh = 0;
+    double max() const { return std::max({ball, box, capsule, mesh}); }
   };
 
   template <class T>
@@ -81,6 +127,11 @@ class Faces final : public Metric {
                        [](const Collider& c) { return std::holds_alternative<T>(c.shape); });
   }
 
+  static bool is_solid(const Collider& body) {
+    return std::get<MeshBody>(body.shape).sides == MeshBody::Sides::out;
+  }
+  bool has_solid_body() const { return std::ranges::any_of(bodies_, is_solid); }
+  bool has_depth() const { return !colliders_.empty() || has_solid_body(); }
   bool has_round() const { return has<Ball>() || has<Capsule>(); }
 
   Depths measure(const Snapshot& m) const {
@@ -92,6 +143,12 @@ class Faces final : public Metric {
         add(*capsule, m.state, depths.capsule, depths);
       if (const Box* box = std::get_if<Box>(&shape)) add(*box, m.state, depths);
     }
+    for (const Collider& collider : bodies_)
+      if (is_solid(collider)) {
+        const auto body = std::get<MeshBody>(shape_at(collider, m.t));
+        for (const Triangle& face : faces_)
+          depths.mesh = deepest_in(*body.mesh, in_frame(body, corners(face, m.state)), depths.mesh);
+      }
     return depths;
   }
 
@@ -150,40 +207,71 @@ class Faces final : public Metric {
       for (const Vec3& p : places_of(shape_at(collider, m.t))) places.push_back(p);
     for (std::size_t f = 0; m.step > 0 && f < faces_.size(); ++f) {
       const Corners now = corners(faces_[f], m.state), before = corners(faces_[f], last_);
-      for (std::size_t k = 0; k < places.size(); ++k) {
-        const double was = height(before, places_[k]), is = height(now, places[k]);
-        if ((was > 0) == (is > 0)) continue;
-        const double share = was / (was - is);
-        const auto between = [&](const Vec3& a, const Vec3& b) {
-          return Vec3(a + share * (b - a));
-        };
-        passages_ += within(
-            {between(before[0], now[0]), between(before[1], now[1]), between(before[2], now[2])},
-            between(places_[k], places[k]));
-      }
+      for (std::size_t k = 0; k < places.size(); ++k)
+        passages_ += passes(before, now, places_[k], places[k]);
     }
+    for (const Collider& body : bodies_)
+      if (m.step > 0) count_passages(body, m);
     places_ = std::move(places);
     last_ = m.state;
+    last_t_ = m.t;
+  }
+  /// Of the vertices that are in the box around a face's way, in the body's frame.
+  void count_passages(const Collider& collider, const Snapshot& m) {
+    const auto was_there = std::get<MeshBody>(shape_at(collider, last_t_)),
+               is_there = std::get<MeshBody>(shape_at(collider, m.t));
+    const TriangleMesh& mesh = *is_there.mesh;
+    std::set<int> near;
+    for (const Triangle& face : faces_) {
+      const Corners before = in_frame(was_there, corners(face, last_)),
+                    now = in_frame(is_there, corners(face, m.state));
+      Eigen::AlignedBox3d way;
+      for (std::size_t c = 0; c < 3; ++c) way.extend(before[c]).extend(now[c]);
+      near.clear();
+      mesh.in_box(way, [&](int triangle) {
+        for (const int v : mesh.triangles()[to_index(triangle)]) near.insert(v);
+      });
+      for (const int v : near) {
+        const Vec3& p = mesh.vertices()[to_index(v)];
+        passages_ += passes(before, now, p, p);
+      }
+    }
+  }
+  /// Whether the place goes through the face on its way.
+  static bool passes(const Corners& before, const Corners& now, const Vec3& from, const Vec3& to) {
+    const double was = height(before, from), is = height(now, to);
+    if ((was > 0) == (is > 0)) return false;
+    const double share = was / (was - is);
+    const auto between = [&](const Vec3& a, const Vec3& b) { return Vec3(a + share * (b - a)); };
+    return within(
+        {between(before[0], now[0]), between(before[1], now[1]), between(before[2], now[2])},
+        between(from, to));
   }
 
+  static Corners in_frame(const MeshBody& body, Corners t) {
+    for (Vec3& x : t) x = body.rotation.conjugate() * (x - body.center);
+    return t;
+  }
   static Corners corners(const Triangle& t, const State& s) {
     return {s.x[to_index(t[0])], s.x[to_index(t[1])], s.x[to_index(t[2])]};
   }
 
-  std::vector<Collider> colliders_;  ///< no planes: on those faces add nothing to vertices
+  /// No planes: on those faces add nothing to vertices. Bodies of triangles are seen for passages.
+  std::vector<Collider> colliders_, bodies_;
   std::vector<Triangle> faces_;
   double thickness_;
   LastSecond end_;
-  Summary any_, ball_, geometry_, excess_, box_, capsule_;
+  Summary any_, ball_, geometry_, excess_, box_, capsule_, mesh_;
   std::vector<Vec3> places_;  ///< m, of all colliders, at the last step
   State last_;
+  double last_t_ = 0;  ///< s
   int passages_ = 0;
 };
 
 }  // namespace
 
 TAUT_METRIC(faces, Faces,
-            "How deep the faces, not just the vertices, are in balls, boxes and capsules",
-            "exact depth of a triangle in a ball, in a box and in a capsule");
+            "How deep the faces, not just the vertices, are in balls, boxes, capsules and bodies",
+            "exact depth of a triangle in a ball, box and capsule; in a body by bisection");
 
 }  // namespace taut

@@ -49,6 +49,10 @@ class Penetration final : public Metric {
       {"penetration.capsule.peak", kErrorLength, "penetration.peak of capsules alone", false,
        Window::run},
       {"penetration.capsule.mean", kErrorLength, "penetration.mean of capsules alone"},
+      {"penetration.mesh.max", kErrorLength, "penetration.max of bodies of triangles alone", true},
+      {"penetration.mesh.peak", kErrorLength, "penetration.peak of bodies of triangles alone",
+       false, Window::run},
+      {"penetration.mesh.mean", kErrorLength, "penetration.mean of bodies of triangles alone"},
       {"penetration.share", kErrorShare,
        "share of the free vertices that are below a surface, mean over the last second", true},
       {"penetration.gap", kSignedLength,
@@ -141,6 +145,6 @@ class Penetration final : public Metric {
 
 TAUT_METRIC(penetration, Penetration,
             "How deep vertices are in colliders after the last pass of the step",
-            "max(0, -signed distance), exact for plane, ball, box and capsule");
+            "max(0, -signed distance), exact for plane, ball, box, capsule and triangles");
 
 }  // namespace taut

@@ -1,4 +1,5 @@
 
+#include "core/model/triangle_mesh.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -142,15 +143,84 @@ class SideTracker {
   std::vector<bool> inside_, through_;
 };
 
+/// The same past a body of triangles, by the triangles that its way crosses.
+class BodyTracker {
+ public:
+  BodyTracker(Collider collider, std::size_t vertices)
+      : collider_(std::move(collider)),
+        body_(std::get<MeshBody>(collider_.shape)),
+        last_(vertices),
+        in_(vertices),
+        inside_(vertices),
+        through_(vertices) {}
+
+  void place(double t) { body_ = std::get<MeshBody>(shape_at(collider_, t)); }
+  void start(std::size_t k, const Vec3& world) {
+    last_[k] = local(world);
+    settle(k);
+  }
+  /// How often the vertex comes out on another side than that by which it went in; of a thin body,
+  /// how often it goes through.
+  int move(std::size_t k, const Vec3& world) {
+    const Vec3 from = last_[k], to = local(world);
+    last_[k] = to;
+    int passages = 0;
+    double left_at = -1;  // of an edge, which belongs to two triangles
+    for (const MeshHit& hit : body_.mesh->hits(from, to)) {
+      const Vec3& normal = body_.mesh->normal(hit.triangle);
+      if (is_thin()) {
+        if (hit.share > left_at) passages += pass(k);
+        left_at = hit.share;
+      } else if (hit.inward && !inside_[k]) {
+        inside_[k] = true;
+        in_[k] = normal;
+      } else if (!hit.inward && inside_[k]) {
+        passages += leave(k, normal);
+      }
+    }
+    if (inside_[k] && !contains(to)) passages += leave(k, nearest(to).normal);
+    if (!inside_[k]) settle(k);
+    return passages;
+  }
+  bool through(std::size_t k) const { return through_[k]; }
+
+ private:
+  bool is_thin() const { return body_.sides == MeshBody::Sides::both; }
+  Vec3 local(const Vec3& world) const {
+    return body_.rotation.conjugate() * (world - body_.center);
+  }
+  NearestPlace nearest(const Vec3& p) const { return body_.mesh->nearest(p); }
+  bool contains(const Vec3& p) const {
+    return !is_thin() && body_.mesh->box().contains(p) && nearest(p).distance < 0;
+  }
+  /// What rounding left out of its way.
+  void settle(std::size_t k) {
+    inside_[k] = contains(last_[k]);
+    if (inside_[k]) in_[k] = nearest(last_[k]).normal;
+  }
+  int pass(std::size_t k) {
+    through_[k] = !through_[k];
+    return 1;
+  }
+  int leave(std::size_t k, const Vec3& out) {
+    inside_[k] = false;
+    return in_[k].dot(out) < 0 ? pass(k) : 0;
+  }
+
+  Collider collider_;
+  MeshBody body_;                ///< at the last time
+  std::vector<Vec3> last_, in_;  ///< [free vertices], in the body's frame
+  std::vector<bool> inside_, through_;
+};
+
 class Tunnelling final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
       {.name = "tunnelling.count",
        .unit = kErrorCount,
-       .help = "free vertices that end on the other side of a ball, box or capsule: in through one "
-               "side and "
-               "out through the opposite one, even within one substep; their path is straight from "
-               "substep to substep",
+       .help = "free vertices that end on the other side of a ball, box, capsule or body of "
+               "triangles: in through one side and out through the opposite one, even within one "
+               "substep; their path is straight from substep to substep",
        .in_series = true,
        .window = Window::end,
        .title = "vertices on the other side",
@@ -158,8 +228,8 @@ class Tunnelling final : public Metric {
       {"tunnelling.share", kErrorShare, "the same as a share of the free vertices", false,
        Window::end},
       {"tunnelling.events", kErrorCount,
-       "passages through a ball, box or capsule over the run, returns included", false, Window::run,
-       "passages through a collider", Role::passages},
+       "passages through a ball, box, capsule or body over the run, returns included", false,
+       Window::run, "passages through a collider", Role::passages},
   };
   static bool measures(const Scene& scene) {
     return has_solid(scene) && !free_vertices(scene).empty();
@@ -167,21 +237,16 @@ class Tunnelling final : public Metric {
   static constexpr bool kFollowsPath = true;
   explicit Tunnelling(const Scene& scene) : free_(free_vertices(scene)) {
     for (const Collider& c : scene.colliders)
-      if (!std::holds_alternative<Plane>(c.shape)) trackers_.emplace_back(c, free_.size());
+      if (std::holds_alternative<MeshBody>(c.shape))
+        bodies_.emplace_back(c, free_.size());
+      else if (!std::holds_alternative<Plane>(c.shape))
+        trackers_.emplace_back(c, free_.size());
   }
 
   void observe_within(const Snapshot& m) override { observe(m); }
   void observe(const Snapshot& m) override {
-    for (SideTracker& tracker : trackers_) {
-      tracker.place(m.t);
-      for (std::size_t k = 0; k < free_.size(); ++k) {
-        const Vec3& x = m.state.x[free_[k]];
-        if (m.step == 0)
-          tracker.start(k, x);
-        else if (tracker.move(k, x))
-          ++events_;
-      }
-    }
+    follow(m, trackers_);
+    follow(m, bodies_);
   }
   std::vector<double> finish() override {
     return {count(), count() / static_cast<double>(free_.size()), static_cast<double>(events_)};
@@ -191,21 +256,37 @@ class Tunnelling final : public Metric {
   }
 
  private:
+  template <class Tracker>
+  void follow(const Snapshot& m, std::vector<Tracker>& trackers) {
+    for (Tracker& tracker : trackers) {
+      tracker.place(m.t);
+      for (std::size_t k = 0; k < free_.size(); ++k) {
+        const Vec3& x = m.state.x[free_[k]];
+        if (m.step == 0)
+          tracker.start(k, x);
+        else
+          events_ += tracker.move(k, x);
+      }
+    }
+  }
   double count() const {
     int count = 0;
-    for (std::size_t k = 0; k < free_.size(); ++k)
-      count += std::any_of(trackers_.begin(), trackers_.end(),
-                           [k](const SideTracker& w) { return w.through(k); });
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto is_through = [k](const auto& tracker) { return tracker.through(k); };
+      count +=
+          std::ranges::any_of(trackers_, is_through) || std::ranges::any_of(bodies_, is_through);
+    }
     return count;
   }
   std::vector<std::size_t> free_;
   std::vector<SideTracker> trackers_;
+  std::vector<BodyTracker> bodies_;
   int events_ = 0;
 };
 
 }  // namespace
 
-TAUT_METRIC(tunnelling, Tunnelling, "Vertices that pass through a ball, box or capsule",
+TAUT_METRIC(tunnelling, Tunnelling, "Vertices that pass through a ball, box, capsule or body",
             "labels of sides, kept along the path in the collider's frame; a plane's solid has no "
             "other side");
 

@@ -26,5 +26,6 @@ void register_projections();
 void register_iterations();
 void register_contact();
 void register_threads();
+void register_bodies();
 
 }  // namespace taut::bench

@@ -5,14 +5,15 @@ import math
 import subprocess
 import sys
 
-done = subprocess.run([sys.argv[1], "--benchmark_min_time=0.0001", "--benchmark_format=json", "--benchmark_filter=/(0|32|64)/"],
+done = subprocess.run([sys.argv[1], "--benchmark_min_time=0.0001", "--benchmark_format=json", "--benchmark_filter=/(0|32|64)/|body/cuts:3"],
                       stdout=subprocess.PIPE, check=True)
 rows = {row["name"]: row for row in json.loads(done.stdout)["benchmarks"]}
 bound = rows["projection/0/in registers float"]["projection"]
 for name, row in rows.items():
     assert not row.get("error_occurred"), (name, row)
     kind = name.split("/")[0]
-    counters = {"projection": ["projection"], "iteration": ["iteration", "sweeps"], "contact": ["sweep", "in_sweep", "in_step", "touching"], "threads": ["two_threads"]}[kind]
+    counters = {"projection": ["projection"], "iteration": ["iteration", "sweeps"], "contact": ["sweep", "in_sweep", "in_step", "touching"], "threads": ["two_threads"],
+                "body": ["make_s", "refit_s", "nearest_at_1cm_s", "nearest_anywhere_s", "first_hit_s"]}[kind]
     for counter in counters:
         assert math.isfinite(row[counter]), (name, counter)
     if kind == "projection" and "threads" not in name:
@@ -23,7 +24,9 @@ for name, row in rows.items():
         assert row["touching"] > 0.9, (name, row["touching"])
     elif kind == "contact" and "crumple" not in name:
         assert 0.02 < row["touching"] < 0.9, (name, row["touching"])
-expected = {"projection": 14, "iteration": 16, "contact": 26}
+    if kind == "body":
+        assert 0 < row["nearest_at_1cm_s"] < 1e-3 and row["triangles"] == 512, (name, row)
+expected = {"projection": 14, "iteration": 16, "contact": 26, "body": 1}
 for kind, least in expected.items():
     found = sum(name.startswith(kind) for name in rows)
     assert found >= least, f"{found} benchmarks of {kind}; there were {least}"

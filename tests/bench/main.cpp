@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   taut::bench::register_iterations();
   taut::bench::register_contact();
   taut::bench::register_threads();
+  taut::bench::register_bodies();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

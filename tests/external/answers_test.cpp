@@ -9,6 +9,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/triangle_mesh.hpp"
 #include "experiments/external/connection.hpp"
 #include "experiments/external/external.hpp"
 #include "experiments/external/probe.hpp"
@@ -93,7 +94,7 @@ TEST(Hello, RefusesWhatNoParameterCanBe) {
   for (const char* name : {"cmd", "timeout", "a b", "1a", ""})
     EXPECT_NE(refused_param(integer(0, 0, 1), name), "") << name;
   Json other = hello_with("n", integer(0, 0, 1));
-  other["protocol"] = "taut-solver/3";
+  other["protocol"] = "taut-solver/4";
   EXPECT_NE(refusal([&] { read_hello(other); }), "");
 }
 
@@ -101,12 +102,16 @@ struct FromBefore {};
 struct Knowing {
   static constexpr const char* kProtocol = "taut-solver/2";
 };
+struct KnowingBodies {
+  static constexpr const char* kProtocol = "taut-solver/3";
+};
 
 TEST(Hello, SaysWhichProtocolTheProgramSpeaks) {
-  for (const auto& [protocol, second] : {std::pair{taut_solver::protocol_of<FromBefore>(), false},
-                                         {taut_solver::protocol_of<Knowing>(), true}})
-    EXPECT_EQ(read_hello({{"protocol", protocol}, {"name", "p"}, {"version", "2"}})->second,
-              second);
+  for (const auto& [protocol, spoken] : {std::pair{taut_solver::protocol_of<FromBefore>(), 1},
+                                         {taut_solver::protocol_of<Knowing>(), 2},
+                                         {taut_solver::protocol_of<KnowingBodies>(), 3}})
+    EXPECT_EQ(read_hello({{"protocol", protocol}, {"name", "p"}, {"version", "2"}})->version_spoken,
+              spoken);
 }
 
 TEST(SceneAnswer, HasPassesAndSettingsUnlessTheSceneIsRefused) {
@@ -207,7 +212,7 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   scene.colliders = {{Plane{Vec3(0, 0.6, 0.8), -2}, {}, 0.5},
                      {Ball{Vec3(1, 2, 3), 4}, moving, 0.25},
                      {box, {}, 0}};
-  EXPECT_TRUE(beyond_first(scene).empty());
+  EXPECT_TRUE(beyond(1, scene).empty());
   scene.wind = Wind{Vec3(3, 2, 1), 0.5, Wind::Law::literal};
   scene.self_collision.emplace();
   scene.self_collision->radius = 0.125;
@@ -220,16 +225,16 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   EXPECT_EQ(file["format"], "taut-scene/2");
   EXPECT_EQ(file["stiffness"],
             (Json{{"structural", nullptr}, {"shear", 500.0}, {"bend", nullptr}}));
-  EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"links of 500 N/m"});
+  EXPECT_EQ(beyond(1, scene), std::vector<std::string>{"links of 500 N/m"});
   scene.stiffness = kRigid;
   scene.bending = Bending{2, 0.5, Vec3(0, 0.6, 0.8)};
-  EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"bending stiffness"});
+  EXPECT_EQ(beyond(1, scene), std::vector<std::string>{"bending stiffness"});
   file = parse_json(scene_file(scene));
   EXPECT_EQ(file["format"], "taut-scene/2");
   EXPECT_EQ(file["bending"], (Json{{"warp", 2.0}, {"weft", 0.5}, {"direction", {0, 0.6, 0.8}}}));
   scene.bending.reset();
   scene.colliders.push_back({Capsule{Vec3(1, 2, 3), Vec3(4, 5, 6), 7}, moving, 0.75});
-  EXPECT_EQ(beyond_first(scene), std::vector<std::string>{"a capsule"});
+  EXPECT_EQ(beyond(1, scene), std::vector<std::string>{"a capsule"});
   file = parse_json(scene_file(scene));
   EXPECT_EQ(file["format"], "taut-scene/2");
   EXPECT_FALSE(file.contains("stiffness"));
@@ -237,6 +242,26 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
                                         {"from", {1, 2, 3}},
                                         {"to", {4, 5, 6}},
                                         {"radius", 7},
+                                        {"friction", 0.75},
+                                        {"motion", motion}}));
+  EXPECT_TRUE(beyond(2, scene).empty());
+  scene.colliders.pop_back();
+  const auto triangle = std::make_shared<const TriangleMesh>(
+      std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 2, 0)},
+      std::vector<Triangle>{{0, 1, 2}});
+  scene.colliders.push_back(
+      {MeshBody{triangle, Vec3(1, 2, 3), box.rotation, MeshBody::Sides::both}, moving, 0.75});
+  EXPECT_EQ(beyond(1, scene), std::vector<std::string>{"a body of triangles"});
+  EXPECT_EQ(beyond(2, scene), std::vector<std::string>{"a body of triangles"});
+  EXPECT_TRUE(beyond(3, scene).empty());
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/3");
+  EXPECT_EQ(file["colliders"][3], (Json{{"type", "mesh"},
+                                        {"center", {1, 2, 3}},
+                                        {"rotation", {2.0 / 9, 4.0 / 9, -5.0 / 9, 6.0 / 9}},
+                                        {"sides", "both"},
+                                        {"vertices", {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}},
+                                        {"triangles", {{0, 1, 2}}},
                                         {"friction", 0.75},
                                         {"motion", motion}}));
   scene.colliders.pop_back();

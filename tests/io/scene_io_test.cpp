@@ -499,7 +499,9 @@ TEST(SceneSchema, EveryDocumentedExampleIsAcceptedAndEveryDefaultIsTheDefault) {
   for (const auto& row : rows) {
     const std::string key = unquoted(row[1]), fallback = row[5], example = unquoted(row[6]);
     const bool mesh = row[7].ends_with("; mesh") || key == "cloth.mesh";
+    const bool body = row[7].starts_with("mesh: ");
     const auto load = [&](std::vector<std::string> overrides) {
+      if (body) return shipped("mesh-box", overrides);
       if (mesh) overrides.emplace_back("cloth.start_inside=\"resolve\"");
       return mesh ? shipped("disc", overrides) : parse_scene("bare", kBare, overrides);
     };

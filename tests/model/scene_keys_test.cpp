@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "core/model/triangle_mesh.hpp"
 
 namespace taut::scene_keys_test {
 namespace {
@@ -45,7 +48,10 @@ void move(Enumeration& value) { value = static_cast<Enumeration>(value == Enumer
 Scene scene_of_all() {
   Scene scene;
   scene.wind.emplace(), scene.self_collision.emplace(), scene.bending.emplace();
-  scene.colliders = {{Plane{}}, {Ball{}}, {Box{}}, {Capsule{}}};
+  const auto triangle = std::make_shared<const TriangleMesh>(
+      std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()},
+      std::vector<Triangle>{{0, 1, 2}});
+  scene.colliders = {{Plane{}}, {Ball{}}, {Box{}}, {Capsule{}}, {MeshBody{triangle}}};
   return scene;
 }
 

@@ -9,6 +9,7 @@
 #include "core/solver/layout/interleaved_sheet.hpp"
 #include "core/solver/simd/kernels_impl.hpp"
 #include "core/solver/thread_pool.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::same_bits_test {
@@ -102,8 +103,8 @@ TEST(SameBits, OfTethersForEveryInstructionSet) {
       }
 }
 
-/// A plane, balls, a capsule and a turned box that rises and spins, where the sheet falls past
-/// them.
+/// A plane, balls, a capsule, and a turned box and a torus of triangles that rise and spin, where
+/// the sheet falls past them.
 std::vector<Collider> obstacles(const Scene& scene) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& x : scene.start.x) middle += x / static_cast<double>(scene.start.x.size());
@@ -115,6 +116,8 @@ std::vector<Collider> obstacles(const Scene& scene) {
           Collider{Ball{middle + Vec3(-0.2, 0.1, 0), 0.2}, {}, 0.3}, Collider{box, motion, 0.8},
           Collider{Ball{middle + Vec3(0, -0.3, 0), 0.15}, motion, 0},
           Collider{Capsule{middle + Vec3(-0.3, -0.2, 0.1), middle + Vec3(0.1, -0.1, -0.1), 0.1},
+                   motion, 0.2},
+          Collider{MeshBody{torus(0.2, 0.08, 12, 8).mesh(), middle + Vec3(0.1, -0.2, -0.2)},
                    motion, 0.2}};
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/model/index.hpp"
+#include "core/solver/contact/mesh_surface.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/simd/contact.hpp"
 
@@ -23,6 +24,16 @@ class Contacts::Surface {
 };
 
 namespace {
+
+// What a contact is asked by: a body of triangles by a copy, which remembers the point.
+template <template <class> class SurfaceOf>
+const Contact<double, SurfaceOf>& for_one_point(const Contact<double, SurfaceOf>& contact) {
+  return contact;
+}
+Contact<double, MeshSurface> for_one_point(const Contact<double, MeshSurface>& contact) {
+  return contact;
+}
+MeshSurface<double> surface_of(const MeshBody& body) { return MeshSurface<double>(body); }
 
 template <template <class> class SurfaceOf>
 class SurfaceIn final : public Contacts::Surface {
@@ -42,7 +53,8 @@ class SurfaceIn final : public Contacts::Surface {
   bool touches(const Vec3& x, const Vec3& previous, bool held, TouchingVertex& at) const override {
     const Vec3T<double> to = vec3t<double>(x), before = vec3t<double>(previous);
     Tangent<double> tangent;
-    if (!contact_.touched(to, before, continuous_, held, tangent)) return false;
+    const auto& contact = for_one_point(contact_);
+    if (!contact.touched(to, before, continuous_, held, tangent)) return false;
     at.normal = point(tangent.normal);
     at.offset = tangent.offset + contact_.thickness;
     at.from = point(contact_.motion(before));
@@ -71,7 +83,9 @@ std::unique_ptr<Contacts::Surface> make_surface(const Collider& c, double thickn
     return std::make_unique<SurfaceIn<BallSurface>>(c, thickness, continuous);
   if (std::holds_alternative<Capsule>(c.shape))
     return std::make_unique<SurfaceIn<CapsuleSurface>>(c, thickness, continuous);
-  return std::make_unique<SurfaceIn<BoxSurface>>(c, thickness, continuous);
+  if (std::holds_alternative<Box>(c.shape))
+    return std::make_unique<SurfaceIn<BoxSurface>>(c, thickness, continuous);
+  return std::make_unique<SurfaceIn<MeshSurface>>(c, thickness, continuous);
 }
 
 }  // namespace

@@ -1,16 +1,17 @@
 #pragma once
 
 #include "core/model/triangle.hpp"
+#include "core/model/triangle_mesh.hpp"
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/layout/particles.hpp"
 
 namespace taut {
 
-/// Keeps the faces, not just their corners, out of a ball or a capsule, and box edges and corners
-/// out of the faces. Of each face that is too deep, the deepest point is moved out along the
-/// surface's normal; its corners share the correction by their barycentric weights b and inverse
-/// masses w,
+/// Keeps the faces, not just their corners, out of a ball or a capsule, and edges and corners of a
+/// box or a solid body of triangles out of the faces. Of each face that is too deep, the deepest
+/// point is moved out along the surface's normal; its corners share the correction by their
+/// barycentric weights b and inverse masses w,
 ///
 ///     dx_i = w_i b_i s n / sum of w_j b_j^2,
 ///
@@ -22,7 +23,8 @@ namespace taut {
 template <class Real>
 class FaceContactPass final : public Pass<Real> {
  public:
-  /// The collider is no plane. solver: null, or that of the links, whose target moves as well.
+  /// The collider is no plane and no thin body. solver: null, or that of the links, whose target
+  /// moves as well.
   FaceContactPass(const Collider& collider, double thickness, std::vector<Triangle> faces,
                   Pass<Real>* solver)
       : collider_(collider),
@@ -48,6 +50,11 @@ class FaceContactPass final : public Pass<Real> {
       capsule->radius += thickness_;
       center_ = capsule->middle();
       reach_ = (capsule->to - capsule->from).norm() / 2 + capsule->radius;
+    }
+    if (const MeshBody* body = std::get_if<MeshBody>(&shape_)) {
+      const Eigen::AlignedBox3d& box = body->mesh->box();
+      center_ = body->center + body->rotation * box.center();
+      reach_ = box.diagonal().norm() / 2 + thickness_;
     }
     for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
       if (held_[f].holds()) {
@@ -105,9 +112,10 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   /// Precondition: no plane.
-  static Separation separation_of(const Shape& shape, const Corners& t) {
+  Separation separation_of(const Shape& shape, const Corners& t) const {
     if (const Ball* ball = std::get_if<Ball>(&shape)) return out_of(*ball, t);
     if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return out_of(*capsule, t);
+    if (const MeshBody* body = std::get_if<MeshBody>(&shape)) return out_of_body(*body, t);
     const Box& box = std::get<Box>(shape);
     const Deepest deepest = deepest_in(box, t);
     if (deepest.depth <= 0) return {};
@@ -121,12 +129,56 @@ class FaceContactPass final : public Pass<Real> {
     return {deepest.depth, surface(shape, deepest.at.position).normal, deepest.at};
   }
 
+  /// Of the places of the face that are nearest to an edge or a corner of the body: the one that
+  /// has to go the farthest. From inside it goes to that edge or corner, so that it does not leave
+  /// by one of its sides and enter by another, unless the surface is much nearer elsewhere.
+  Separation out_of_body(const MeshBody& body, const Corners& t) const {
+    const TriangleMesh& mesh = *body.mesh;
+    Corners local;
+    Eigen::AlignedBox3d box;
+    for (std::size_t c = 0; c < 3; ++c) {
+      local[c] = body.rotation.conjugate() * (t[c] - body.center);
+      box.extend(local[c]);
+    }
+    box.min().array() -= thickness_;
+    box.max().array() += thickness_;
+    Separation best;
+    const auto improve = [&](const TrianglePoint& at, const Vec3& edge) {
+      const Separation out = towards(edge, at, mesh.nearest(at.position));
+      if (out.length > best.length) best = out;
+    };
+    mesh.in_box(box, [&](int triangle) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Triangle& corners = mesh.triangles()[index(triangle)];
+        const Vec3 &a = mesh.vertices()[index(corners[k])],
+                   &b = mesh.vertices()[index(corners[(k + 1) % 3])];
+        improve(closest_point(local, a), a);
+        const Capsule edge{a, b, 0};
+        const TrianglePoint at = deepest_in(edge, local).at;
+        improve(at, edge.nearest_on_axis(at.position));
+      }
+    });
+    best.normal = body.rotation * best.normal;
+    best.point.position = body.center + body.rotation * best.point.position;
+    return best;
+  }
+
+  Separation towards(const Vec3& edge, const TrianglePoint& at, const NearestPlace& place) const {
+    constexpr double kMuchNearer = 5;
+    const Vec3 way = edge - at.position;
+    const double length = way.norm();
+    if (place.distance < 0 && length > 0 && length < kMuchNearer * -place.distance)
+      return {thickness_ + length, way / length, at};
+    return {thickness_ - place.distance, place.normal, at};
+  }
+
   /// Of a point of the face that the collider may have left.
   Separation outside(const Corners& t, const Vec3& weights) const {
     Separation out;
     out.point = {weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2], weights};
     const Surface nearest = surface(shape_, out.point.position);
     out.length = -nearest.distance;
+    if (std::holds_alternative<MeshBody>(shape_)) out.length += thickness_;
     out.normal = nearest.normal;
     return out;
   }
@@ -210,7 +262,7 @@ class FaceContactPass final : public Pass<Real> {
   std::vector<Triangle> faces_;
   Pass<Real>* solver_;      ///< null: none with a target
   std::vector<Held> held_;  ///< [faces]; empty without one
-  Shape shape_;             ///< at the end of the step, grown by the thickness
+  Shape shape_;  ///< at the end of the step, grown by the thickness unless it is a body's
   Vec3 center_ = Vec3::Zero();
   double reach_ = 0;  ///< m, from its centre to its farthest point
   RigidMotion<double> motion_;

@@ -1,5 +1,10 @@
 #include "core/solver/contact/projector.hpp"
 
+#include <vector>
+
+#include "core/solver/contact/mesh_surface.hpp"
+#include "core/solver/simd/collide_impl.hpp"
+
 namespace taut {
 
 PlaneSurface<double> surface_of(const Plane& plane) {
@@ -70,6 +75,82 @@ class ProjectorOf final : public Projector<Real> {
   Contact<Real, SurfaceOf> contact_{};
 };
 
+/// A body of triangles, one particle after the other: what lies beside lanes, for each walk in the
+/// tree is another.
+///
+/// A particle that was at distance d from the surface is at d - s at least when it has moved by s
+/// against the body. So it remembers d and where that was, and hardly any particle is looked up in
+/// every sweep.
+template <class Real>
+class MeshProjector final : public Projector<Real> {
+ public:
+  MeshProjector(const Collider& collider, double thickness, bool continuous)
+      : collider_(collider), continuous_(continuous) {
+    contact_.thickness = static_cast<Real>(thickness);
+    contact_.friction = static_cast<Real>(collider.friction);
+  }
+
+  void begin(double t, double dt) override {
+    body_ = std::get<MeshBody>(shape_at(collider_, t + dt));
+    contact_.surface = MeshSurface<Real>(body_);
+    contact_.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
+    rounding_ = 1e-6 * body_.mesh->reach();
+  }
+
+  void project(const ParticleSpan<Real>& span, std::size_t blocks,
+               ThreadPool& pool) const override {
+    seen_.resize(span.parts() * (span.sheet.lanes > 1 ? span.sheet.stride : kLanes));
+    pool.queue(
+        blocks,
+        [this, span](std::size_t begin, std::size_t end) {
+          with_lanes<Real, Real, Real>(span, [&](Real, auto lanes) {
+            visit_particles<Real, lanes>(span, span.part_of_block(begin), span.part_of_block(end),
+                                         [&](std::size_t place, bool present) {
+                                           if (present) project_one<lanes>(span, place);
+                                         });
+          });
+        },
+        span.particles >= ThreadPool::kWorthSharing);
+  }
+
+ private:
+  /// Where a particle was in the body's frame, and how far from its surface at least.
+  struct Seen {
+    Vec3 at = Vec3::Zero();
+    double distance = 0;  ///< m; 0: nothing is known
+  };
+
+  template <int lanes>
+  void project_one(const ParticleSpan<Real>& span, std::size_t place) const {
+    Vec3T<Real> x = load_vec3<Real, lanes>(span.x + place);
+    const Vec3T<Real> previous = load_vec3<Real, lanes>(span.previous + place);
+    Seen& seen = seen_[lanes == kPackedLanes ? place / 4 : place];
+    const Vec3 at = contact_.surface.local(x);
+    const auto thickness = static_cast<double>(contact_.thickness);
+    double reach = thickness;
+    if (continuous_) reach += 1.01 * static_cast<double>(norm(x - contact_.motion(previous)));
+    if (seen.distance - (at - seen.at).norm() > reach + rounding_) return;
+    const Contact<Real, MeshSurface> contact = contact_;
+    const bool near = continuous_ ? contact.template near<true>(x, previous)
+                                  : contact.template near<false>(x, previous);
+    if (!near) {
+      seen = {at, contact.surface.distance_at_least(x)};
+      return;
+    }
+    seen.distance = 0;
+    const bool moved = continuous_ ? contact.project_continuous(x, previous, true)
+                                   : contact.project(x, previous, true);
+    if (moved) store_vec3<Real, lanes>(span.x + place, x);
+  }
+
+  Collider collider_;
+  bool continuous_;
+  MeshBody body_;
+  Contact<Real, MeshSurface> contact_{};
+  double rounding_ = 0;             ///< m, far beyond that of coordinates
+  mutable std::vector<Seen> seen_;  ///< by place
+};
+
 }  // namespace
 
 template <class Real>
@@ -84,6 +165,8 @@ std::unique_ptr<Projector<Real>> make_projector(const Collider& collider, double
   if (std::holds_alternative<Capsule>(collider.shape))
     return std::make_unique<ProjectorOf<Real, CapsuleSurface>>(
         collider, thickness, continuous ? kernel.capsule_continuous : kernel.capsule);
+  if (std::holds_alternative<MeshBody>(collider.shape))
+    return std::make_unique<MeshProjector<Real>>(collider, thickness, continuous);
   return std::make_unique<ProjectorOf<Real, BoxSurface>>(
       collider, thickness, continuous ? kernel.box_continuous : kernel.box);
 }

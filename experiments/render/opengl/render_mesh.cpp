@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/model/index.hpp"
+#include "core/model/triangle_mesh.hpp"
 
 namespace taut {
 
@@ -270,10 +271,45 @@ RenderMesh capsule_mesh(const Capsule& capsule, double inset, int segments) {
   return mesh;
 }
 
+/// Round where triangles meet at less than `kCrease`, with an edge elsewhere.
+RenderMesh body_mesh(const MeshBody& body, double inset) {
+  constexpr double kCrease = 0.8;  // cosine: 37 degrees
+  const TriangleMesh& mesh = *body.mesh;
+  const double in = body.sides == MeshBody::Sides::out ? inset : 0;
+  std::vector<std::vector<int>> around(mesh.vertices().size());
+  for (std::size_t t = 0; t < mesh.triangles().size(); ++t)
+    for (const int v : mesh.triangles()[t]) around[to_index(v)].push_back(static_cast<int>(t));
+  const auto area_normal = [&](int triangle) {
+    const auto& [a, b, c] = mesh.triangles()[to_index(triangle)];
+    const Vec3& x = mesh.vertices()[to_index(a)];
+    return Vec3((mesh.vertices()[to_index(b)] - x).cross(mesh.vertices()[to_index(c)] - x));
+  };
+  RenderMesh drawn;
+  for (std::size_t t = 0; t < mesh.triangles().size(); ++t) {
+    const Vec3& own = mesh.normal(static_cast<int>(t));
+    const auto first = static_cast<std::uint32_t>(drawn.position.size());
+    for (const int v : mesh.triangles()[t]) {
+      Vec3 sum = Vec3::Zero();
+      for (const int other : around[to_index(v)])
+        if (mesh.normal(other).dot(own) > kCrease) sum += area_normal(other);
+      const Vec3 out = body.rotation * sum.normalized();
+      const Vec3 at = body.center + body.rotation * mesh.vertices()[to_index(v)] - in * out;
+      drawn.position.push_back(at.cast<float>());
+      drawn.normal.push_back(out.cast<float>());
+      drawn.value.push_back(0);
+    }
+    drawn.triangles.push_back({first, first + 1, first + 2});
+  }
+  return drawn;
+}
+
 /// The depth [m] up to which it is clear on which side of the collider cloth belongs.
 double liftable(const Ball& ball, const Scene&) { return 0.2 * ball.radius; }
 double liftable(const Box& box, const Scene&) { return 0.2 * box.half_extents.minCoeff(); }
 double liftable(const Capsule& capsule, const Scene&) { return 0.2 * capsule.radius; }
+double liftable(const MeshBody& body, const Scene&) {
+  return 0.1 * body.mesh->box().sizes().minCoeff();
+}
 double liftable(const Plane&, const Scene& scene) { return 0.04 * extent(scene); }
 
 }  // namespace
@@ -286,6 +322,7 @@ RenderMesh collider_mesh(const Collider& collider, double t, const ColliderLook&
     return box_mesh(*box, look.inset, look.rounding, 2 * look.segments / 5);
   if (const auto* capsule = std::get_if<Capsule>(&shape))
     return capsule_mesh(*capsule, look.inset, look.segments);
+  if (const auto* body = std::get_if<MeshBody>(&shape)) return body_mesh(*body, look.inset);
   return plane_mesh(std::get<Plane>(shape), look.inset, look.centre, look.reach,
                     2 * look.segments / 3);
 }

@@ -5,6 +5,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/triangle_mesh.hpp"
 
 namespace taut {
 
@@ -69,6 +70,12 @@ std::vector<Vec3> collider_points(const Collider& collider, double t) {
             points.push_back(end + capsule->radius * corner.normalized());
         if (const auto* box = std::get_if<Box>(&shape))
           points.push_back(box->center + box->rotation * box->half_extents.cwiseProduct(corner));
+        if (const auto* body = std::get_if<MeshBody>(&shape)) {
+          const Eigen::AlignedBox3d& around = body->mesh->box();
+          points.push_back(body->center +
+                           body->rotation *
+                               (around.center() + around.sizes().cwiseProduct(corner) / 2));
+        }
       }
   return points;
 }

@@ -58,6 +58,7 @@ Scene touching_nothing(Scene scene) {
     if (auto* const box = std::get_if<Box>(&c.shape)) box->center.y() -= kAway;
     if (auto* const capsule = std::get_if<Capsule>(&c.shape))
       capsule->from.y() -= kAway, capsule->to.y() -= kAway;
+    if (auto* const body = std::get_if<MeshBody>(&c.shape)) body->center.y() -= kAway;
   }
   return scene;
 }

@@ -1,0 +1,83 @@
+// What a body of triangles costs: to be made, to be refitted, and to be asked where a point or a
+// path meets it.
+#include "tests/support/bodies.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <random>
+
+#include "tests/bench/bench.hpp"
+
+namespace taut::bench {
+
+namespace {
+
+/// Ten thousand points within 1 cm of the surface of a ball of 1 m, and as many in a cube around
+/// it.
+struct Questions {
+  std::vector<Vec3> near, anywhere;
+  Questions() {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<> within(-1, 1);
+    const auto point = [&] {
+      const double x = within(random), y = within(random), z = within(random);
+      return Vec3(x, y, z);
+    };
+    for (int n = 0; n < 10000; ++n) {
+      near.push_back((1 + 0.01 * within(random)) * point().normalized());
+      anywhere.push_back(2 * point());
+    }
+  }
+};
+
+template <class F>
+double seconds(const F& f) {
+  const double begin = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+  f();
+  return seconds_of(CLOCK_THREAD_CPUTIME_ID) - begin;
+}
+
+void body(benchmark::State& state) {
+  const Triangles ball = ball_of_triangles(1, static_cast<int>(state.range(0)));
+  const Questions questions;
+  TriangleMesh mesh(ball.vertices, ball.triangles);
+  const double count = static_cast<double>(ball.triangles.size()),
+               asked = static_cast<double>(questions.near.size());
+  double make = 0, refit = 0, near = 0, anywhere = 0, hit = 0, rounds = 0;
+  for (auto _ : state) {
+    make += seconds([&] { benchmark::DoNotOptimize(TriangleMesh(ball.vertices, ball.triangles)); });
+    refit += seconds([&] { mesh.refit(ball.vertices); });
+    near += seconds([&] {
+      for (const Vec3& p : questions.near) benchmark::DoNotOptimize(mesh.nearest(p));
+    });
+    anywhere += seconds([&] {
+      for (const Vec3& p : questions.anywhere) benchmark::DoNotOptimize(mesh.nearest(p));
+    });
+    hit += seconds([&] {
+      for (const Vec3& p : questions.near)
+        benchmark::DoNotOptimize(mesh.first_hit(1.1 * p, 0.9 * p));
+    });
+    ++rounds;
+  }
+  state.counters["triangles"] = count;
+  state.counters["make_s"] = make / rounds;
+  state.counters["refit_s"] = refit / rounds;
+  state.counters["nearest_at_1cm_s"] = near / rounds / asked;
+  state.counters["nearest_anywhere_s"] = anywhere / rounds / asked;
+  state.counters["first_hit_s"] = hit / rounds / asked;
+  state.counters["bytes"] = static_cast<double>(mesh.bytes());
+}
+
+}  // namespace
+
+void register_bodies() {
+  benchmark::RegisterBenchmark("body", body)
+      ->ArgName("cuts")
+      ->Arg(3)
+      ->Arg(5)
+      ->Arg(7)
+      ->Arg(9)
+      ->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace taut::bench

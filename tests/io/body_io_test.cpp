@@ -1,0 +1,146 @@
+// A [[collider]] that is a mesh: what its file and its keys say, and what is wrong with them, by
+// file and line.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
+#include "core/model/triangle_mesh.hpp"
+#include "tests/support/bodies.hpp"
+
+namespace taut::body_io_test {
+namespace {
+
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+class BodyFiles : public testing::Test {
+ protected:
+  BodyFiles() { std::filesystem::create_directories(folder_); }
+  ~BodyFiles() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  Scene scene(const std::string& collider, const std::string& cloth = "") const {
+    return parse_scene(folder_ / "x.toml",
+                       "[cloth]\ngrid = [3, 3]\nsize = [1, 1]\norigin = [9, 9, 9]\n" + cloth +
+                           "[[collider]]\ntype = \"mesh\"\n" + collider);
+  }
+  std::string errors(const std::string& collider, const std::string& cloth = "") const {
+    try {
+      scene(collider, cloth);
+    } catch (const InputError& error) {
+      std::string text = error.what();
+      for (std::string folder = folder_.string() + "/"; text.find(folder) != text.npos;)
+        text.replace(text.find(folder), folder.size(), "");
+      return text;
+    }
+    return "";
+  }
+  std::string errors_of_file(const std::string& obj) const {
+    write("b.obj", obj);
+    return errors("file = \"b.obj\"\n");
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("taut_body_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+#define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST_F(BodyFiles, KeysPlaceTheBody) {
+  write("b.obj", kTetrahedron);
+  const Scene s = scene(
+      "file = \"b.obj\"\nscale = 0.5\ncenter = [1, 2, 3]\nrotation = { axis = [0, 0, 1], angle = "
+      "90 }\nfriction = 0.25\nvelocity = [0, 0, 4]\n");
+  const Collider& collider = s.colliders.at(0);
+  const auto& body = std::get<MeshBody>(collider.shape);
+  EXPECT_EQ(body.mesh->vertices(),
+            (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}));
+  EXPECT_EQ(body.mesh->triangles(),
+            (std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}));
+  EXPECT_EQ(body.center, Vec3(1, 2, 3));
+  EXPECT_EQ(body.sides, MeshBody::Sides::out);
+  EXPECT_NEAR((body.rotation * Vec3::UnitX() - Vec3::UnitY()).norm(), 0, 1e-15);
+  EXPECT_EQ(collider.friction, 0.25);
+  EXPECT_EQ(collider.motion.velocity, Vec3(0, 0, 4));
+  EXPECT_EQ(collider.motion.pivot, Vec3(1, 2, 3));
+  const Shape later = shape_at(collider, 2);
+  EXPECT_EQ(std::get<MeshBody>(later).center, Vec3(1, 2, 11));
+  // 0.1 m above the face in x = 0, which is turned to y
+  EXPECT_NEAR(surface(later, {0.9, 1.9, 11.1}).distance, 0.1, 1e-15);
+}
+
+TEST_F(BodyFiles, FacesThatLookInwardAreTurnedAndCornersAtOnePlaceAreOne) {
+  write("b.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv 1 0 0\nvt 0 0\nf 1 2 3\nf 5 4 6\nf 1 3 4\n"
+        "f 2 4 3\n");
+  const Scene s = scene("file = \"b.obj\"\n");
+  const auto& body = std::get<MeshBody>(s.colliders.at(0).shape);
+  EXPECT_NEAR(body.mesh->volume(), 1.0 / 6, 1e-15);
+  EXPECT_TRUE(body.mesh->closed());
+}
+
+TEST_F(BodyFiles, TheContentIsThatOfTheTriangles) {
+  write("b.obj", kTetrahedron);
+  write("c.obj", "# the same\n" + std::string(kTetrahedron));
+  write("d.obj", std::string(kTetrahedron).replace(4, 1, "0.001"));
+  const std::string b = content(scene("file = \"b.obj\"\n"));
+  EXPECT_EQ(content(scene("file = \"c.obj\"\n")), b);
+  EXPECT_NE(content(scene("file = \"d.obj\"\n")), b);
+  for (const char* other : {"scale = 2\n", "center = [1, 0, 0]\n", "friction = 0.1\n",
+                            "rotation = { axis = [0, 0, 1], angle = 9 }\n"})
+    EXPECT_NE(content(scene("file = \"b.obj\"\n" + std::string(other))), b) << other;
+  const std::string thick = "thickness = 0.01\n";
+  EXPECT_NE(content(scene("file = \"b.obj\"\nsides = \"both\"\n", thick)),
+            content(scene("file = \"b.obj\"\n", thick)));
+}
+
+TEST_F(BodyFiles, WhatIsWrongWithAFileIsNamedByItsLine) {
+  EXPECT_EQ(errors_of_file(kTetrahedron), "");
+  EXPECT_SAYS(errors("file = \"none.obj\"\n"), "x.toml:7:");
+  EXPECT_SAYS(errors(""), "'file'");
+  EXPECT_SAYS(errors_of_file("v 0 0 0\n"), "b.obj:1:1: no face");
+  EXPECT_SAYS(errors_of_file("v 0 0 nan\n"), "b.obj:1:7: 'nan' is not a coordinate");
+  EXPECT_SAYS(errors_of_file(std::string(kTetrahedron) + "f 1 2 9\n"),
+              "b.obj:9:1: the face names vertex 9");
+  const std::string open = kTetrahedron;
+  EXPECT_SAYS(errors_of_file(open.substr(0, open.size() - 8)), "b.obj:5:1: an edge of the face");
+  EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "b.obj:4:1: the face has no");
+  // two corners that are at one place
+  EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1 0 0\nv 0 0 0\nf 1 2 3\n"), "b.obj:4:1: ");
+  // a doubled sheet
+  EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n"),
+              "encloses no volume");
+  write("b.obj", std::string(kTetrahedron).replace(10, 1, "2"));
+  EXPECT_SAYS(errors("file = \"b.obj\"\nscale = 1e6\n"), "reaches farther");
+}
+
+TEST_F(BodyFiles, AllOfItIsSaidAtOnce) {
+  write("b.obj", "v 0 0 nan\nv 1 0 0\nw\n");
+  const std::string all = errors("file = \"b.obj\"\nscale = 0\nsides = \"in\"\n");
+  for (const char* part : {"b.obj:1:7", "b.obj:3:1", "'scale'", "'sides'"}) EXPECT_SAYS(all, part);
+}
+
+TEST_F(BodyFiles, AnOpenBodyIsThinAndNeedsAThickness) {
+  write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_SAYS(errors("file = \"b.obj\"\n"), "b.obj:4:1: an edge of the face");
+  EXPECT_SAYS(errors("file = \"b.obj\"\nsides = \"both\"\n"), "'thickness'");
+  EXPECT_EQ(errors("file = \"b.obj\"\nsides = \"both\"\n", "thickness = 0.01\n"), "");
+}
+
+TEST_F(BodyFiles, AClothThatStartsInsideIsRefusedOrMovedOut) {
+  write("b.obj", kTetrahedron);
+  const std::string inside = "file = \"b.obj\"\ncenter = [8.5, 8.9, 8.9]\nscale = 3\n";
+  EXPECT_SAYS(errors(inside), "the cloth starts inside this mesh");
+  const Scene moved = scene(inside, "start_inside = \"resolve\"\nthickness = 0.01\n");
+  for (const Vec3& x : moved.start.x)
+    EXPECT_GE(surface(moved.colliders[0].shape, x).distance, 0.01 - 1e-12);
+}
+
+}  // namespace
+}  // namespace taut::body_io_test

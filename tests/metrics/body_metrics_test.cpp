@@ -1,0 +1,166 @@
+// Depths and passages at bodies of triangles, against closed forms and a look at thousands of
+// points of each way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/model/index.hpp"
+#include "core/model/triangle.hpp"
+#include "tests/metrics/measured.hpp"
+#include "tests/support/bodies.hpp"
+
+namespace taut::body_metrics_test {
+namespace {
+
+/// Places at random, 0.6 m about the middle of the sheet; none starts inside the collider.
+std::vector<State> wild(const Scene& scene, double size) {
+  Draw draw(7);
+  std::vector<State> states(to_index(scene.steps) + 1, scene.start);
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i)
+    for (State& state : states) do
+        state.x[i] = Vec3(0.5, 0, 0.5) + draw.vector(size);
+      while (&state == &states[0] && surface(scene.colliders[0].shape, state.x[i]).distance < 0);
+  return states;
+}
+
+Motion tumbling() {
+  return {.velocity = {0, 0.4, 1}, .spin = {0.2, -0.7, 0.4}, .pivot = {1, 0, 0}};
+}
+
+TEST(BodyMetrics, AtABoxOfTrianglesTheyAreTheBoxs) {
+  Scene scene = sheet(8);
+  scene.pins = {3};
+  scene.steps = 12;
+  const Vec3 half(0.25, 0.3, 0.35), center(0.5, 0, 0.5);
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()));
+  scene.colliders = {{Box{center, half, turned}, tumbling(), 0}};
+  const std::vector<State> states = wild(scene, 0.6);
+  scene.start = states[0];
+  const auto motion = [&](int step) { return states[to_index(step)]; };
+  const Values want = measure(scene, motion);
+  scene.colliders = {{MeshBody{box_of_triangles(half).mesh(), center, turned}, tumbling(), 0}};
+  const Values got = measure(scene, motion);
+  for (const char* name :
+       {"tunnelling.count", "tunnelling.events", "tunnelling.share", "penetration.max",
+        "penetration.peak", "penetration.mean", "penetration.share", "penetration.gap"})
+    EXPECT_NEAR(got.at(name), want.at(name), 1e-12) << name;
+  for (const char* of : {"max", "peak", "mean"})
+    EXPECT_NEAR(got.at(std::string("penetration.mesh.") + of),
+                want.at(std::string("penetration.box.") + of), 1e-12)
+        << of;
+  EXPECT_GT(want.at("tunnelling.events"), 20);
+  EXPECT_TRUE(std::isnan(want.at("penetration.mesh.max")));
+}
+
+/// Inside: the triangles are seen under a whole turn (Van Oosterom, Strackee 1983).
+bool surrounds(const TriangleMesh& mesh, const Vec3& p) {
+  double sum = 0;
+  for (const auto& [i, j, k] : mesh.triangles()) {
+    const Vec3 a = mesh.vertices()[to_index(i)] - p, b = mesh.vertices()[to_index(j)] - p,
+               c = mesh.vertices()[to_index(k)] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum > std::numbers::pi;
+}
+
+/// Outward normal of the triangle on whose inside p lies, seen from all.
+Vec3 normal_at(const TriangleMesh& mesh, const Vec3& p) {
+  double least = 1e9;
+  Vec3 normal = Vec3::Zero();
+  for (const auto& [i, j, k] : mesh.triangles()) {
+    const Corners t{mesh.vertices()[to_index(i)], mesh.vertices()[to_index(j)],
+                    mesh.vertices()[to_index(k)]};
+    const double distance = (closest_point(t, p).position - p).norm();
+    if (distance >= least) continue;
+    least = distance;
+    normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  }
+  return normal;
+}
+
+Vec3 in_frame(const Collider& collider, double t, const Vec3& x) {
+  const auto body = std::get<MeshBody>(shape_at(collider, t));
+  return body.rotation.conjugate() * (x - body.center);
+}
+
+TEST(BodyMetrics, PassagesThroughPyramidAndTorusAreThoseOfTwoThousandPointsOfEachWay) {
+  for (const Triangles& body : {pyramid(0.7, 0.6), torus(0.3, 0.13, 7, 5)}) {
+    Scene scene = sheet(6);
+    scene.steps = 4;
+    scene.colliders = {{MeshBody{body.mesh(), {0.5, 0, 0.5}}, tumbling(), 0}};
+    const TriangleMesh& mesh = *std::get<MeshBody>(scene.colliders[0].shape).mesh;
+    const std::vector<State> states = wild(scene, 0.5);
+    scene.start = states[0];
+    int events = 0, beyond = 0;
+    for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
+      bool in = false, through = false;
+      Vec3 entry = Vec3::Zero();
+      for (int step = 1; step <= scene.steps; ++step) {
+        const Collider& c = scene.colliders[0];
+        const Vec3 from = in_frame(c, (step - 1) * scene.dt, states[to_index(step - 1)].x[i]),
+                   to = in_frame(c, step * scene.dt, states[to_index(step)].x[i]);
+        for (int k = 1; k <= 2000; ++k) {
+          const Vec3 p = from + k / 2000.0 * (to - from);
+          if (surrounds(mesh, p) == in) continue;
+          in = !in;
+          if (in) entry = normal_at(mesh, p);
+          if (in || entry.dot(normal_at(mesh, p)) >= 0) continue;
+          through = !through;
+          ++events;
+        }
+      }
+      beyond += through;
+    }
+    const Values v = measure(scene, [&](int step) { return states[to_index(step)]; });
+    EXPECT_GT(events, 10);
+    EXPECT_EQ(v.at("tunnelling.events"), events);
+    EXPECT_EQ(v.at("tunnelling.count"), beyond);
+  }
+}
+
+TEST(BodyMetrics, EveryCrossingOfAThinBodyIsAPassage) {
+  Scene scene = sheet(6);
+  scene.steps = 9;
+  const Triangles wall{{{-3, 0, -3}, {3, 0, -3}, {3, 0, 3}, {-3, 0, 3}}, {{0, 2, 1}, {0, 3, 2}}};
+  scene.colliders = {{.shape = MeshBody{.mesh = wall.mesh(), .sides = MeshBody::Sides::both}}};
+  const std::vector<State> states = wild(scene, 0.5);
+  scene.start = states[0];
+  int events = 0, beyond = 0;
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
+    for (std::size_t step = 1; step < states.size(); ++step)
+      events += (states[step].x[i].y() > 0) != (states[step - 1].x[i].y() > 0);
+    beyond += (states.back().x[i].y() > 0) != (states[0].x[i].y() > 0);
+  }
+  const Values v = measure(scene, [&](int step) { return states[to_index(step)]; });
+  EXPECT_GT(events, 50);
+  EXPECT_EQ(v.at("tunnelling.events"), events);
+  EXPECT_EQ(v.at("tunnelling.count"), beyond);
+  EXPECT_EQ(v.at("penetration.max"), 0);
+}
+
+// The tip of a pyramid goes through one face of a sheet that falls on it, and its others through
+// none; seen without the tree.
+TEST(BodyMetrics, AVertexOfTheBodyThatPiercesAFaceIsAPassage) {
+  Scene scene = sheet(6);
+  scene.steps = 6;
+  scene.colliders = {{MeshBody{pyramid(0.7, 0.2).mesh(), {0.52, -0.3, 0.47}}, {}, 0}};
+  const auto falls = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x) x.y() -= 0.04 * step;
+    return state;
+  };
+  const Values v = measure(scene, falls);
+  EXPECT_EQ(v.at("face.passages"), 1);
+  // 0.1 m below the tip and above the base it is the nearest to the sides, whose slope is 0.2/0.35
+  const double deepest = 0.1 * 0.35 / std::hypot(0.35, 0.2), side = 0.2 * std::sqrt(2);
+  EXPECT_LE(v.at("face.mesh"), deepest + 1e-12);
+  EXPECT_GE(v.at("face.mesh"), deepest - 0.01 * side);
+  EXPECT_EQ(v.at("face.max"), v.at("face.mesh"));
+  scene.colliders[0].motion.velocity = {0, -0.04 / scene.dt, 0};  // falls with it
+  EXPECT_EQ(measure(scene, falls).at("face.passages"), 0);
+}
+
+}  // namespace
+}  // namespace taut::body_metrics_test

@@ -1,0 +1,264 @@
+// A body of triangles answers as closed forms do where there are any, and as a look at all of its
+// triangles does everywhere.
+#include "core/model/triangle_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <random>
+
+#include "core/model/collider.hpp"
+#include "core/model/triangle.hpp"
+#include "tests/support/bodies.hpp"
+
+namespace taut::triangle_mesh_test {
+namespace {
+
+class Random {
+ public:
+  double within(double bound) { return std::uniform_real_distribution<>(-bound, bound)(engine_); }
+  Vec3 point(double bound) { return {within(bound), within(bound), within(bound)}; }
+
+ private:
+  std::mt19937_64 engine_{4711};
+};
+
+const Vec3 kHalf(0.3, 0.2, 0.45);
+
+/// Where a path from outside first meets the box, by its three slabs.
+std::optional<std::pair<double, Vec3>> slab_hit(const Vec3& a, const Vec3& b) {
+  double in = -1, out = 1;
+  Vec3 normal = Vec3::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double way = b[k] - a[k], side = way > 0 ? -1 : 1;
+    const double enters = (side * kHalf[k] - a[k]) / way, leaves = (-side * kHalf[k] - a[k]) / way;
+    if (enters > in) {
+      in = enters;
+      normal = side * Vec3::Unit(k);
+    }
+    out = std::min(out, leaves);
+  }
+  if (in < 0 || in >= out) return {};
+  return std::pair(in, normal);
+}
+
+TEST(TriangleMesh, ABoxOfTwelveTrianglesIsTheBoxOnAMillionSegments) {
+  const Vec3 center(0.2, -0.4, 0.1);
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()));
+  const Shape box = Box{center, kHalf, turned};
+  const Shape body = MeshBody{box_of_triangles(kHalf).mesh(), center, turned};
+  Random random;
+  int hits = 0, inside = 0, far_apart = 0, ties = 0;
+  for (int n = 0; n < 1000000; ++n) {
+    const Vec3 p = center + random.point(0.8), q = center + random.point(0.8);
+    const Surface want = surface(box, p), got = surface(body, p);
+    far_apart += std::abs(want.distance - got.distance) > 1e-12;
+    inside += want.distance < 0;
+    // Inside near the medial axis two sides are equally near; at the surface nothing is a
+    // direction.
+    const Vec3 local = turned.conjugate() * (p - center);
+    Vec3 gaps = kHalf - local.cwiseAbs();
+    std::sort(gaps.begin(), gaps.end());
+    const bool tie = want.distance < 0 && gaps[1] - gaps[0] < 1e-9;
+    ties += tie;
+    if (!tie && std::abs(want.distance) > 1e-3)
+      far_apart += !((want.normal - got.normal).norm() <= 1e-12);
+    if (want.distance < 0) continue;
+    const Vec3 to = turned.conjugate() * (q - center);
+    const auto by_slabs = slab_hit(local, to);
+    const auto by_tree = std::get<MeshBody>(body).mesh->first_hit(local, to);
+    ASSERT_EQ(by_slabs.has_value(), by_tree.has_value()) << n;
+    if (!by_slabs) continue;
+    ++hits;
+    far_apart += std::abs(by_slabs->first - by_tree->share) > 1e-12 || !by_tree->inward;
+    far_apart += std::get<MeshBody>(body).mesh->normal(by_tree->triangle) != by_slabs->second;
+  }
+  EXPECT_EQ(far_apart, 0);
+  EXPECT_GT(hits, 50000);
+  EXPECT_GT(inside, 20000);
+  EXPECT_LT(ties, 10);
+}
+
+TEST(TriangleMesh, ATessellatedBallIsTheBallWithAnErrorOfTheSecondOrder) {
+  constexpr double kRadius = 0.4;
+  Random random;
+  double before = 0;
+  for (const int times : {2, 3, 4, 5}) {
+    const Triangles ball = ball_of_triangles(kRadius, times);
+    const auto mesh = ball.mesh();
+    EXPECT_TRUE(mesh->closed());
+    double longest = 0, worst = 0;
+    for (const auto& [a, b, c] : ball.triangles)
+      for (const auto& [v, w] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+        longest = std::max(longest,
+                           (mesh->vertices()[to_index(v)] - mesh->vertices()[to_index(w)]).norm());
+    for (int n = 0; n < 20000; ++n) {
+      const Vec3 p = random.point(1).normalized() * (kRadius + random.within(0.1));
+      worst = std::max(worst, std::abs(mesh->nearest(p).distance - (p.norm() - kRadius)));
+    }
+    // e^2/(6R) and higher orders: the height of the cap over the middle of a triangle of sides e
+    EXPECT_LE(worst, kRadius - std::sqrt(kRadius * kRadius - longest * longest / 3)) << times;
+    if (before > 0) {
+      EXPECT_NEAR(before / worst, 4, 0.5) << times;
+    }
+    before = worst;
+  }
+}
+
+/// Six times the solid angle over 4 pi: 1 inside, 0 outside (Van Oosterom, Strackee 1983).
+double winding(const TriangleMesh& mesh, const Vec3& p) {
+  double sum = 0;
+  for (const auto& [i, j, k] : mesh.triangles()) {
+    const Vec3 a = mesh.vertices()[to_index(i)] - p, b = mesh.vertices()[to_index(j)] - p,
+               c = mesh.vertices()[to_index(k)] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum += 2 * std::atan2(a.dot(b.cross(c)),
+                          la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (4 * std::numbers::pi);
+}
+
+Corners corners(const TriangleMesh& mesh, const Triangle& t) {
+  return {mesh.vertices()[to_index(t[0])], mesh.vertices()[to_index(t[1])],
+          mesh.vertices()[to_index(t[2])]};
+}
+
+/// Where the path meets a triangle, by the system of its barycentric coordinates.
+std::optional<double> share_at(const Corners& t, const Vec3& from, const Vec3& to) {
+  Eigen::Matrix3d m;
+  m << from - to, t[1] - t[0], t[2] - t[0];
+  const Vec3 s = m.partialPivLu().solve(from - t[0]);
+  if (s[0] < 0 || s[0] > 1 || s[1] < 0 || s[2] < 0 || s[1] + s[2] > 1) return {};
+  return s[0];
+}
+
+struct Named {
+  const char* name;
+  Triangles body;
+};
+std::vector<Named> bodies() {
+  return {{"pyramid", pyramid(0.8, 0.6)},
+          {"torus", torus(0.5, 0.15, 24, 12)},
+          {"irregular", torus(0.5, 0.18, 31, 17, 0.05)}};
+}
+
+void expect_all_seen(const char* name, const TriangleMesh& mesh) {
+  ASSERT_TRUE(mesh.closed()) << name;
+  EXPECT_GT(mesh.volume(), 0) << name;
+  Random random;
+  int inside = 0, hits = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const Vec3 p = random.point(0.8), q = random.point(0.8);
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<double> shares;
+    std::size_t boxes = 0, in_box = 0;
+    const Eigen::AlignedBox3d around(p.cwiseMin(q), p.cwiseMax(q));
+    for (const Triangle& t : mesh.triangles()) {
+      const Corners c = corners(mesh, t);
+      least = std::min(least, (closest_point(c, p).position - p).norm());
+      if (const auto share = share_at(c, p, q)) shares.push_back(*share);
+      Eigen::AlignedBox3d own(c[0]);
+      boxes += own.extend(c[1]).extend(c[2]).intersects(around);
+    }
+    const bool is_inside = winding(mesh, p) > 0.5;
+    inside += is_inside;
+    const NearestPlace place = mesh.nearest(p);
+    EXPECT_NEAR(place.distance, is_inside ? -least : least, 1e-12) << name << ' ' << n;
+    EXPECT_NEAR(place.normal.norm(), 1, 1e-12) << name << ' ' << n;
+    // The gradient: a step along it changes the distance by as much.
+    const double step = 1e-4 * std::abs(place.distance);
+    EXPECT_NEAR(
+        std::abs(mesh.nearest(p - std::copysign(step, place.distance) * place.normal).distance),
+        std::abs(place.distance) - step, 1e-12)
+        << name << ' ' << n;
+    std::ranges::sort(shares);
+    std::vector<double> seen;
+    for (const MeshHit& hit : mesh.hits(p, q)) seen.push_back(hit.share);
+    ASSERT_EQ(seen.size(), shares.size()) << name << ' ' << n;
+    for (std::size_t k = 0; k < seen.size(); ++k) EXPECT_NEAR(seen[k], shares[k], 1e-10);
+    const auto first = mesh.first_hit(p, q);
+    ASSERT_EQ(first.has_value(), !shares.empty()) << name << ' ' << n;
+    if (first) {
+      ++hits;
+      EXPECT_EQ(first->share, seen.front()) << name << ' ' << n;
+      EXPECT_EQ(first->inward, !is_inside) << name << ' ' << n;
+    }
+    mesh.in_box(around, [&](int) { ++in_box; });
+    EXPECT_EQ(in_box, boxes) << name << ' ' << n;
+  }
+  EXPECT_GT(inside, 50) << name;
+  EXPECT_GT(hits, 100) << name;
+}
+
+TEST(TriangleMesh, TheTreeSeesWhatALookAtAllTrianglesSees) {
+  for (const auto& [name, body] : bodies()) expect_all_seen(name, *body.mesh());
+}
+
+TEST(TriangleMesh, RefittedItAnswersAsOneMadeAnew) {
+  for (const auto& [name, body] : bodies()) {
+    std::vector<Vec3> moved = body.vertices;
+    for (Vec3& x : moved) x = Vec3(1.2 * x.z(), 0.9 * x.x(), 0.8 * x.y() + 0.1 * x.x());
+    TriangleMesh mesh(body.vertices, body.triangles);
+    mesh.refit(moved);
+    expect_all_seen(name, mesh);
+    const TriangleMesh anew(moved, body.triangles);
+    Random random;
+    for (int n = 0; n < 1000; ++n) {
+      const Vec3 p = random.point(1);
+      EXPECT_EQ(mesh.nearest(p).distance, anew.nearest(p).distance) << name;
+      EXPECT_EQ(mesh.nearest(p).normal, anew.nearest(p).normal) << name;
+    }
+  }
+}
+
+// Nothing slips through between triangles: from the middle of a ball every way out is one hit, also
+// through its edges and corners.
+TEST(TriangleMesh, NoPathSlipsBetweenTriangles) {
+  const Triangles ball = ball_of_triangles(1, 3);
+  const auto mesh = ball.mesh();
+  const Vec3 from(0.03, -0.02, 0.01);
+  for (const auto& [a, b, c] : ball.triangles) {
+    const Corners t = corners(*mesh, {a, b, c});
+    for (const double s : {0.0, 0.1, 1.0 / 3, 0.5, 0.9})
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 on = (1 - s) * t[k] + s * t[(k + 1) % 3];
+        const auto hit = mesh->first_hit(from, from + 1.5 * (on - from));
+        ASSERT_TRUE(hit);
+        EXPECT_NEAR(hit->share, 1 / 1.5, 1e-3);
+        EXPECT_FALSE(hit->inward);
+      }
+  }
+}
+
+TEST(TriangleMesh, SaysWhereItIsOpen) {
+  Triangles box = box_of_triangles(kHalf);
+  EXPECT_TRUE(box.mesh()->closed());
+  EXPECT_NEAR(box.mesh()->volume(), 8 * kHalf.prod(), 1e-15);
+  std::swap(box.triangles[5][0], box.triangles[5][1]);  // looks inward
+  EXPECT_FALSE(box.mesh()->closed());
+  box = box_of_triangles(kHalf);
+  box.triangles.pop_back();
+  EXPECT_FALSE(box.mesh()->closed());
+  box = box_of_triangles(kHalf);
+  box.triangles.push_back({0, 7, 3});  // a wall inside: edges of three
+  EXPECT_FALSE(box.mesh()->closed());
+}
+
+TEST(TriangleMesh, AThinBodyIsAtADistanceOnBothSides) {
+  Triangles half = box_of_triangles(kHalf);
+  half.triangles = {half.triangles[6], half.triangles[7]};  // its top
+  const Shape thin = MeshBody{.mesh = half.mesh(), .sides = MeshBody::Sides::both};
+  for (const double y : {-0.1, 0.1}) {
+    const Surface over = surface(thin, {0.05, kHalf.y() + y, 0.1});
+    EXPECT_NEAR(over.distance, 0.1, 1e-15);
+    EXPECT_NEAR((over.normal - std::copysign(1, y) * Vec3::UnitY()).norm(), 0, 1e-15);
+    const Surface beside = surface(thin, {kHalf.x() + 0.1, kHalf.y() + y, 0.1});
+    EXPECT_NEAR(beside.distance, std::sqrt(0.02), 1e-15);
+    EXPECT_NEAR((beside.normal - Vec3(1, std::copysign(1, y), 0) / std::sqrt(2)).norm(), 0, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace taut::triangle_mesh_test
