@@ -176,6 +176,8 @@ std::vector<std::string> beyond_first(const Scene& scene) {
       }))
     all.emplace_back("a capsule");
   if (scene.bending) all.emplace_back("bending stiffness");
+  if (!scene.releases.empty()) all.emplace_back("pins that let go");
+  if (std::ranges::any_of(scene.links, is_seam)) all.emplace_back("a seam");
   for (std::string& key : later_keys(scene)) all.push_back(std::move(key));
   return all;
 }
@@ -210,6 +212,11 @@ std::string scene_file(const Scene& scene) {
   file.update(json_of("forces", scene)), file.update(json_of("cloth", scene));
   if (!beyond_first(scene).empty()) file["format"] = "taut-scene/2";
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
+  if (!scene.releases.empty()) {
+    Json& releases = file["releases"] = Json::array();
+    for (const Release& release : scene.releases)
+      releases.push_back({{"t", release.step * scene.dt}, {"vertices", release.vertices}});
+  }
   if (scene.bending) {
     file["bending"] = json_of("bending", *scene.bending);  // whose key `warp` is the direction
     file["bending"].update({{"warp", scene.bending->warp},
