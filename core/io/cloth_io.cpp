@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -154,9 +155,10 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fab
                   const FileKeys& said, Scene& scene) {
   const Eigen::Quaterniond rotation = read_rotation(cloth);
   const auto name = cloth.string("mesh");
+  const double weld = cloth.number("weld", Range::positive(kFar), 0);
   Polygons surface;
   try {
-    if (name) surface = read_obj(folder / *name);
+    if (name) surface = read_obj(folder / *name, weld / said.scale);
   } catch (const InputError& error) {
     for (const Diagnostic& d : error.diagnostics())
       if (d.line > 0)
@@ -270,10 +272,13 @@ class VertexReader {
   }
 
   void add_number(const Value& value) {
-    if (value.kind != Value::Kind::integer || value.number < 0 || value.number >= mesh_.size())
+    const std::vector<int>& welded = mesh_.welded;
+    const int count = welded.empty() ? mesh_.size() : static_cast<int>(welded.size());
+    if (value.kind != Value::Kind::integer || value.number < 0 || value.number >= count)
       return report(value, "names vertex " + as_typed(value.number) + ", but the cloth has 0 to " +
-                               std::to_string(mesh_.size() - 1));
-    all_.push_back(static_cast<int>(value.number));
+                               std::to_string(count - 1));
+    const int vertex = static_cast<int>(value.number);
+    all_.push_back(welded.empty() ? vertex : welded[to_index(vertex)]);
   }
 
   void add_pair(const Value& value) {
@@ -376,7 +381,7 @@ bool read_cloth(Section& cloth, const std::filesystem::path& folder, const Fabri
   if (surface)
     refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
   else
-    refuse(cloth, {"scale", "rotation"}, "belongs to a mesh, not to a grid");
+    refuse(cloth, {"scale", "rotation", "weld"}, "belongs to a mesh, not to a grid");
   const bool built = surface ? read_surface(cloth, folder, fabric, said, scene)
                              : read_sheet(cloth, fabric, said, scene);
   cloth.know("cloth");
@@ -388,6 +393,72 @@ bool read_cloth(Section& cloth, const std::filesystem::path& folder, const Fabri
   read_weights(cloth, scene);
   read_placed(cloth, scene);
   return true;
+}
+
+namespace {
+
+/// The vertices that the items of a list name, one item after the other.
+std::vector<int> in_order(Section& section, const std::string& key, const Mesh& mesh) {
+  std::vector<int> all;
+  const Value* value = section.find(key);
+  if (!value) return all;
+  if (!value->is_array()) return vertices_of(*value, section, key, mesh);
+  for (const Value& item : value->items)
+    for (const int vertex : vertices_of(item, section, key, mesh)) all.push_back(vertex);
+  return all;
+}
+
+using Pair = std::pair<int, int>;
+
+/// Pairs of vertices of one face, or linked already, the lesser first.
+std::set<Pair> together(const Scene& scene) {
+  std::set<Pair> all;
+  const auto add = [&](int a, int b) { all.insert(std::minmax(a, b)); };
+  for (const auto& [a, b, c] : scene.mesh.triangles) {
+    add(a, b);
+    add(b, c);
+    add(a, c);
+  }
+  for (const Link& link : scene.links)
+    if (link.family != Family::bend) add(link.a, link.b);
+  if (const auto& g = scene.mesh.grid)
+    for (int j = 0; j + 1 < g->nv; ++j)
+      for (int i = 0; i + 1 < g->nu; ++i) {
+        add(g->index(i, j), g->index(i + 1, j + 1));
+        add(g->index(i + 1, j), g->index(i, j + 1));
+      }
+  return all;
+}
+
+}  // namespace
+
+void read_seams(Section& root, Scene& scene) {
+  const auto items = root.tables("seam");
+  if (items.empty()) return;
+  std::set<Pair> known = together(scene);
+  std::vector<Link> seams;
+  for (const Value* item : items) {
+    Section seam(root.diagnostics(), *item, "[[seam]]");
+    seam.need({"a", "b"});
+    const std::vector<int> a = in_order(seam, "a", scene.mesh), b = in_order(seam, "b", scene.mesh);
+    seam.finish();
+    if (a.empty() || b.empty()) continue;
+    if (a.size() != b.size())
+      seam.report("b", "names " + std::to_string(b.size()) + " vertices, 'a' names " +
+                           std::to_string(a.size()) + ": a seam is of pairs");
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+      const std::string who = "vertices " + std::to_string(a[k]) + " and " + std::to_string(b[k]);
+      if (a[k] == b[k])
+        seam.report("b", "sews vertex " + std::to_string(a[k]) + " to itself");
+      else if (!known.insert(std::minmax(a[k], b[k])).second)
+        seam.report("b", "sews " + who + ", which one face, link or seam has already");
+      else
+        seams.push_back({a[k], b[k], kSeamRest, Family::structural});
+    }
+  }
+  const auto behind = std::ranges::find_if(
+      scene.links, [](const Link& l) { return l.family != Family::structural; });
+  scene.links.insert(behind, seams.begin(), seams.end());
 }
 
 std::vector<int> read_vertices(Section& section, const std::string& key, const Mesh& mesh) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>
@@ -17,6 +18,7 @@
 #include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -93,7 +95,9 @@ double face_area(const Polygons& p, const std::vector<int>& face) {
   return std::accumulate(share.begin(), share.end(), 0.0);
 }
 
-std::string number(int vertex) { return std::to_string(vertex + 1); }  // as OBJ counts
+std::string number(const Polygons& p, int vertex) {  // as OBJ counts
+  return std::to_string(p.numbers[to_index(vertex)] + 1);
+}
 
 /// Whether its corners are not all on one line.
 bool is_spread(const Polygons& p, const std::vector<int>& face) {
@@ -133,16 +137,17 @@ void judge_vertices(const Polygons& p, SurfaceErrors& errors) {
   for (std::size_t v = 0; v < used.size(); ++v)
     if (!used[v])
       errors.report(p.vertex_lines[v],
-                    "vertex " + number(static_cast<int>(v)) + " belongs to no face");
+                    "vertex " + number(p, static_cast<int>(v)) + " belongs to no face");
   std::map<std::array<double, 3>, int> seen;
   for (int v = 0; v < static_cast<int>(p.vertices.size()); ++v) {
     const Vec3& x = p.vertices[to_index(v)];
     const auto [first, added] = seen.emplace(std::array{x[0] + 0, x[1] + 0, x[2] + 0}, v);
     if (!added)
       errors.report(p.vertex_lines[to_index(v)],
-                    "vertex " + number(v) + " coincides with vertex " + number(first->second) +
-                        " (line " + std::to_string(p.vertex_lines[to_index(first->second)]) +
-                        "): a cloth is one surface, so join them");
+                    "vertex " + number(p, v) + " coincides with vertex " +
+                        number(p, first->second) + " (line " +
+                        std::to_string(p.vertex_lines[to_index(first->second)]) +
+                        "): a cloth is one surface, so join them, or let `weld` in [cloth] do it");
   }
 }
 
@@ -172,8 +177,9 @@ void judge_surface(const Polygons& p, SurfaceErrors& errors) {
   for (const Edge& edge : edges_of(p))
     if (edge.faces.size() > 2)
       errors.report(p.face_lines[to_index(edge.faces[2])],
-                    "the edge from vertex " + number(edge.a) + " to " + number(edge.b) + " has " +
-                        std::to_string(edge.faces.size()) + " faces; a cloth has two at most");
+                    "the edge from vertex " + number(p, edge.a) + " to " + number(p, edge.b) +
+                        " has " + std::to_string(edge.faces.size()) +
+                        " faces; a cloth has two at most");
 }
 
 /// The vertex beside `of` in the face, on the side away from `other`, which is its other neighbour.
@@ -198,6 +204,66 @@ std::vector<int> first_at_each_place(const std::vector<Vec3>& vertices) {
     first[to_index(sorted[k])] = same ? first[to_index(sorted[k - 1])] : sorted[k];
   }
   return first;
+}
+
+/// The first vertex that stays within `reach` of each, itself if there is none: cells of that size,
+/// of which a vertex looks at those around its own.
+std::vector<int> joined(const std::vector<Vec3>& x, double reach) {
+  using Cell = std::array<std::int64_t, 3>;
+  const auto cell = [&](const Vec3& at, Eigen::Index axis) {
+    return static_cast<std::int64_t>(std::floor(at[axis] / reach));
+  };
+  std::map<Cell, std::vector<int>> staying;
+  std::vector<int> to(x.size());
+  for (int v = 0; v < static_cast<int>(x.size()); ++v) {
+    const Vec3& at = x[to_index(v)];
+    const Cell own{cell(at, 0), cell(at, 1), cell(at, 2)};
+    int first = v;
+    for (std::int64_t k = 0; k < 27; ++k) {
+      const auto found =
+          staying.find({own[0] + k % 3 - 1, own[1] + k / 3 % 3 - 1, own[2] + k / 9 - 1});
+      if (found == staying.end()) continue;
+      for (const int other : found->second)
+        if (other < first && (x[to_index(other)] - at).norm() <= reach) first = other;
+    }
+    to[to_index(v)] = first;
+    if (first == v) staying[own].push_back(v);
+  }
+  return to;
+}
+
+/// Joins vertices within `reach` of each other; those that stay keep their order.
+void weld(Polygons& p, double reach, SurfaceErrors& errors) {
+  const std::vector<int> to = joined(p.vertices, reach);
+  for (std::size_t f = 0; f < p.faces.size(); ++f) {
+    std::map<int, int> corners;  // by what they become
+    for (const int v : p.faces[f])
+      if (const auto [other, added] = corners.emplace(to[to_index(v)], v); !added) {
+        const double apart = (p.vertices[to_index(v)] - p.vertices[to_index(other->second)]).norm();
+        errors.report(p.face_lines[f], "`weld` in [cloth] joins vertices " +
+                                           number(p, other->second) + " and " + number(p, v) +
+                                           " of this face, which are " + shortest(apart) +
+                                           " apart: the face would collapse");
+        break;
+      }
+  }
+  Polygons whole{.file = p.file,
+                 .faces = std::move(p.faces),
+                 .face_lines = std::move(p.face_lines),
+                 .skipped = std::move(p.skipped)};
+  for (std::size_t v = 0; v < to.size(); ++v) {
+    if (to[v] != static_cast<int>(v)) {
+      whole.welded.push_back(whole.welded[to_index(to[v])]);
+      continue;
+    }
+    whole.welded.push_back(static_cast<int>(whole.vertices.size()));
+    whole.vertices.push_back(p.vertices[v]);
+    whole.vertex_lines.push_back(p.vertex_lines[v]);
+    whole.numbers.push_back(static_cast<int>(v));
+  }
+  for (std::vector<int>& face : whole.faces)
+    for (int& v : face) v = whole.welded[to_index(v)];
+  p = std::move(whole);
 }
 
 /// Keywords that say nothing about the shape.
@@ -266,6 +332,7 @@ class ObjReader {
       }
       x[static_cast<Eigen::Index>(axis)] = *value;
     }
+    polygons_.numbers.push_back(static_cast<int>(polygons_.vertices.size()));
     polygons_.vertices.push_back(x);
     polygons_.vertex_lines.push_back(words_[0].line);
   }
@@ -311,6 +378,7 @@ Mesh make_mesh(const Polygons& p, double mass, Lumping lumping) {
   assert(!p.faces.empty() && mass > 0);
   Mesh mesh;
   mesh.rest = p.vertices;
+  mesh.welded = p.welded;
   for (std::vector<int> face : p.faces) {
     if (face.size() > 3)
       if (const Face shape = face_of(p, face); !shape.convex()) {
@@ -371,19 +439,21 @@ std::vector<Link> mesh_links(const Polygons& p, const LinkChoice& choice) {
   return links;
 }
 
-Polygons parse_obj(const std::string& file, const std::string& text) {
+Polygons parse_obj(const std::string& file, const std::string& text, double reach) {
   SurfaceErrors errors(file);
   ObjReader reader(file, errors);
   reader.read(text);
   Polygons polygons = reader.take();
   errors.throw_if_any();  // what follows presumes that every face names vertices that exist
+  if (reach > 0) weld(polygons, reach, errors);
+  errors.throw_if_any();
   judge_surface(polygons, errors);
   errors.throw_if_any();
   return polygons;
 }
 
-Polygons read_obj(const std::filesystem::path& path) {
-  return parse_obj(path.string(), read_text(path, kMostMeshBytes));
+Polygons read_obj(const std::filesystem::path& path, double weld) {
+  return parse_obj(path.string(), read_text(path, kMostMeshBytes), weld);
 }
 
 BodySurface parse_body_obj(const std::string& file, const std::string& text) {

@@ -16,6 +16,8 @@ struct Polygons {
   std::vector<std::vector<int>> faces;  ///< vertices of each face in order round it, three or more
   std::vector<int> vertex_lines;        ///< [n] where each vertex stands in the file
   std::vector<int> face_lines;          ///< the same of each face
+  std::vector<int> numbers;             ///< [n] of each vertex in the file, from 0
+  std::vector<int> welded;              ///< as Mesh::welded
   /// How many lines of each keyword were skipped that say something, but nothing that a cloth has.
   std::map<std::string, int> skipped;
 };
@@ -26,10 +28,13 @@ struct Polygons {
 /// cloth can be made of: faces that name a vertex which is not there, name one twice, cross
 /// themselves or have no area; edges of more than two faces; vertices without a face; vertices that
 /// coincide.
-Polygons read_obj(const std::filesystem::path&);
+///
+/// Before that it joins vertices that are at most `weld` apart, in the file's unit: each to the
+/// first one that stays. A face that has two of them has to go, which is an error, too. 0: none.
+Polygons read_obj(const std::filesystem::path&, double weld = 0);
 
 /// The same for text that is already in memory; `file` is for the messages.
-Polygons parse_obj(const std::string& file, const std::string& text);
+Polygons parse_obj(const std::string& file, const std::string& text, double weld = 0);
 
 /// A body of triangles, as a collider is one.
 struct BodySurface {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 
 #include "core/io/document.hpp"
@@ -138,8 +140,15 @@ void read_colliders(Section& root, const std::filesystem::path& folder, Scene& s
   }
 }
 
-/// Reads every [[pin_motion]]. Without a mesh (`built` false) only the motions are judged.
-void read_pin_motions(Section& root, bool built, Scene& scene) {
+const Range kRelease = Range::positive(1e6);  ///< s
+constexpr std::size_t kMostReleases = 64;     ///< each makes a solver of its own
+
+/// Pins and when the file lets them go [s].
+using Timed = std::vector<std::pair<double, std::vector<int>>>;
+
+/// Reads every [[pin_motion]]. Without a mesh (`built` false) only the motions are judged. Those
+/// with a `release` of their own go to `timed`.
+void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
   std::set<int> moved;
   for (const Value* item : root.tables("pin_motion")) {
     Section section(root.diagnostics(), *item, "[[pin_motion]]");
@@ -147,6 +156,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene) {
     section.need({"vertices"});
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);
     group.motion = read_motion(section, "pin_motion", Vec3::Zero());
+    const auto release = section.number("release", kRelease);
     section.finish();
     for (const int vertex : group.vertices) {
       const bool pinned = std::binary_search(scene.pins.begin(), scene.pins.end(), vertex);
@@ -162,7 +172,47 @@ void read_pin_motions(Section& root, bool built, Scene& scene) {
       const auto v = static_cast<std::size_t>(vertex);
       scene.start.v[v] = initial_velocity(group.motion, scene.start.x[v]);
     }
+    if (release) timed.emplace_back(*release, group.vertices);
     if (!group.motion.at_rest()) scene.pin_motions.push_back(std::move(group));
+  }
+}
+
+/// When all pins let go that have no time of their own [s].
+std::optional<double> read_release(Section& cloth) {
+  const auto release = cloth.number("release", kRelease);
+  if (release && !cloth.find("pins"))
+    cloth.report("release", "lets go of pins, and this cloth has none");
+  return release;
+}
+
+/// Each falls on the first step boundary at or after its time, which forgives the rounding of dt.
+/// One at or after the end lets nothing go: a remark says so.
+void set_releases(const std::optional<double>& of_others, Timed timed, Section& root,
+                  Scene& scene) {
+  if (of_others) {
+    std::vector<int> others = scene.pins;
+    for (const auto& one : timed)
+      std::erase_if(others, [&](int v) { return std::ranges::binary_search(one.second, v); });
+    timed.emplace_back(*of_others, std::move(others));
+  }
+  std::map<int, std::vector<int>> at;
+  for (const auto& [t, vertices] : timed) {
+    const double steps = std::ceil(t / scene.dt * (1 - 1e-7));
+    if (steps < scene.steps) {
+      std::vector<int>& together = at[std::max(1, static_cast<int>(steps))];
+      together.insert(together.end(), vertices.begin(), vertices.end());
+    } else {
+      root.diagnostics().remark("no pin lets go at " + as_typed(t) + " s: the run ends at " +
+                                as_typed(scene.duration()) + " s");
+    }
+  }
+  if (at.size() > kMostReleases)
+    root.report("cloth", "pins let go at " + std::to_string(at.size()) +
+                             " different steps; at most " + std::to_string(kMostReleases) +
+                             " are allowed");
+  for (auto& [step, vertices] : at) {
+    std::ranges::sort(vertices);
+    if (!vertices.empty()) scene.releases.push_back({step, std::move(vertices)});
   }
 }
 
@@ -262,7 +312,7 @@ void complete(Bending& bending, const Mesh& mesh) {
 /// What no single key is to blame for.
 void check_whole(Section& root, Diagnostics& diagnostics, const Scene& scene) {
   for (const Link& link : scene.links)
-    if (!(link.rest >= kShortestLink)) {
+    if (!is_seam(link) && !(link.rest >= kShortestLink)) {
       diagnostics.report(root.place("cloth"), "vertices " + std::to_string(link.a) + " and " +
                                                   std::to_string(link.b) +
                                                   " coincide: their link has no length");
@@ -380,7 +430,8 @@ void judge_path(const Value& item, Section& root, const Collider& collider, cons
 double spacing(const Scene& scene) {
   double least = 0;
   for (const Link& link : scene.links)
-    if (link.family == Family::structural && (least == 0 || link.rest < least)) least = link.rest;
+    if (link.family == Family::structural && !is_seam(link) && (least == 0 || link.rest < least))
+      least = link.rest;
   return least;
 }
 
@@ -442,6 +493,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   Section cloth = read("cloth", said, scene);
   const bool built =
       root.table("cloth") && read_cloth(cloth, path.parent_path(), fabric, said, scene);
+  const std::optional<double> release = read_release(cloth);
   if (root.table("cloth")) cloth.finish();
   read("forces", said, scene).finish();
   if (root.table("bending") || fabric) {
@@ -451,11 +503,17 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   if (root.table("wind")) read("wind", said, scene.wind.emplace()).finish();
   if (root.table("self_collision"))
     read("self_collision", said, scene.self_collision.emplace()).finish();
+  if (built)
+    read_seams(root, scene);
+  else
+    root.tables("seam");
   read_colliders(root, path.parent_path(), scene);
-  read_pin_motions(root, built, scene);
+  Timed timed;
+  read_pin_motions(root, built, scene, timed);
   Section time = read("time", said, scene);
   time.finish();
   set_steps(said, time, scene);
+  set_releases(release, std::move(timed), root, scene);
   std::vector<std::string> paths;
   for (const SceneKey& key : scene_keys()) paths.emplace_back(key.path);
   root.finish(paths);

@@ -49,6 +49,9 @@ std::shared_ptr<const TriangleMesh> read_body(Section&, const std::filesystem::p
 /// Sorted, unique. Reports what names none; `key` is for the messages.
 std::vector<int> read_vertices(Section&, const std::string& key, const Mesh&);
 
+/// Reads every [[seam]] and puts its links behind the cloth's structural ones.
+void read_seams(Section& root, Scene&);
+
 /// Reads 'rotation': { axis = [0, 0, 1], angle = 45 } with the angle in degrees, or a quaternion
 /// [w, x, y, z] of any length but zero. Absent: the identity.
 Eigen::Quaterniond read_rotation(Section&);

@@ -30,6 +30,9 @@ struct Mesh {
   std::vector<Triangle> triangles;  ///< vertex triples; wind, face contact and pictures use them
   std::vector<double> mass;         ///< [n] kg, > 0, pinned vertices included
   std::optional<Grid> grid;         ///< set if the vertices form a regular sheet
+  /// Of each vertex of the file the one that it became, where `cloth.weld` joined some; else empty.
+  /// What a scene's file numbers is meant so; no part of what is simulated.
+  std::vector<int> welded;
 
   int size() const { return static_cast<int>(rest.size()); }
 };
@@ -46,6 +49,10 @@ struct Link {
   double rest = 0;
   Family family = Family::structural;
 };
+/// A seam draws two vertices together: a structural link whose rest length is 0 but for what keeps
+/// every solver from dividing by it [m]. It has no strain.
+inline constexpr double kSeamRest = 1e-18;
+inline bool is_seam(const Link& link) { return link.rest == kSeamRest; }
 
 /// How a sheet's mass is divided among its vertices.
 enum class Lumping {

@@ -38,6 +38,7 @@ class Bytes {
   void add(const Grid& g) { add(g.nu), add(g.nv); }
   void add(const Motion::Key& k) { add(k.t), add(k.displacement); }
   void add(const Motion& m) { add("collider", m), add(m.path); }
+  void add(const Release& r) { add(r.step), add(r.vertices); }
   void add(const PinMotion& m) { add(m.vertices), add(m.motion); }
   void add(const Collider& c) {
     add(c.shape.index());
@@ -54,10 +55,7 @@ class Bytes {
   void add(const Bending& b) { add(b.warp), add(b.weft), add("bending", b); }
   void add(const Wind& w) { add("wind", w); }
   void add(const SelfCollision& s) { add("self_collision", s); }
-  void add(const Mesh& m) {
-    const auto& [rest, triangles, mass, grid] = m;
-    add(rest), add(triangles), add(mass), add(grid);
-  }
+  void add(const Mesh& m) { add(m.rest), add(m.triangles), add(m.mass), add(m.grid); }
   void add(const State& s) { add(s.x), add(s.v); }
   template <class T>
   void add(const std::vector<T>& values) {
@@ -101,7 +99,32 @@ class Bytes {
 }  // namespace
 
 bool is_pinned(const Scene& scene, int vertex) {
-  return std::ranges::binary_search(scene.pins, vertex);
+  const auto lets_go = [&](const Release& r) {
+    return std::ranges::binary_search(r.vertices, vertex);
+  };
+  return std::ranges::binary_search(scene.pins, vertex) &&
+         std::ranges::none_of(scene.releases, lets_go);
+}
+
+std::vector<int> pins_at(const Scene& scene, double t) {
+  std::vector<int> pins = scene.pins;
+  for (const Release& r : scene.releases)
+    if (t > (r.step + 0.5) * scene.dt)
+      std::erase_if(pins, [&](int v) { return std::ranges::binary_search(r.vertices, v); });
+  return pins;
+}
+
+std::vector<Scene> stages(const Scene& scene) {
+  std::vector<Scene> all{scene};
+  all.front().releases.clear();
+  for (const Release& release : scene.releases) {
+    Scene& next = all.emplace_back(all.back());
+    const auto free = [&](int v) { return std::ranges::binary_search(release.vertices, v); };
+    std::erase_if(next.pins, free);
+    for (PinMotion& group : next.pin_motions) std::erase_if(group.vertices, free);
+    std::erase_if(next.pin_motions, [](const PinMotion& group) { return group.vertices.empty(); });
+  }
+  return all;
 }
 
 std::vector<double> inverse_masses(const Scene& scene) {
@@ -144,6 +167,7 @@ Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
   if (s.stiffness != kRigid)  // a scene without has the bytes that it had before there was any
     for (const double k : s.stiffness) bytes.add(k);
   if (s.bending) bytes.add(s.bending);
+  if (!s.releases.empty()) bytes.add(s.releases);
   return bytes;
 }
 

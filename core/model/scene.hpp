@@ -48,6 +48,12 @@ struct PinMotion {
   Motion motion;              ///< of the place where the vertex starts
 };
 
+/// Pins that let go: free from a step boundary on, with the velocity that they had there.
+struct Release {
+  int step = 0;               ///< > 0: the number of steps after which they are free
+  std::vector<int> vertices;  ///< sorted; each of them in Scene::pins, and in no other release
+};
+
 inline constexpr std::array<double, kFamilies.size()> kRigid{
     std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
     std::numeric_limits<double>::infinity()};
@@ -63,6 +69,7 @@ struct Scene {
   State start;                         ///< may differ from the rest shape
   std::vector<int> pins;               ///< sorted, unique: vertices that no solver may integrate
   std::vector<PinMotion> pin_motions;  ///< empty: pins stay where they start
+  std::vector<Release> releases;       ///< by growing step; empty: pins hold to the end
   std::vector<Link> links;             ///< Gauss-Seidel order, families contiguous
   /// Of the links of each family [N/m], > 0; infinite: rigid.
   std::array<double, kFamilies.size()> stiffness = kRigid;
@@ -79,10 +86,17 @@ struct Scene {
   double duration() const { return dt * steps; }  ///< s
 };
 
-/// Whether the scene says where the vertex is, and no solver.
+/// Whether the scene says where the vertex is, and no solver, from the start to the end.
 bool is_pinned(const Scene&, int vertex);
 
-/// Inverse masses [n] in 1/kg; 0 for pinned vertices.
+/// The vertices that are held at time t [s]; at that of their release they still are.
+std::vector<int> pins_at(const Scene&, double t);
+
+/// The scene between its releases, which it has no more: as it is until the first, then with the
+/// pins that are left after each. Its start stays the run's.
+std::vector<Scene> stages(const Scene&);
+
+/// Inverse masses [n] in 1/kg; 0 for vertices that are pinned at the start.
 std::vector<double> inverse_masses(const Scene&);
 
 /// What a solver whose links are rigid says of a scene whose links are not: "links of 500 N/m", the

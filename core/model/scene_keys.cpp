@@ -95,6 +95,14 @@ const SceneKey kKeys[] = {
     choice("cloth.start_inside", &FileKeys::start_inside, "error|resolve", "\"resolve\"",
            "a cloth that starts inside a collider is refused, or moved to its surface at the "
            "thickness; pins may be inside"),
+    other(
+        "cloth.weld", "number", "m", "above 0, at most 1e6", "none", "1e-4",
+        "joins vertices that are at most this far apart, each to the first that stays: seams that "
+        "a program split; what a scene numbers stays the file's; mesh"),
+    other("cloth.release", "number", "s", "above 0, at most 1e6", "never", "2.0",
+          "pins let go at the first step boundary at or after this time, free with the velocity "
+          "that they had; those of a `pin_motion` that has a `release` of its own at that. At or "
+          "after the end of the run they hold: a note says so"),
 
     flag("links.structural", &FileKeys::structural, "false",
          "along the sides of the quads; the edges of a mesh"),
@@ -184,6 +192,14 @@ const SceneKey kKeys[] = {
     other("pin_motion.path", "tables", "s, m", "t growing", "none",
           "[{ t = 0, displacement = [0, 0, 0] }, { t = 1, displacement = [0, 0, 1] }]",
           "as of a collider"),
+    other("pin_motion.release", "number", "s", "above 0, at most 1e6", "the cloth's", "2.0",
+          "when these pins let go, moved or not: as `cloth.release`"),
+
+    other("seam.a", "vertices", "", "", "needed", "[3, 4, 5]",
+          "drawn to those of `b`, one to one, in the order in which they are named: by structural "
+          "links of rest length 0, which no strain counts"),
+    other("seam.b", "vertices", "", "as many as `a`; none of a face with its partner", "needed",
+          "[12, 11, 10]", "see `a`"),
 
     number("self_collision.radius", &SelfCollision::radius, "m", Range::positive(kFar), "0.01",
            "every particle is a ball of this radius")

@@ -29,6 +29,12 @@ std::size_t Solver::peak_bytes() const {
 std::string Solver::time_remark() const { return {}; }
 std::string Solver::log() const { return {}; }
 
+void Solver::go_on(const Solver& before) {
+  State state;
+  before.store(state);
+  load(state);
+}
+
 void set_solver_source(SolverSource source) { g_source = source; }
 
 void admit_solver(std::string_view text) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -45,6 +46,10 @@ class Solver {
   virtual std::string time_remark() const;  ///< why its time is to be doubted or is none; "": fine
   /// The end of what the solver's own program, if it has one, wrote to standard error.
   virtual std::string log() const;
+
+  /// Goes on where `before` is, a solver of the same entry and parameters for the stage before of
+  /// the same scene (stages()). By default what that one has beyond the state is forgotten.
+  virtual void go_on(const Solver& before);
 
   /// Calls `visit` with the time at the end of every substep inside a step, where store() returns
   /// the state: for those who need the path between two step boundaries. Not while timing.
@@ -140,6 +145,29 @@ struct LinearSweeps {
 /// Neither: no theory is known.
 using LinearModel = std::variant<std::monostate, LinearSprings, LinearSweeps>;
 
+/// Makes solvers: of a scene that lets pins go, one for each of its stages, which follow each
+/// other, so that none has to know of it. Of any other scene it is the function that it is made
+/// from.
+class MakeSolver {
+ public:
+  MakeSolver() = default;
+  template <class Function>
+  requires std::is_invocable_r_v < std::unique_ptr<Solver>, Function,
+  const Scene&, const Params& > MakeSolver(Function bare) : bare_(std::move(bare)) {}
+  explicit operator bool() const { return static_cast<bool>(bare_); }
+  /// One that gets scenes as they are: what it makes lets pins go by itself.
+  MakeSolver whole() const {
+    MakeSolver same = *this;
+    same.whole_ = true;
+    return same;
+  }
+  std::unique_ptr<Solver> operator()(const Scene&, const Params&) const;
+
+ private:
+  std::function<std::unique_ptr<Solver>(const Scene&, const Params&)> bare_;
+  bool whole_ = false;
+};
+
 /// How a solver introduces itself: one per file, found by its TAUT_SOLVER line. Its functions may
 /// throw SolverFailure.
 struct SolverEntry {
@@ -149,7 +177,7 @@ struct SolverEntry {
   std::string_view source;            ///< paper or library, with version
   std::span<const ParamSpec> params;  ///< drives the command line, the documentation and the errors
   /// Null: it cannot run, for a stored text alone names it (admit_solver).
-  std::function<std::unique_ptr<Solver>(const Scene&, const Params&)> make;
+  MakeSolver make;
   /// Why it would misread this scene, a sentence each; empty: it can.
   std::function<std::vector<std::string>(const Scene&, const Params&)> unsupported;
   std::function<ResolvedSettings(const Scene&, const Params&)> resolved_settings;

@@ -72,6 +72,14 @@ std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
   return place;
 }
 
+/// Whether links lead from every vertex to a pin.
+bool hangs_whole(const Scene& scene) {
+  const Adjacency neighbours(scene.links, scene.mesh.size());
+  const auto ways =
+      shortest_ways(neighbours, scene.pins, [](int, const Adjacency::End&) { return 1.0; });
+  return std::ranges::none_of(ways.start, [](int pin) { return pin < 0; });
+}
+
 /// The free vertices' unknowns and the links between them. C_j = (|d|^2 - r^2) / (2r) [m].
 class Problem {
  public:
@@ -339,7 +347,10 @@ std::vector<std::string> refuse_static(const Scene& scene) {
                      [](const PinMotion& m) { return !m.motion.at_rest(); }),
          "the pins move");
   refuse(scene.gravity.isZero(0), "without gravity nothing decides where it rests");
+  refuse(std::ranges::any_of(scene.links, is_seam), "a seam: its length is 0");
+  refuse(!scene.releases.empty(), "its pins let go");
   refuse(scene.pins.empty(), "without pins it falls for ever");
+  refuse(!scene.pins.empty() && !hangs_whole(scene), "a piece without a pin falls for ever");
   return reasons;
 }
 

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "core/solver/global_system.hpp"
+#include "core/solver/kept_slots.hpp"
 #include "core/solver/loop.hpp"
 
 namespace taut::solver::admm {
@@ -59,6 +60,22 @@ class AdmmPass final : public Pass<Real> {
   void restart() override {
     system_.restart();
     forget();
+  }
+
+  void take_over(const Pass<Real>& before) override {
+    const auto& old = static_cast<const AdmmPass&>(before);
+    system_.take_over(old.system_);
+    using Slots = std::vector<MultiplierSlot<Real>>;
+    const SlotsOfSprings<Slots> now{system_.groups(), system_.springs(), slots_};
+    const SlotsOfSprings<const Slots> earlier{old.system_.groups(), old.system_.springs(),
+                                              old.slots_};
+    if (keep_)
+      taut::take_over(now, earlier,
+                      [](auto& slot, std::size_t lane, const auto& had, std::size_t at, int sign) {
+                        for (int axis = 0; axis < 3; ++axis)
+                          slot.multiplier[axis][lane] =
+                              static_cast<Real>(sign) * had.multiplier[axis][at];
+                      });
   }
 
   Points<Real>* target() override { return &system_.target(); }

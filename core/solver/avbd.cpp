@@ -6,6 +6,7 @@
 //     sweep:    F = k (C - alpha C_0) + l,    f = -m/h^2 (x - y) + sum F u
 //               H = m/h^2 I + sum k u u^T + diag |columns of F (I - u u^T)/n|,    x += H^-1 f
 //     then:     l = k (C - alpha C_0) + l;    k = min(k + beta |C - alpha C_0|, k_max)
+#include "core/solver/kept_slots.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 #include "core/solver/vertex_blocks.hpp"
@@ -53,6 +54,20 @@ class AugmentedPass final : public Pass<Real> {
       std::ranges::fill(slot.stiffness, static_cast<Real>(k_min_));
       std::ranges::fill(slot.multiplier, Real(0));
     }
+  }
+
+  void take_over(const Pass<Real>& before) override {
+    const auto& old = static_cast<const AugmentedPass&>(before);
+    blocks_.take_over(old.blocks_);
+    using Slots = std::vector<AugmentedSlot<Real>>;
+    const SlotsOfSprings<Slots> now{blocks_.groups(), springs_, blocks_.slots()};
+    const SlotsOfSprings<const Slots> earlier{old.blocks_.groups(), old.springs_,
+                                              old.blocks_.slots()};
+    taut::take_over(now, earlier,
+                    [](auto& slot, std::size_t lane, const auto& had, std::size_t at, int) {
+                      slot.stiffness[lane] = had.stiffness[at];
+                      slot.multiplier[lane] = had.multiplier[at];
+                    });
   }
 
   void begin(Particles<Real>& p, double t, double h) override {

@@ -30,6 +30,9 @@ class ChebyshevPass final : public Pass<Real> {
       : pass_(std::move(pass)), rho_(rho), pool_(pool), from_(particles), before_(particles) {}
 
   void restart() override { pass_->restart(); }
+  void take_over(const Pass<Real>& before) override {
+    pass_->take_over(*static_cast<const ChebyshevPass&>(before).pass_);
+  }
   void accelerate(Particles<Real>& p, double t, double h) override { pass_->accelerate(p, t, h); }
   void begin(Particles<Real>& p, double t, double h) override {
     iteration_ = 0;

@@ -132,6 +132,11 @@ void GlobalSystem<Real>::restart() {
 }
 
 template <class Real>
+void GlobalSystem<Real>::take_over(const GlobalSystem& before) {
+  if (contact_) contact_->contacts->take_over(*before.contact_->contacts);
+}
+
+template <class Real>
 void GlobalSystem<Real>::factor(double h) {
   factored_for_ = h;
   inertia_.assign(groups_.size() * kLanes, Real(0));

@@ -44,6 +44,7 @@ class GlobalSystem {
 
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<BendingElement>& bending() const { return bending_; }
+  const VertexGroups& groups() const { return groups_; }
   const Layout& layout() const { return groups_.layout(); }
   /// As VertexGroups::make_slots, with rest and stiffness of the springs.
   template <class Slot, class Set>
@@ -51,7 +52,8 @@ class GlobalSystem {
     return slots_of_springs<Slot>(groups_, ends_, springs_, set);
   }
 
-  void restart();  ///< no force of contact
+  void restart();                              ///< no force of contact
+  void take_over(const GlobalSystem& before);  ///< the forces of contact
   /// The substep [t, t + h] begins: p.x is y, pins are where they have to be.
   void begin(const Particles<Real>& p, double t, double h);
   Points<Real>& target() { return y_; }  ///< Pass::target

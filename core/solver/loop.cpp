@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <typeinfo>
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
@@ -155,9 +156,26 @@ class Loop final : public Solver {
       p_.x.set(i, state.x[i].template cast<Real>());
       p_.previous.set(i, previous.template cast<Real>());
     }
-    for (const auto* list :
-         {&forces_, &constraints_, &contact_.before, &contact_.sweep, &contact_.after})
-      for (auto& pass : *list) pass->restart();
+    for (Pass<Real>* pass : all_passes()) pass->restart();
+  }
+
+  /// Every coordinate as it is, and what passes have kept: the k-th of a class from the k-th.
+  void go_on(const Solver& before) override {
+    Solver::go_on(before);
+    const auto& old = dynamic_cast<const Loop&>(before);
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      p_.x.set(i, old.p_.x[i]);
+      p_.previous.set(i, old.p_.previous[i]);
+    }
+    const std::vector<Pass<Real>*> passes = all_passes(), earlier = old.all_passes();
+    std::size_t next = 0;
+    for (Pass<Real>* pass : passes)
+      for (std::size_t k = next; k < earlier.size(); ++k)
+        if (typeid(*pass) == typeid(*earlier[k])) {
+          pass->take_over(*earlier[k]);
+          next = k + 1;
+          break;
+        }
   }
 
   void store(State& state) const override {
@@ -193,6 +211,13 @@ class Loop final : public Solver {
  private:
   using PassList = std::vector<std::unique_ptr<Pass<Real>>>;
 
+  std::vector<Pass<Real>*> all_passes() const {
+    std::vector<Pass<Real>*> all;
+    for (const auto* list :
+         {&forces_, &constraints_, &contact_.before, &contact_.sweep, &contact_.after})
+      for (const auto& pass : *list) all.push_back(pass.get());
+    return all;
+  }
   void apply(PassList& passes, double t, double dt) {
     for (auto& pass : passes) ready_for(*pass).apply(p_, t, dt);
   }

@@ -212,6 +212,9 @@ class ProjectivePass final : public Pass<Real> {
   const Layout& layout() const { return system_.layout(); }
 
   void restart() override { system_.restart(); }
+  void take_over(const Pass<Real>& before) override {
+    system_.take_over(static_cast<const ProjectivePass&>(before).system_);
+  }
   Points<Real>* target() override { return &system_.target(); }
 
   void begin(Particles<Real>& p, double t, double h) override {

@@ -44,6 +44,9 @@ class DescentPass final : public Pass<Real> {
   Points<Real>* target() override { return &blocks_.target(); }
 
   void restart() override { blocks_.restart(); }
+  void take_over(const Pass<Real>& before) override {
+    blocks_.take_over(static_cast<const DescentPass&>(before).blocks_);
+  }
   void begin(Particles<Real>& p, double t, double h) override { blocks_.begin(p, t, h); }
   void apply(Particles<Real>& p, double, double h) override { blocks_.sweep(p, damping_, h); }
 

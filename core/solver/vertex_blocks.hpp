@@ -61,11 +61,20 @@ class VertexBlocks {
 
   const VertexGroups& groups() const { return groups_; }
   std::vector<Slot>& slots() { return slots_; }
+  const std::vector<Slot>& slots() const { return slots_; }
   Points<Real>& target() { return y_; }  ///< Pass::target
 
   void restart() {
     y_ = {};
     if (contacts_) contacts_->restart();
+  }
+
+  void take_over(const VertexBlocks& before) {
+    if (!before.y_.empty()) {
+      y_ = Points<Real>(std::make_shared<const Layout>(groups_.layout()));
+      for (std::size_t i = 0; i < groups_.layout().size(); ++i) y_.set(i, before.y_[i]);
+    }
+    if (contacts_) contacts_->take_over(*before.contacts_);
   }
 
   /// p.x is where the sweeps start; what touches a collider starts where contact alone would leave

@@ -196,9 +196,11 @@ void ComputedMotion::find_place(const Scene& scene) {
 void ComputedMotion::check_pins(const Scene& scene) {
   double farthest = 1e-4 * extent(scene);
   std::string where;
-  for (int k = 0; !scene.pins.empty() && k <= scene.steps; ++k) {
+  std::vector<int> holding = scene.pins;
+  auto release = scene.releases.begin();
+  for (int k = 0; !holding.empty() && k <= scene.steps; ++k) {
     const std::vector<Vec3> x = frame(k);
-    for (const int pin : scene.pins) {
+    for (const int pin : holding) {
       if (!x[to_index(pin)].allFinite()) continue;  // how the run ends, not how the file begins
       const Vec3 held = pin_position(scene, pin, k * scene.dt);
       const double distance = (x[to_index(pin)] - held).norm();
@@ -206,6 +208,10 @@ void ComputedMotion::check_pins(const Scene& scene) {
       farthest = distance;
       where = formatted("vertex %d is %.3g m from %s at t = %.4g s", pin, distance,
                         coordinates(held).c_str(), k * scene.dt);
+    }
+    if (release != scene.releases.end() && release->step == k) {
+      for (const int free : release->vertices) std::erase(holding, free);
+      ++release;
     }
   }
   if (!where.empty())
@@ -233,6 +239,7 @@ StrainFloor ComputedMotion::floor(const Scene& scene) {
   StrainFloor floor;
   double sum = 0;
   for (const Link& link : scene.links) {
+    if (is_seam(link)) continue;
     const Vec3 &a = x[to_index(link.a)], &b = x[to_index(link.b)];
     const Vec3 along = (b - a).normalized();
     double variance = 0, most = 0;
@@ -278,9 +285,10 @@ SolverEntry player(std::function<ComputedFrames(const Params&)> open) {
   return {.name = "positions",
           .summary = "Positions that another program computed: positions:file=mine.npy",
           .source = "experiments/external/FILES.md",
-          .make = [open](const Scene& scene, const Params& params) -> std::unique_ptr<Solver> {
-            return std::make_unique<Playback>(scene, open(params));
-          },
+          .make = MakeSolver([open](const Scene& scene,
+                                    const Params& params) -> std::unique_ptr<Solver> {
+                    return std::make_unique<Playback>(scene, open(params));
+                  }).whole(),
           .unsupported =
               [open](const Scene& scene, const Params& params) {
                 return ComputedMotion(scene, open(params)).misfits();

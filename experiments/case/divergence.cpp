@@ -61,7 +61,8 @@ Softest softest(const Scene& scene, const Hanging& hanging, double dt) {
     const int from = hanging.hops[to_index(a)], to = hanging.hops[to_index(b)];
     if (from == to || from < 0) continue;
     const std::size_t cut = to_index(std::max(from, to));
-    shortest[cut] = links[cut] == 0 ? rest : std::min(shortest[cut], rest);
+    if (rest != kSeamRest)
+      shortest[cut] = shortest[cut] == 0 ? rest : std::min(shortest[cut], rest);
     links[cut] += 1;
     yielding[cut] += w[to_index(a)] + w[to_index(b)];
   }
@@ -73,14 +74,16 @@ Softest softest(const Scene& scene, const Hanging& hanging, double dt) {
     const double opening =
         below * yielding[cut] / (links[cut] * links[cut]) * scene.gravity.norm() * dt * dt;
     all.extension += opening;
-    all.strain = std::max(all.strain, opening / shortest[cut]);
+    if (shortest[cut] > 0) all.strain = std::max(all.strain, opening / shortest[cut]);
   }
   return all;
 }
 
-/// Of a link that is not between two pins and that the cloth is to keep in its plane; 0 of others.
+/// Of a link that is no seam, not between two pins, and that the cloth is to keep in its plane; 0
+/// of others.
 double strain_in_plane(const Scene& scene, const Link& link, const std::vector<Vec3>& x) {
-  if (link.family == Family::bend || (is_pinned(scene, link.a) && is_pinned(scene, link.b)))
+  if (link.family == Family::bend || is_seam(link) ||
+      (is_pinned(scene, link.a) && is_pinned(scene, link.b)))
     return 0;
   return (x[to_index(link.b)] - x[to_index(link.a)]).norm() / link.rest - 1;
 }
@@ -157,8 +160,9 @@ double area(const Scene& scene) {
 
 EnergyBudget::EnergyBudget(const Scene& scene, int substeps)
     : gravity_(scene.gravity.norm()), dt_(scene.dt / substeps) {
-  const Hanging hanging = hang(scene);
-  const std::vector<double> w = inverse_masses(scene);
+  const Scene last = stages(scene).back();  // what a pin that lets go held may fall from the start
+  const Hanging hanging = hang(last);
+  const std::vector<double> w = inverse_masses(last);
   double mass = 0, lightest = 0, farthest = 0, fastest = 0;
   for (std::size_t i = 0; i < w.size(); ++i) {
     farthest = std::max(farthest, scene.start.x[i].norm());
@@ -170,7 +174,7 @@ EnergyBudget::EnergyBudget(const Scene& scene, int substeps)
     (hanging.hops[i] < 0 ? free_mass_ : hung_mass_) += m;
     constant_ += m * scene.start.v[i].squaredNorm() / 2;
   }
-  reach_ = 2 * (hanging.longest() + softest(scene, hanging, dt_).extension);
+  reach_ = 2 * (hanging.longest() + softest(last, hanging, dt_).extension);
   const double rounding = 1e-6 * (farthest + extent(scene));
   constant_ +=
       mass / 2 *
@@ -203,7 +207,10 @@ double EnergyBudget::farthest(double t) const {
 }
 
 double legitimate_strain(const Scene& scene, int substeps) {
-  return std::clamp(2 * softest(scene, hang(scene), scene.dt / substeps).strain, 2.0, 30.0);
+  double strain = 0;
+  for (const Scene& stage : stages(scene))
+    strain = std::max(strain, softest(stage, hang(stage), scene.dt / substeps).strain);
+  return std::clamp(2 * strain, 2.0, 30.0);
 }
 
 std::optional<double> settling_time(const Scene& scene, const std::vector<PassCost>& step_cost,
@@ -217,8 +224,8 @@ std::optional<double> settling_time(const Scene& scene, const std::vector<PassCo
   const bool pinned =
       std::none_of(hanging.hops.begin(), hanging.hops.end(), [](int hops) { return hops < 0; });
   const double gravity = scene.gravity.norm();
-  if (moved || scene.wind || scene.self_collision || !scene.colliders.empty() || gravity == 0 ||
-      !pinned || sweeps == 0 || hanging.depth() == 0)
+  if (moved || !scene.releases.empty() || scene.wind || scene.self_collision ||
+      !scene.colliders.empty() || gravity == 0 || !pinned || sweeps == 0 || hanging.depth() == 0)
     return {};
   const double links = hanging.depth(), pi = std::numbers::pi;
   const double relaxing = 8 * links * links * scene.dt / (pi * pi * static_cast<double>(sweeps));
@@ -237,7 +244,8 @@ DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<Pas
       settling_(settling_time(scene, step_cost, substeps)),
       duration_(scene.duration()),
       slow_(1e-3 * std::sqrt(scene.gravity.norm() * extent(scene))) {
-  for (const int pin : scene.pins) free_mass_[to_index(pin)] = 0;
+  for (const int pin : scene.pins)
+    if (is_pinned(scene, pin)) free_mass_[to_index(pin)] = 0;
 }
 
 void DivergenceDetector::explode(const char* reason, int step, std::size_t vertex) {

@@ -105,7 +105,7 @@ class DivergenceDetector {
   const Scene& scene_;
   EnergyBudget budget_;
   double legitimate_strain_ = 0;
-  std::vector<double> free_mass_;  ///< [n] kg, 0 for pins
+  std::vector<double> free_mass_;  ///< [n] kg, 0 for pins that hold to the end
   std::optional<double> settling_;
   double duration_ = 0;
   double slow_ = 0;  ///< 1e-3 sqrt(|g| L) [m/s]

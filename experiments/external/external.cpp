@@ -255,14 +255,15 @@ Program::Loaded Program::load(const Scene& scene, const Params& params) const {
 }
 
 std::vector<std::string> Program::unsupported(const Scene& scene, const Params& params) {
-  if (!hello_) return {};  // make() says why
-  if (std::vector<std::string> unknown = beyond(hello_->version_spoken, scene); !unknown.empty())
+  if (!hello_) return {};                     // make() says why
+  const Scene first = stages(scene).front();  // a program gets them one by one
+  if (std::vector<std::string> unknown = beyond(hello_->version_spoken, first); !unknown.empty())
     return unknown;
   const std::lock_guard lock(mutex_);
-  Loaded loaded = load(scene, params);
+  Loaded loaded = load(first, params);
   const std::vector<std::string> cannot = loaded.answer.cannot;
   waiting_.clear();
-  if (cannot.empty()) waiting_.emplace(key_of(scene, params), std::move(loaded));
+  if (cannot.empty()) waiting_.emplace(key_of(first, params), std::move(loaded));
   return cannot;
 }
 
@@ -300,7 +301,7 @@ std::unique_ptr<Solver> Program::make(const Scene& scene, const Params& params) 
 
 ResolvedSettings Program::resolved_settings(const Scene& scene, const Params& params) {
   const std::lock_guard lock(mutex_);
-  return settings_[key_of(scene, params)];
+  return settings_[key_of(stages(scene).front(), params)];
 }
 
 constexpr ParamSpec kLeading[] = {

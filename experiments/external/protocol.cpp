@@ -187,6 +187,8 @@ std::vector<std::string> beyond(int version, const Scene& scene) {
     all = elastic_links(scene);
     if (is_there(scene, std::type_identity<Capsule>())) all.emplace_back("a capsule");
     if (scene.bending) all.emplace_back("bending stiffness");
+    if (!scene.releases.empty()) all.emplace_back("pins that let go");
+    if (std::ranges::any_of(scene.links, is_seam)) all.emplace_back("a seam");
     for (std::string& key : later_keys(scene)) all.push_back(std::move(key));
   }
   if (version < 3 && is_there(scene, std::type_identity<MeshBody>()))
@@ -225,6 +227,11 @@ std::string scene_file(const Scene& scene) {
   for (int version : {1, 2})
     if (!beyond(version, scene).empty()) file["format"] = kFormats[version];
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
+  if (!scene.releases.empty()) {
+    Json& releases = file["releases"] = Json::array();
+    for (const Release& release : scene.releases)
+      releases.push_back({{"t", release.step * scene.dt}, {"vertices", release.vertices}});
+  }
   if (scene.bending) {
     file["bending"] = json_of("bending", *scene.bending);  // whose key `warp` is the direction
     file["bending"].update({{"warp", scene.bending->warp},

@@ -29,8 +29,9 @@ class Cantilever final : public Metric {
     if (!scene.mesh.grid || scene.mesh.grid->nv < 3 || scene.gravity.isZero(0)) return false;
     const Cantilever c(scene);
     const int clamped = 2 * scene.mesh.grid->nu;
-    return static_cast<int>(scene.pins.size()) == clamped && scene.pins.back() == clamped - 1 &&
-           std::abs(c.out_.dot(c.down_)) < 1e-3 && scene.colliders.empty();
+    return scene.releases.empty() && static_cast<int>(scene.pins.size()) == clamped &&
+           scene.pins.back() == clamped - 1 && std::abs(c.out_.dot(c.down_)) < 1e-3 &&
+           scene.colliders.empty();
   }
   explicit Cantilever(const Scene& scene)
       : grid_(*scene.mesh.grid), down_(scene.gravity.normalized()), end_(scene) {

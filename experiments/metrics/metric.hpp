@@ -221,7 +221,7 @@ class Summary {
   double max_ = kNone, peak_ = kNone;
 };
 
-/// The vertices that a solver moves, ascending.
+/// The vertices that a solver moves, those that a pin lets go among them, ascending.
 inline std::vector<std::size_t> free_vertices(const Scene& scene) {
   std::vector<std::size_t> free;
   for (int i = 0; i < scene.mesh.size(); ++i)

@@ -116,8 +116,8 @@ class Mode final : public Metric {
  private:
   static bool hangs_in_rows(const Scene& scene) {
     const auto& grid = scene.mesh.grid;
-    if (!grid || grid->nv < 2 || !scene.pin_motions.empty() || !scene.colliders.empty() ||
-        scene.wind || scene.self_collision || scene.gravity.isZero(0))
+    if (!grid || grid->nv < 2 || !scene.pin_motions.empty() || !scene.releases.empty() ||
+        !scene.colliders.empty() || scene.wind || scene.self_collision || scene.gravity.isZero(0))
       return false;
     std::vector<int> first(to_index(grid->nu));
     std::iota(first.begin(), first.end(), 0);

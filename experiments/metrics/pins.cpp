@@ -24,8 +24,8 @@ class Pins final : public Metric {
        .title = "largest pin force over weight"},
   };
   static bool measures(const Scene& scene) {
-    return !scene.pins.empty() && !scene.gravity.isZero(0) && scene.colliders.empty() &&
-           !scene.wind;
+    return !scene.pins.empty() && scene.releases.empty() && !scene.gravity.isZero(0) &&
+           scene.colliders.empty() && !scene.wind;
   }
   explicit Pins(const Scene& scene)
       : mass_(scene.mesh.mass),

@@ -75,7 +75,7 @@ class Distance final : public Metric {
     if (!known_.rest) return;
     strain_ = 0;
     for (const Link& link : scene.links)
-      if (link.family != Family::bend) {
+      if (link.family != Family::bend && !is_seam(link)) {
         const Vec3 delta = known_.rest->x[to_index(link.b)] - known_.rest->x[to_index(link.a)];
         strain_ = std::max(strain_, std::abs(delta.norm() - link.rest) / link.rest);
       }

@@ -89,6 +89,7 @@ class StepErrors final : public Metric {
 
   explicit StepErrors(const Scene& scene)
       : scene_(scene),
+        stages_(stages(scene)),
         every_(std::max(kEvery, (scene.steps + kMostSamples - 1) / kMostSamples)),
         first_(first_steps(scene)),
         first_every_(std::max(1, first_ / kFirstSamples)),
@@ -99,7 +100,7 @@ class StepErrors final : public Metric {
     if (declared_.none.empty() && free_vertices(scene_).size() > kMostVertices)
       declared_.none = "more than " + std::to_string(kMostVertices) + " vertices";
     if (!declared_.none.empty()) return;
-    if (!free_vertices(scene_).empty()) error_.emplace(scene_, step.stiffness);
+    enter(0);
   }
   bool follows(int step) const override {
     return error_ && declared_.substeps > 1 && (samples(step) || samples_first(step));
@@ -109,6 +110,9 @@ class StepErrors final : public Metric {
     step_before_ = m.step;
   }
   void observe(const Snapshot& m) override {
+    const std::vector<Release>& releases = scene_.releases;
+    if (declared_.none.empty() && stage_ < releases.size() && m.step > releases[stage_].step)
+      enter(stage_ + 1);
     if (!error_) return;
     const int substeps = declared_.substeps;
     const bool known = m.step > 0 && step_before_ == (substeps > 1 ? m.step : m.step - 1);
@@ -138,6 +142,12 @@ class StepErrors final : public Metric {
   }
 
  private:
+  /// Between releases of pins the exact step is that of what is left of them.
+  void enter(std::size_t stage) {
+    stage_ = stage;
+    error_.reset();
+    if (!free_vertices(stages_[stage]).empty()) error_.emplace(stages_[stage], declared_.stiffness);
+  }
   bool samples(int step) const { return (scene_.steps - step) % every_ == 0; }
   bool samples_first(int step) const {
     return step > 0 && step <= first_ && step % first_every_ == 0;
@@ -180,7 +190,9 @@ class StepErrors final : public Metric {
     peak_ = std::max(peak_, error.distance);
   }
 
-  const Scene& scene_;               ///< of the run, which outlives its metrics
+  const Scene& scene_;  ///< of the run, which outlives its metrics
+  std::vector<Scene> stages_;
+  std::size_t stage_ = 0;
   int every_, first_, first_every_;  ///< steps
   DeclaredStep declared_{.none = "no step is declared"};
   std::optional<reference::StepError> error_;  ///< none: no value

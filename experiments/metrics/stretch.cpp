@@ -50,11 +50,12 @@ struct Group {
   double rms() const { return std::sqrt(square.mean()); }
 };
 
-/// The links that a solver can change: not those between two pins.
+/// The links that have a strain which a solver can change: no seams, nor those between two pins.
 std::vector<Link> movable_links(const Scene& scene) {
   std::vector<Link> links;
   for (const Link& link : scene.links)
-    if (!is_pinned(scene, link.a) || !is_pinned(scene, link.b)) links.push_back(link);
+    if (!is_seam(link) && (!is_pinned(scene, link.a) || !is_pinned(scene, link.b)))
+      links.push_back(link);
   return links;
 }
 

@@ -148,7 +148,8 @@ SolverEntry entry_of(const py::object& type, const std::string& name, PythonEntr
   entry.unsupported = [held, name](const Scene& scene, const Params&) -> std::vector<std::string> {
     const py::gil_scoped_acquire own;
     if (!py::hasattr(held, "unsupported")) return {};
-    const SourcedScene given{scene.name, {}, {}, {}, std::make_shared<const Scene>(scene)};
+    const SourcedScene given{
+        scene.name, {}, {}, {}, std::make_shared<const Scene>(stages(scene).front())};
     try {
       return py::cast<std::vector<std::string>>(held.attr("unsupported")(given));
     } catch (py::error_already_set& error) {

@@ -65,6 +65,7 @@ std::vector<std::string> effects(const Scene& scene) {
   std::vector<std::string> all;
   if (!scene.colliders.empty()) all.emplace_back("colliders");
   if (!scene.pin_motions.empty()) all.emplace_back("moving pins");
+  if (!scene.releases.empty()) all.emplace_back("pins that let go");
   if (scene.wind) all.emplace_back("wind");
   if (scene.bending) all.emplace_back("bending");
   if (scene.self_collision) all.emplace_back("self-collision");

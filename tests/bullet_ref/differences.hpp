@@ -92,8 +92,9 @@ class SceneComparison {
 
 inline void compare_mesh(SceneComparison& c, const Mesh& asked, const Mesh& held,
                          const std::vector<int>& pins) {
-  const auto& [rest, triangles, mass, grid] = asked;
+  const auto& [rest, triangles, mass, grid, welded] = asked;  // what a file calls vertices
   c.vectors("mesh.rest", rest, held.rest);
+  c.same("mesh.welded", welded.empty() || held.welded.empty());
   c.same("mesh.triangles", triangles == held.triangles);
   c.same("mesh.mass.size", mass.size() == held.mass.size());
   for (std::size_t i = 0; i < std::min(mass.size(), held.mass.size()); ++i)
@@ -118,8 +119,8 @@ inline void compare_wind(SceneComparison& c, const std::optional<Wind>& asked,
 inline std::vector<std::string> differences(const Scene& asked, const Scene& held,
                                             double tolerance) {
   // Every member is named here: a new one does not compile until it has an answer.
-  const auto& [name, summary, mesh, start, pins, pin_motions, links, stiffness, bending, colliders,
-               wind, self_collision, gravity, damping, thickness, dt, steps] = asked;
+  const auto& [name, summary, mesh, start, pins, pin_motions, releases, links, stiffness, bending,
+               colliders, wind, self_collision, gravity, damping, thickness, dt, steps] = asked;
   SceneComparison c(tolerance);
   compare_mesh(c, mesh, held.mesh, pins);
   c.vectors("start.x", start.x, held.start.x);
@@ -132,6 +133,7 @@ inline std::vector<std::string> differences(const Scene& asked, const Scene& hel
            c.same(what + ".vertices", a.vertices == b.vertices);
            c.motion(what, a.motion, b.motion);
          });
+  c.same("releases", releases.empty() && held.releases.empty());  // each has a stage alone
   c.each("links", links, held.links,
          [&](const std::string& what, const Link& a, const Link& b) { c.link(what, a, b); });
   c.each("colliders", colliders, held.colliders,

@@ -34,15 +34,15 @@ std::unique_ptr<Solver> solver(const std::string& text, const Scene& scene) {
 class ShippedScene : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(ShippedScene, BulletHoldsWhatTheFileSays) {
-  const Scene scene = load_scene(GetParam());
-  for (const char* name : kSolvers) {
-    const SolverChoice choice = parse_solver(name + (":precision=" + kPrecision));
-    if (!choice.entry->unsupported(scene, choice.params).empty()) continue;
-    const auto made = solver(choice.canonical(), scene);
-    EXPECT_EQ(differences(scene, read_back(*made), kDouble ? 1e-13 : 1e-6),
-              std::vector<std::string>{})
-        << name;
-  }
+  for (const Scene& scene : stages(load_scene(GetParam())))
+    for (const char* name : kSolvers) {
+      const SolverChoice choice = parse_solver(name + (":precision=" + kPrecision));
+      if (!choice.entry->unsupported(scene, choice.params).empty()) continue;
+      const auto made = solver(choice.canonical(), scene);
+      EXPECT_EQ(differences(scene, read_back(*made), kDouble ? 1e-13 : 1e-6),
+                std::vector<std::string>{})
+          << name;
+    }
 }
 
 std::vector<std::filesystem::path> scene_files() {

@@ -38,7 +38,7 @@ def scene_tables(rows):
     tables = {}
     for row in rows:
         section = row["key"].rpartition(".")[0]
-        heading = {"": "At the top", "collider": "[[collider]]", "pin_motion": "[[pin_motion]]"}.get(section, f"[{section}]")
+        heading = {"": "At the top", "collider": "[[collider]]", "pin_motion": "[[pin_motion]]", "seam": "[[seam]]"}.get(section, f"[{section}]")
         tables.setdefault(heading, []).append(
             [f"`{row['key']}`", row["type"], row["unit"], row["range"], code(row["default"]), f"`{row['example']}`", row["help"]])
     columns = ["key", "type", "unit", "range", "default", "example", "meaning"]

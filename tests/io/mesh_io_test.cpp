@@ -268,7 +268,7 @@ TEST(MeshFromObj, SurfacesThatNoClothHasAreNamed) {
   EXPECT_EQ(errors_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nv 2 0 0\nv 0 0 1\nv 9 9 9\n"
                       "f 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 2 6\nf 2 3 7\n"),
             "x.obj:7:1: vertex 7 coincides with vertex 4 (line 4): a cloth is one surface, so join "
-            "them\n"
+            "them, or let `weld` in [cloth] do it\n"
             "x.obj:8:1: vertex 8 belongs to no face\n"
             "x.obj:11:1: the edge from vertex 1 to 2 has 4 faces; a cloth has two at most\n"
             "x.obj:12:1: the face has no area");

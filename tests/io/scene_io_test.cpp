@@ -477,6 +477,9 @@ radius = 1
 [[pin_motion]]
 vertices = ["top-right"]
 path = [{ t = 1, displacement = [0, 0, 1] }]
+[[seam]]
+a = [64, 65, 66]
+b = [72, 73, 74]
 )";
 
 /// The dotted key under which an override reaches a documented key in kBare.
@@ -490,7 +493,9 @@ std::string path_to(const std::string& key, const std::string& meaning) {
             : about("capsule") ? "3"
                                : "0") +
            key.substr(dot);
-  return key.rfind("pin_motion.", 0) == 0 ? "pin_motion.0" + key.substr(dot) : key;
+  for (const std::string section : {"pin_motion", "seam"})
+    if (key.starts_with(section + ".")) return section + ".0" + key.substr(dot);
+  return key;
 }
 
 TEST(SceneSchema, EveryDocumentedExampleIsAcceptedAndEveryDefaultIsTheDefault) {

@@ -127,7 +127,8 @@ double line_tension(const Scene& scene, double h) {
   for (const double m : scene.mesh.mass)
     weight += m * scene.gravity.norm(), lightest = std::min(lightest, m);
   for (const Link& link : scene.links)
-    if (link.family == Family::structural) shortest = std::min(shortest, link.rest);
+    if (link.family == Family::structural && !is_seam(link))
+      shortest = std::min(shortest, link.rest);
   if (scene.pins.empty()) return 0;
   return h * h * weight / static_cast<double>(scene.pins.size()) / (lightest * shortest);
 }

@@ -101,6 +101,7 @@ class Contacts {
   ~Contacts();
 
   void restart();  ///< no force, no substep before
+  void take_over(const Contacts& before) { forces_ = before.forces_; }  ///< of the same colliders
   /// The substep [t, t + h]: colliders move, forces turn with them.
   void begin(double t, double h);
 

@@ -34,6 +34,9 @@ class FaceContactPass final : public Pass<Real> {
         held_(solver ? faces_.size() : 0) {}
 
   void restart() override { held_.assign(held_.size(), {}); }
+  void take_over(const Pass<Real>& before) override {
+    held_ = static_cast<const FaceContactPass&>(before).held_;
+  }
 
   void begin(Particles<Real>& p, double t, double dt) override {
     shape_ = shape_at(collider_, t + dt);

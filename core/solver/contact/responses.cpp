@@ -109,6 +109,10 @@ class FreezePass final : public Pass<Real> {
     frozen_.assign(frozen_.size(), false);
     held_.clear();
   }
+  void take_over(const Pass<Real>& before) override {
+    const auto& old = static_cast<const FreezePass&>(before);
+    frozen_ = old.frozen_, held_ = old.held_;
+  }
   void begin(Particles<Real>& p, double t, double dt) override {
     entering_.begin(t, dt);
     entering_.find(p, [&](std::size_t i, const Point& outside) {
@@ -153,6 +157,9 @@ class HaltPass final : public Pass<Real> {
         skip_(scene.start.x.size()) {}
 
   void restart() override { halted_.clear(); }
+  void take_over(const Pass<Real>& before) override {
+    halted_ = static_cast<const HaltPass&>(before).halted_;
+  }
   void begin(Particles<Real>& p, double t, double dt) override {
     entering_.begin(t, dt);
     skip_.assign(skip_.size(), false);

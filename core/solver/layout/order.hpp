@@ -70,8 +70,9 @@ std::vector<DistanceConstraint<Real>> make_distance_constraints(
 /// with shear links. One without is a net: pulled along its diagonals it grows longer, up to the
 /// way along its links.
 inline bool keeps_flat_distances(const Scene& scene) {
-  return scene.mesh.grid && std::any_of(scene.links.begin(), scene.links.end(),
-                                        [](const Link& l) { return l.family == Family::shear; });
+  return scene.mesh.grid && std::ranges::none_of(scene.links, is_seam) &&
+         std::any_of(scene.links.begin(), scene.links.end(),
+                     [](const Link& l) { return l.family == Family::shear; });
 }
 
 /// In which order Gauss-Seidel visits the links. It decides convergence, stability under substeps

@@ -191,6 +191,9 @@ class Pass {
   virtual ~Pass() = default;
   /// The solver starts anew from another state: forget what was.
   virtual void restart() {}
+  /// Pins have let go: `before`, a pass of the same class, did this one's work until here. What is
+  /// kept from step to step and not taken over here is forgotten.
+  virtual void take_over(const Pass& /*before*/) {}
   /// Once for the step [t, t + dt], before integration; called of a pass that asks for it alone.
   virtual void accelerate(Particles<Real>&, double /*t*/, double /*dt*/) {}
   /// Once for the step [t, t + dt], after integration and before the first sweep.

@@ -202,7 +202,8 @@ LiveFigures live_figures(const Scene& scene, const State& state, double t) {
   };
   double sum = 0, squares = 0, count = 0;
   for (const Link& link : scene.links) {
-    if (link.family == Family::bend || (pinned(link.a) && pinned(link.b))) continue;
+    if (link.family == Family::bend || is_seam(link) || (pinned(link.a) && pinned(link.b)))
+      continue;
     const double e = strain(link, state);
     figures.max_strain = std::max(figures.max_strain, std::abs(e));
     sum += e, squares += e * e, count += 1;
@@ -328,7 +329,7 @@ std::vector<RenderMesh> SceneRenderer::meshes(const Frame& frame, const Vec3& ce
   for (const Collider& collider : scene_.colliders)
     if (&collider != placing_.floor) meshes.push_back(collider_mesh(collider, frame.t, look));
   RenderMesh& pins = meshes.emplace_back();
-  for (const int pin : scene_.pins)
+  for (const int pin : pins_at(scene_, frame.t))
     append_ball(pins, frame.state.x[to_index(pin)].cast<float>(),
                 static_cast<float>(0.009 * extent(scene_)), options_.quality.segments / 4, 0);
   return meshes;

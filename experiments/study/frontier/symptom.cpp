@@ -15,6 +15,7 @@ constexpr double kMoreJitter = 10;  ///< times that of the start
 
 bool passive(const Scene& scene) {
   return !scene.wind && scene.colliders.empty() && scene.pin_motions.empty() &&
+         scene.releases.empty() &&
          std::ranges::all_of(scene.start.v, [](const Vec3& v) { return v.isZero(0); });
 }
 

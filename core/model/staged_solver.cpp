@@ -1,0 +1,71 @@
+#include <utility>
+
+#include "core/model/solver.hpp"
+
+namespace taut {
+
+namespace {
+
+/// A solver for each stage of a scene, one after the other. All are made at once: what a solver
+/// prepares is timed of none of them.
+class StagedSolver final : public Solver {
+ public:
+  using Make = std::function<std::unique_ptr<Solver>(const Scene&, const Params&)>;
+
+  StagedSolver(const Scene& scene, const Params& params, const Make& make)
+      : dt_(scene.dt), releases_(scene.releases), scenes_(stages(scene)) {
+    for (const Scene& stage : scenes_) {
+      Solver& solver = *solvers_.emplace_back(make(stage, params));
+      solver.visit_substeps([this](double t) { substep_ended(t); });
+    }
+  }
+
+  void load(const State& state) override {
+    turn_to(0);
+    now().load(state);
+  }
+  void step(double t, double dt) override {
+    while (at_ < releases_.size() && t > (releases_[at_].step - 0.5) * dt_) {
+      const Solver& before = now();
+      turn_to(at_ + 1);
+      now().go_on(before);
+    }
+    now().step(t, dt);
+  }
+  void store(State& state) const override { now().store(state); }
+  std::vector<PassCost> step_cost() const override { return now().step_cost(); }
+
+  double cpu_seconds() const override {
+    timed_ = true;
+    return earlier_ + now().cpu_seconds();
+  }
+  std::size_t peak_bytes() const override { return now().peak_bytes(); }
+  std::string time_remark() const override { return now().time_remark(); }
+  std::string log() const override { return now().log(); }
+
+ private:
+  Solver& now() const { return *solvers_[at_]; }
+  /// A solver in a process of its own has a clock of its own.
+  void turn_to(std::size_t stage) {
+    const double spent = timed_ ? cpu_seconds() : 0;
+    at_ = stage;
+    if (timed_) earlier_ = spent - now().cpu_seconds();
+  }
+
+  double dt_;  ///< s, of a step
+  std::vector<Release> releases_;
+  std::vector<Scene> scenes_;  ///< a solver may refer to its own
+  std::vector<std::unique_ptr<Solver>> solvers_;
+  std::size_t at_ = 0;
+  mutable bool timed_ = false;  ///< somebody asked for the time
+  double earlier_ = 0;          ///< s, of the stages before
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> MakeSolver::operator()(const Scene& scene, const Params& params) const {
+  if (whole_ || scene.releases.empty()) return bare_(scene, params);
+  return std::make_unique<StagedSolver>(scene, params, bare_);
+}
+
+}  // namespace taut
