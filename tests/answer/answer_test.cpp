@@ -194,7 +194,7 @@ void expect_people_see(const Answer& answer, bool details) {
   }
 }
 
-TEST(Answers, OfAnyKindComeBackFromJsonAndSayTheSameInCsvAndToPeople) {
+TEST(Answers, OfAnyKindComeBackFromJson) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     const Answer answer = MadeUp(seed).answer();
     const std::string json = to_json(answer);
@@ -304,7 +304,7 @@ TEST(Answers, AreFoundByNameAndDamagedOnesAreNamed) {
   }
 }
 
-TEST(Numbers, HaveTheirDigitsAndNoExponentWherePeopleReadThem) {
+TEST(Numbers, HaveTheirDigitsAndNoExponent) {
   for (const auto& [value, plain, print] :
        std::vector<std::tuple<double, std::string, std::string>>{{0, "0", "0"},
                                                                  {20, "20", "20.0"},

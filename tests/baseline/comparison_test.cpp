@@ -145,7 +145,7 @@ TEST(Tolerated, ValuesThatAreIgnoredAreNeitherComparedNorKept) {
   EXPECT_EQ(updated(before, now, ignoring)[0].values, (std::map<std::string, double>{{"y", 1}}));
 }
 
-TEST(Updates, KeepTheFewestDigitsThatAHundredthOfTheToleranceAsksFor) {
+TEST(Updates, KeepTheFewestDigitsTheToleranceAsksFor) {
   const auto kept = [](double value, const Tolerance& t) {
     return updated({}, {row("a", "s", {{"x", value}})}, Tolerances({{"x", t}}))[0].values.at("x");
   };

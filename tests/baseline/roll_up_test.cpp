@@ -23,7 +23,7 @@ std::vector<MovedValue> rolled(const Comparison& comparison) {
                  [](const std::string& value) { return value.substr(0, value.find('.')); });
 }
 
-TEST(RollUp, CountsAndNamesTheLargestChangeOfASolversValues) {
+TEST(RollUp, NamesTheLargestChangeOfASolversValues) {
   Comparison comparison;
   comparison.findings = {
       moved("xpbd", "stretch.rms", 0.01, 0.0101), moved("xpbd", "stretch.max", 0.01, 0.0098),

@@ -64,7 +64,7 @@ std::pair<Vec3, Vec3> axes(const Vec3& normal) {
   return {level, normal.cross(level)};
 }
 
-TEST(BulletContact, OnAPlaneTheClothRestsAtThicknessPlusTheFallOfOneStep) {
+TEST(BulletContact, ClothRestsAtThicknessPlusTheFallOfOneStep) {
   Scene scene =
       sheet_above({.shape = Plane{Vec3::UnitY(), 0.3}}, {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
   scene.steps = 600;
@@ -175,7 +175,7 @@ TEST(BulletContact, AFloorThatRunsTakesTheClothAlong) {
   }
 }
 
-TEST(BulletContact, AFloorThatTiltsAboutAFarPivotStaysUnderTheCloth) {
+TEST(BulletContact, ATiltingFloorStaysUnderTheCloth) {
   Scene scene = sheet_above({.shape = Plane{Vec3::UnitY(), 0},
                              .motion = {.spin = {0, 0, 0.1}, .pivot = {-2, 0, 0}},
                              .friction = 1},
@@ -194,7 +194,7 @@ TEST(BulletContact, OnAThinBoxTheClothRestsAsOnAPlane) {
 }
 
 // Across its axis a capsule is what a ball is; along it, the top is level.
-TEST(BulletContact, AFinerDistanceFieldLetsTheClothLessIntoACapsule) {
+TEST(BulletContact, AFinerDistanceFieldLetsClothSinkLess) {
   const Scene scene = sheet_above({.shape = Capsule{{0, 0, -0.5}, {0, 0, 0.5}, 0.3}, .friction = 1},
                                   {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
   const double coarse = settle(scene, "bullet:iterations=10,voxel=0.25").least;

@@ -34,7 +34,7 @@ double distance(const State& a, const State& b) {
   return largest;
 }
 
-TEST(BulletDeformable, AHangingChainStretchesByTheWeightBelowEachLink) {
+TEST(BulletDeformable, AHangingChainStretchesByTheWeightBelow) {
   constexpr int kLinks = 8;
   constexpr double kMass = 0.01, kStiffness = 50;  // kg per vertex, N/m
   Scene chain = sheet({.nu = 1,
@@ -57,7 +57,7 @@ TEST(BulletDeformable, AHangingChainStretchesByTheWeightBelowEachLink) {
 
 // An input that fuzzing found: pulled apart until a vertex is beyond the cells of the colliders'
 // distance fields, where Bullet reads memory that is not its own.
-TEST(BulletDeformable, AVertexBeyondTheDistanceFieldsEndsTheCaseNotTheProcess) {
+TEST(BulletDeformable, AVertexBeyondDistanceFieldsEndsTheCase) {
   const Scene scene = load_scene(TAUT_SOURCE_DIR "/tests/fuzz/corpus/scene/good-flies-apart.toml");
   const Status status =
       run_case(scene, parse_solver("bullet-deformable:stiffness=1000,substeps=23")).record.status;

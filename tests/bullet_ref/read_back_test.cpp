@@ -98,7 +98,7 @@ int waiting(const Scene& scene) {
   return count;
 }
 
-TEST(BulletReadBack, ReorderedItHoldsTheSameLinksInTheSameOrderAtEveryVertex) {
+TEST(BulletReadBack, ReorderedItHoldsTheSameLinksAtEveryVertex) {
   const Scene scene = everything();
   const auto solver = bullet(scene, "bullet:reorder=on");
   Scene held = read_back(*solver);

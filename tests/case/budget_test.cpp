@@ -28,7 +28,7 @@ double more(const Scene& plain, const Scene& scene, double t) {
   return EnergyBudget(scene).available(t) - EnergyBudget(plain).available(t);
 }
 
-TEST(Budget, AtRestNothingButTheRoundingOfCoordinatesIsThere) {
+TEST(Budget, AtRestThereIsNothingButRounding) {
   Scene scene = chain();
   for (Vec3& x : scene.start.x) x += Vec3(300, 401, 0);  // the farthest is the first, 500.8 m away
   const double off = 1e-6 * (std::hypot(300, 401) + 1) * 64;
@@ -63,7 +63,7 @@ TEST(Budget, WhatMovesAtTheStartHasItsKineticEnergy) {
   EXPECT_NEAR(more(chain(), scene, 1), 0.52, 1e-12) << "a pin has none";
 }
 
-TEST(Budget, AHungPieceFallsNoFartherThanTwiceItsLengthAndItsSoftestStretch) {
+TEST(Budget, AHungPieceFallsAtMostTwiceItsLength) {
   const Vec3 down(0.6 * kG, -0.8 * kG, 0);
   const Scene scene = chain(down);
   const double dt = scene.dt, fall = kG * 0.1 * (0.1 + dt) / 2;
@@ -126,7 +126,7 @@ TEST(Budget, EveryChangeOfAPrescribedVelocityCounts) {
   EXPECT_NEAR(more(chain(), scene, 1), 0.16 / 2 * 12 * 12, 1e-9) << "all of them together";
 }
 
-TEST(Budget, AStartThatBreaksConstraintsIsRepairedInOneStep) {
+TEST(Budget, ABrokenStartIsRepairedInOneStep) {
   const double unit = 0.16 / 2 * 64 * 64;  // J for a metre in a step
   Scene scene = chain();
   scene.thickness = 0.125;

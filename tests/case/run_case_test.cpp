@@ -39,7 +39,7 @@ Status verdict_on(const Scene& scene, const std::string& solver) {
   return run_case(scene, parse_solver(solver)).record.status;
 }
 
-TEST(DivergenceDetector, TheSameMotionHasTheSameStatusHoweverItIsCutIntoSteps) {
+TEST(DivergenceDetector, TheSameMotionHasTheSameStatusInAnySteps) {
   Scene scene;
   scene.name = "two";
   scene.mesh.rest = {Vec3::Zero(), Vec3(1, 0, 0)};

@@ -92,7 +92,7 @@ TEST_F(MotionFiles, UnitAndAxisAreSaidAndTheOrderIsFound) {
     }
 }
 
-TEST_F(MotionFiles, WhatIsNotTheSceneIsRefusedWithTheNearestMismatch) {
+TEST_F(MotionFiles, WhatIsNotTheSceneIsRefused) {
   const Scene scene = sheet();
   const MotionOptions other = write("a.npy", scene, [](std::vector<Vec3> x) {
     x[5].z() += 0.01;
@@ -265,7 +265,7 @@ TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {
   EXPECT_EQ(ComputedMotion(scene, opened({.file = plain.file, .fps = 0.5})).frame_dt(), 2);
 }
 
-TEST_F(MotionFiles, AVertexMayBeginATenThousandthOfTheExtentOffItsPlace) {
+TEST_F(MotionFiles, AVertexMayBeginSlightlyOffItsPlace) {
   const Scene scene = sheet();
   const double tolerance = 1e-4 * extent(scene);
   for (const auto& [share, good] : {std::pair{0.98, true}, {1.02, false}}) {
@@ -324,7 +324,7 @@ TEST_F(MotionFiles, TheFloorOfAStepIsItsVarianceOverTheRestLength) {
   check("cm0.obj", 0.551237, 1e-6, "cm", 0.01);  // four decimals of a centimetre
 }
 
-TEST_F(MotionFiles, ArePlayedFrameAfterFrameWithTheirDifferencesAsVelocities) {
+TEST_F(MotionFiles, ArePlayedWithDifferencesAsVelocities) {
   const Scene scene = sheet();
   const MotionOptions file = write("it's.npy", scene, kAsIs);
   const std::string text = solver_text(file);

@@ -36,7 +36,7 @@ class Histories : public testing::Test {
   int count_ = 0;
 };
 
-TEST_F(Histories, AStepIsWhereAValueIsBeyondTheToleranceOfTheBuildBefore) {
+TEST_F(Histories, AStepIsBeyondTheToleranceOfTheBuildBefore) {
   for (const auto& [id, stretch] : {std::pair{"one", 0.021},
                                     {"two", 0.021},
                                     {"three", 0.026},
@@ -54,7 +54,7 @@ TEST_F(Histories, AStepIsWhereAValueIsBeyondTheToleranceOfTheBuildBefore) {
   EXPECT_EQ(history(1e-9).steps.size(), 3U) << "every digit counts";
 }
 
-TEST_F(Histories, ABuildWithoutAResultIsAGapAndTheStepIsOpenBetweenItsNeighbours) {
+TEST_F(Histories, ABuildWithoutAResultIsAGap) {
   build("one", 0.02), build("two", std::nan("")), build("three", 0.03);
   const History found = history();
   EXPECT_EQ(found.missing(1), 1U);

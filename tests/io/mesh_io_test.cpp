@@ -113,7 +113,7 @@ TEST(MeshFromObj, NoPairIsLinkedTwiceWhereThreeQuadsMeet) {
   }
 }
 
-TEST(MeshFromObj, QuadsAreCutAlongTheirShorterDiagonalAndWeighAsMuchAsTheirTriangles) {
+TEST(MeshFromObj, QuadsAreCutAlongTheirShorterDiagonal) {
   const Polygons p = parse_obj("x.obj",
                                "v 0 0 0\nv 1 0 0\nv 2 2 0\nv 0 1 0\nv -1 0 0\n"
                                "f 1 2 3 4\nf 1 4 5\n");
@@ -124,7 +124,7 @@ TEST(MeshFromObj, QuadsAreCutAlongTheirShorterDiagonalAndWeighAsMuchAsTheirTrian
   EXPECT_DOUBLE_EQ(mesh.mass[4], 5 * (0.5 / 3) / 2.5);
 }
 
-TEST(MeshFromObj, TheDiagonalThatCutsAQuadIsTheShorterOneWhereverItLiesAndTheFirstOfTwoAlike) {
+TEST(MeshFromObj, TheShorterDiagonalCutsAQuad) {
   const std::string far =
       "v 10 7 0\nv 11 7 0\nv 12 9 0\nv 10 8 0\n";  // of 2-4 and 1-3, 2-4 is shorter
   const std::vector<Triangle> cut{{1, 2, 3}, {1, 3, 0}};
@@ -173,7 +173,7 @@ std::vector<Polygons> every_way_round(const std::vector<Vec3>& outline) {
 
 // Area by the outline (the shoelace formula); the mass of a corner is its own wherever the face
 // begins.
-TEST(MeshFromObj, AFaceThatIsNotConvexIsCutWithinItsOutlineWhereverItBegins) {
+TEST(MeshFromObj, AConcaveFaceIsCutWithinItsOutline) {
   struct Shape {
     std::vector<Vec3> outline;
     double area;
@@ -233,7 +233,7 @@ TEST(MeshFromObj, WhatOtherProgramsAddIsSkippedAndCounted) {
             "x.obj:7:1: 'vvv' is not read: a cloth is made of 'v' and 'f' lines");
 }
 
-TEST(MeshFromObj, ALineMayBeContinuedAndAMarkOfTheByteOrderIsNoWord) {
+TEST(MeshFromObj, ALineMayBeContinuedAndBeginWithAByteOrderMark) {
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   EXPECT_EQ(parse_obj("x", "\xEF\xBB\xBF" + v + "f 1 \\\n2\\\r\n 3\n").faces[0],
             (std::vector{0, 1, 2}));
@@ -243,7 +243,7 @@ TEST(MeshFromObj, ALineMayBeContinuedAndAMarkOfTheByteOrderIsNoWord) {
   EXPECT_EQ(errors_of(v + "f 1 \\\n 2 x\nf 1 2 3\n"), "x.obj:5:4: 'x' is not a vertex number");
 }
 
-TEST(MeshFromObj, NegativeNumbersCountBackAndLaterVerticesMayBeNamed) {
+TEST(MeshFromObj, NegativeNumbersCountBack) {
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   EXPECT_EQ(parse_obj("x", v + "f -3 -2 -1\n").faces[0], (std::vector{0, 1, 2}));
   EXPECT_EQ(parse_obj("x", "f 1 2 3 # first\r\n" + v).faces[0], (std::vector{0, 1, 2}));

@@ -79,7 +79,7 @@ void expect_places_inside(const InputError& error, const std::string& file,
   }
 }
 
-TEST(SceneFuzz, EveryMutantLoadsOrIsRefusedWithAPlaceInsideTheFile) {
+TEST(SceneFuzz, EveryMutantLoadsOrIsRefusedWithItsPlace) {
   std::vector<std::string> texts;
   for (const auto& entry : std::filesystem::directory_iterator(kScenes))
     if (entry.path().extension() == ".toml") texts.push_back(slurp(entry.path()));
@@ -120,7 +120,7 @@ TEST(SceneFuzz, EveryMutantOverrideIsAppliedOrRefused) {
   EXPECT_GT(refused, 100);
 }
 
-TEST(SceneFuzz, EveryMutantMeshIsReadOrRefusedWithAPlaceInsideTheFile) {
+TEST(SceneFuzz, EveryMutantMeshIsReadOrRefusedWithItsPlace) {
   const std::string quads =
       "# two quads and a triangle\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
       "v 3 0.5 0\nvt 0 0\nf 1 2 5 4\nf 2/1 3/1 6/1 5/1\nf -5 -1 -2\n";

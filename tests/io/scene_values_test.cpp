@@ -287,7 +287,7 @@ TEST(SceneValues, AStartInsideAColliderIsMeasured) {
   expect_near(moved.mesh.rest[5], Vec3(1, 0, 0.5));
 }
 
-TEST(SceneValues, APathJumpsIfItGoesFurtherThanTheClothWithinAStep) {
+TEST(SceneValues, APathJumpsIfAStepIsLongerThanTheCloth) {
   const auto moved = [](const std::string& motion) {
     return problems(
         "[cloth]\ngrid = [3, 3]\nsize = [3, 4]\n[time]\ndt = 0.25\n[[collider]]\n"

@@ -45,7 +45,7 @@ TEST(Penetration, OfTwoVerticesHasAMeanAShareAndAPeak) {
   EXPECT_NEAR(v.at("penetration.gap"), -0.006 * 0.75, 1e-12);
 }
 
-TEST(Penetration, IsBelowTheSurfaceWhileTheGapCountsTheThickness) {
+TEST(Penetration, IsBelowTheSurfaceAndTheGapHasTheThickness) {
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Plane{}}};
   scene.thickness = 0.01;
@@ -100,7 +100,7 @@ State sliding(const Scene& scene, double mu, int step) {
   return state;
 }
 
-TEST(Slip, IsZeroForCoulombsLawAndElseTheAccelerationThatIsWrong) {
+TEST(Slip, IsZeroForCoulombsLaw) {
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Plane{.normal = {0.5, std::sqrt(0.75), 0}}, .friction = 0.3}};
   const auto at = [&](double mu) {

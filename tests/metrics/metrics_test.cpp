@@ -17,7 +17,7 @@
 namespace taut::metrics_test {
 namespace {
 
-TEST(Metrics, HaveUniqueNamesUnitsAndAsManyNumbersNowAsAtTheEnd) {
+TEST(Metrics, HaveUniqueNamesAndUnits) {
   std::map<std::string_view, int> seen;
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Ball{.center = {0.5, -9, 0.5}, .radius = 0.1}}};
@@ -65,7 +65,7 @@ TEST(Metrics, OfARunThatDiesEarlySayNothingAboutItsEnd) {
   EXPECT_NEAR(values[3], 0, 1e-12);    // stretch.peak
 }
 
-TEST(Stretch, OfAUniformlyStretchedSheetIsOnePercentByEveryMeasure) {
+TEST(Stretch, OfAUniformStretchIsOnePercentByEveryMeasure) {
   const Scene scene = sheet();
   State state = scene.start;
   for (Vec3& x : state.x) x *= 1.01;
@@ -80,7 +80,7 @@ TEST(Stretch, OfAUniformlyStretchedSheetIsOnePercentByEveryMeasure) {
 
 // n links strained by 1, 2, ..., n per mille, every other one shortened, in no order; all strains
 // grow from nothing to this at the end.
-TEST(Stretch, ThePercentileIsTheSmallestThat95PercentDoNotExceed) {
+TEST(Stretch, ThePercentileIsWhat95PercentDoNotExceed) {
   for (const int n : {1, 7, 19, 20, 21, 39, 40, 60}) {
     Scene scene = sheet(2);
     scene.mesh = make_sheet({.nu = 1, .nv = n + 1, .height = 1.0 * n, .mass = 1});
@@ -121,7 +121,7 @@ TEST(Stretch, KeepsFamiliesAndSignsApart) {
   EXPECT_NEAR(v.at("area.total"), 0.75 - 1, 1e-12);
 }
 
-TEST(Stretch, ShearCollapseStrainsNoStructuralLinkButLosesArea) {
+TEST(Stretch, ShearCollapseLosesAreaWithoutStrain) {
   const Scene scene = sheet();
   const double angle = std::numbers::pi / 6;  // between the sides, was 90 degrees
   State state = scene.start;
@@ -227,7 +227,7 @@ TEST(Settle, IsWhenTheLastRestBeginsOfEveryVertex) {
   EXPECT_DOUBLE_EQ(when(0.3e-3, 0.3e-3), 70 * scene.dt);
 }
 
-TEST(Jitter, IsTheRootMeanSquareOverVerticesAndTimeBesideTheFastest) {
+TEST(Jitter, IsTheRmsOverVerticesAndTimeAndTheFastest) {
   Scene scene = sheet(3);
   scene.pins = {0};
   const auto v = measure(scene, [&](int step) {
@@ -285,7 +285,7 @@ TEST(SelfIntersection, BallsThatOverlapAtRestAreNearerThanAtRest) {
 
 // 192 steps: the run is looked at each 9 steps, the last second (64 steps) each 6 back from the
 // end.
-TEST(SelfIntersection, IsLookedForAtTwentyMomentsOfTheRunAndTenOfTheLastSecond) {
+TEST(SelfIntersection, IsLookedForAtTwentyMomentsOfTheRun) {
   Scene scene = sheet(5);
   scene.self_collision = SelfCollision{.radius = 0.05};
   State folded = scene.start;

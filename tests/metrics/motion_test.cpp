@@ -28,7 +28,7 @@ State thrown(const Scene& scene, double t, const Vec3& gravity, double spin) {
   return state;
 }
 
-TEST(Momentum, IsKeptInFreeFlightAndLostByDragAndByAWeakerPull) {
+TEST(Momentum, IsKeptInFreeFlightAndLostByDrag) {
   Scene scene = sheet(5);
   scene.gravity = {1, -9, 2};
   scene.start = thrown(scene, 0, scene.gravity, 3);
@@ -76,7 +76,7 @@ State swinging(const Scene& scene, int step, int period, double kinetic, double 
   return state;
 }
 
-TEST(EnergyLoss, IsThatBetweenTurningPointsOverTheKineticEnergyBetweenThem) {
+TEST(EnergyLoss, IsThatBetweenTurningPoints) {
   const Scene scene = sheet(3);
   for (const double loss : {0.0, 0.1, -0.05}) {
     const Values v = measure(scene, [&](int step) { return swinging(scene, step, 40, 0.8, loss); });
@@ -113,7 +113,7 @@ TEST(EnergyLoss, IsNotOfClothThatTremblesOrSinks) {
 }
 
 // Two weights that hang on a spring each, let go at its rest length: u'' = g - u K/m.
-TEST(Energy, HoldsThatOfElasticLinksSoThatAWeightOnASpringLosesNone) {
+TEST(Energy, HoldsThatOfElasticLinks) {
   Scene scene = sheet(2);
   const auto u_of = [&](const State& s) { return Vec3(s.x[2] - s.x[0]); };
   const Vec3 down = u_of(scene.start).normalized();
@@ -134,7 +134,7 @@ TEST(Energy, HoldsThatOfElasticLinksSoThatAWeightOnASpringLosesNone) {
   EXPECT_GT(v.at("energy.kinetic"), 1e-3);
 }
 
-TEST(Pins, CarryTheWeightAtRestAndTheCentripetalForceInMotion) {
+TEST(Pins, CarryTheWeightAndTheCentripetalForce) {
   Scene scene = sheet(3);
   scene.pins = {4};
   EXPECT_NEAR(measure_at_rest(scene, scene.start).at("pins.force"), 1, 1e-12);
@@ -190,7 +190,7 @@ TEST(Principal, OfUniformStrainsAreItsSingularValues) {
   EXPECT_NEAR(v.at("principal.bias.max"), std::hypot(1 + k, 1) / std::sqrt(2.0) - 1, 1e-12);
 }
 
-TEST(Principal, PercentilesAreOverFacesAndMomentsAndDirectionsNeedAGrid) {
+TEST(Principal, PercentilesAreOverFacesAndMoments) {
   Scene scene = sheet(3);  // eight faces; one corner touches one or two of them
   const auto& faces = scene.mesh.triangles;
   const auto v = measure(scene, [&](int step) {
@@ -249,7 +249,7 @@ ReferencePath along(const Scene& scene, const std::vector<double>& moments,
   return path;
 }
 
-TEST(ReferencePath, OfTheReferenceItselfIsAllOfItsWayWithoutADelay) {
+TEST(ReferencePath, OfTheReferenceItselfIsAllOfItsWay) {
   Scene scene = sheet(3);
   scene.pins = {4};
   const ReferencePath path = along(scene, {0.5, 1, 1.5}, [](double t) { return t; });
@@ -359,7 +359,7 @@ TEST(Mode, OfADampedSwingHasItsDampingRatioAndPeriod) {
   EXPECT_FALSE(in_mode(0, 1, 0).contains("mode.damping")) << "hangs at rest";
 }
 
-TEST(Mode, SeesNothingOfHigherModesAndTakesRowsOfUnequalMass) {
+TEST(Mode, SeesNothingOfHigherModes) {
   const int n = 16;  // a sheet whose rows weigh as much as those of the chain, in other columns
   Scene scene = sheet(2);
   scene.mesh = make_sheet({.nu = 3, .nv = n + 1, .width = 0.5, .height = 1, .mass = 1});

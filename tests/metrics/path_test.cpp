@@ -35,7 +35,7 @@ Outcome outcome(const Scene& scene, const std::string& solver) {
 
 // Judged by the step's ends alone, vertices that a ball pushed aside within a step went through it:
 // 32 of them with four substeps at 1/64 s, none with one at 1/256 s.
-TEST(Path, TheSameMotionTunnelsAsOftenHoweverItIsCutIntoSteps) {
+TEST(Path, TheSameMotionTunnelsAsOftenInAnySteps) {
   for (const char* collider :
        {"type = \"ball\", radius = 0.15", "type = \"box\", half_extents = [0.15, 0.15, 0.15]"})
     for (const std::string solver :
@@ -76,7 +76,7 @@ ReferencePath followed(double dt, const std::function<Vec3(double)>& way_at) {
 }
 
 // References are of moments that few time steps meet: on a line the time step changes nothing.
-TEST(Path, ALineIsJudgedAtTheReferencesTimesWhateverTheTimeStep) {
+TEST(Path, ALineIsJudgedAtTheReferencesTimes) {
   for (const double dt : {1.0 / 64, 0.03, 0.07, 0.19, 0.3}) {
     for (const double faster : {0.5, 1.0, 1.5}) {
       const ReferencePath path = followed(dt, [&](double t) { return Vec3(faster * way(t)); });

@@ -47,7 +47,7 @@ TEST(LastSecond, HasTenSamplesAtMostWithTheEndAmongThem) {
   EXPECT_EQ(samples(3, 1.0 / 64), (std::vector{1, 2, 3}));
 }
 
-TEST(Summary, LeavesTheStartOutAndSaysNothingOfWhatItDidNotSee) {
+TEST(Summary, LeavesTheStartOut) {
   Summary s;
   EXPECT_TRUE(std::isnan(s.mean()) && std::isnan(s.max()) && std::isnan(s.peak()));
   s.add(0, true, 100);

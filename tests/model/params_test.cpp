@@ -111,7 +111,7 @@ std::string solver_problems(std::string_view text) {
   return "none";
 }
 
-TEST(SolverTexts, AreReadAndTheirErrorsCountFromTheFirstCharacter) {
+TEST(SolverTexts, AreReadWithErrorsCountedFromTheFirstCharacter) {
   const SolverChoice choice = parse_solver("xpbd:iterations=3,bend=0.5");
   EXPECT_EQ(choice.entry->name, "xpbd");
   EXPECT_EQ(choice.canonical(),

@@ -94,7 +94,7 @@ TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
 
 // Any key may have been the one that came later: a scene at its default then has the content that
 // it had before there was the key, and any other value has a content of its own.
-TEST(SceneKeys, OneThatCameLaterCountsWhereItIsNotAtItsDefaultAlone) {
+TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
   const std::vector<SceneKey> known(scene_keys().begin(), scene_keys().end());
   const Scene initial = scene_of_all();
   std::size_t later = 0;

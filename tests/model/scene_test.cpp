@@ -136,7 +136,7 @@ TEST(Surface, OfACapsuleIsThatOfABallOnItsAxis) {
   EXPECT_EQ(type_name(capsule), "capsule");
 }
 
-TEST(Motion, AlongAPathIsLinearBetweenItsKeysAndRestsOutside) {
+TEST(Motion, AlongAPathIsLinearBetweenItsKeys) {
   Motion m;
   EXPECT_TRUE(m.at_rest());
   m.path = {{1, {1, 0, 0}}, {3, {1, 4, 0}}, {4, {0, 4, 2}}};

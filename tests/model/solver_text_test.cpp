@@ -50,7 +50,7 @@ TEST(SolverText, ErrorsNameTheirColumn) {
   EXPECT_EQ(problem("n"), "1: mine: expected key=value, got 'n'");
 }
 
-TEST(SolverText, TheNameStandsBeforeTheColonAndParametersAreAppended) {
+TEST(SolverText, TheNameStandsBeforeTheColon) {
   EXPECT_EQ(solver_name("xpbd"), "xpbd");
   EXPECT_EQ(solver_name("mine:cmd='a:b',n=3"), "mine");
   EXPECT_EQ(with("xpbd", "bend=1"), "xpbd:bend=1");

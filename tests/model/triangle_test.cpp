@@ -36,7 +36,7 @@ double brute_force_max(const Corners& t, const F& f, int cuts = 120) {
   return best;
 }
 
-TEST(Triangle, NearestPointBeatsSubdivisionAndIsOnTheTriangle) {
+TEST(Triangle, NearestPointBeatsSubdivision) {
   Random random(1);
   for (int k = 0; k < 60; ++k) {
     const Corners t = random.corners(1);
@@ -51,7 +51,7 @@ TEST(Triangle, NearestPointBeatsSubdivisionAndIsOnTheTriangle) {
   }
 }
 
-TEST(Triangle, DegeneratedToASegmentOrAPointStillHasANearestPoint) {
+TEST(Triangle, DegeneratedItStillHasANearestPoint) {
   const Vec3 a(0, 0, 0), b(2, 0, 0), m(1, 0, 0), p(0.5, 1, 0);
   EXPECT_NEAR((closest_point({a, b, m}, p).position - Vec3(0.5, 0, 0)).norm(), 0, 1e-15);
   EXPECT_NEAR((closest_point({a, a, a}, p).position - a).norm(), 0, 1e-15);
@@ -109,7 +109,7 @@ TEST(Triangle, DepthInABoxIsThatOfSubdivision) {
   EXPECT_GT(inside, 40);
 }
 
-TEST(Triangle, ABoxCornerPokesThroughAFaceWhoseVerticesAreAllOutside) {
+TEST(Triangle, ABoxCornerPokesThroughAFace) {
   const Box box{{0, 0, 0}, {1, 1, 1}};
   const double h = 2.7;  // the plane x + y + z = h cuts the corner (1, 1, 1) off, 0.3 below it
   const Corners t{Vec3(h, 0, 0), Vec3(0, h, 0), Vec3(0, 0, h)};
@@ -194,7 +194,7 @@ TEST(Crossings, LeastGapIsThatOfAllPairs) {
   EXPECT_DOUBLE_EQ(least_gap(x, rest, 0.15), brute);
 }
 
-TEST(Triangle, DistancesBeatSubdivisionAndAreZeroWhereTheyTouch) {
+TEST(Triangle, DistancesBeatSubdivisionAndAreZeroInTouch) {
   Random random(7);
   for (int k = 0; k < 60; ++k) {
     Corners s = random.corners(1), t = random.corners(1);
@@ -215,7 +215,7 @@ TEST(Triangle, DistancesBeatSubdivisionAndAreZeroWhereTheyTouch) {
   EXPECT_NEAR(distance(flat, beside(5)), std::sqrt(2.0), 1e-12);
 }
 
-TEST(Crossings, CoincidencesAreThosePairsThatAreNearAndDoNotCross) {
+TEST(Crossings, CoincidencesAreNearAndDoNotCross) {
   Random random(8);
   const Mesh mesh = make_sheet({.nu = 7, .nv = 7, .width = 1, .height = 1, .mass = 1});
   std::vector<Vec3> x = mesh.rest;

@@ -40,7 +40,7 @@ TEST(Dense, EigenvectorsAreTurnedIntoTheirMultiples) {
   EXPECT_LT(std::abs(sum - 1.0), 1e-12) << "the trace";
 }
 
-TEST(Dense, TridiagonalEigenvaluesAscendAndSystemsAreSolved) {
+TEST(Dense, TridiagonalEigenvaluesAscend) {
   const int n = 6;
   const Eigen::VectorXd found = tridiagonal_eigenvalues(Eigen::VectorXd::Constant(n, 2),
                                                         Eigen::VectorXd::Constant(n - 1, -1));
@@ -137,7 +137,7 @@ TEST(ReferenceRefusals, OfTheDynamicReferenceNameTheirReason) {
             "the projection does not converge: the constraints are redundant or dt is too long");
 }
 
-TEST(DenseSteps, EachConstraintIsProjectedByItsMassesAndItsForceIsKept) {
+TEST(DenseSteps, EachConstraintIsProjectedByItsMasses) {
   Scene scene;
   scene.mesh.rest = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}};
   scene.mesh.mass = {1, 3, 1};

@@ -90,7 +90,7 @@ TEST(ClosedForms, OneSweepLeavesEveryLinkTheWeightBelowIt) {
   for (int j = 0; j < n; ++j) EXPECT_NEAR(e[j], n - 1 - j, 1e-9);
 }
 
-TEST(StaticEquilibrium, ASheetOnTwoCornersIsACatenaryWithStraightColumns) {
+TEST(StaticEquilibrium, ASheetOnTwoCornersIsACatenary) {
   for (const int n : {6, 12}) {
     const Scene s = two_corners(n, 0.8);
     const Equilibrium e = static_equilibrium(s);
@@ -203,7 +203,7 @@ void expect_balance(const Scene& s, const Equilibrium& e) {
   EXPECT_LT(e.unbalanced, 1e-11);
 }
 
-TEST(StaticEquilibrium, OfAnUnevenRopeAndAnUnevenNetBalancesAtEveryVertex) {
+TEST(StaticEquilibrium, OfAnUnevenNetBalancesAtEveryVertex) {
   Scene rope = rods(9, std::vector<Vec3>(10, Vec3::Zero()));
   for (std::size_t i = 0; i < 10; ++i) {
     rope.mesh.mass[i] = 0.1 + 0.05 * static_cast<double>(i * 7 % 10);
@@ -222,7 +222,7 @@ TEST(StaticEquilibrium, OfAnUnevenRopeAndAnUnevenNetBalancesAtEveryVertex) {
 
 // Each link is as long as it likes: a plumb line below the pin, and straight between two pins that
 // are just as far apart.
-TEST(StaticEquilibrium, OfAPlumbLineAndATautRopeIsKnownWithoutIteration) {
+TEST(StaticEquilibrium, OfAPlumbLineIsKnownWithoutIteration) {
   Scene line = rods(5, {{0, 0, 0}, {1, 0, 0}, {1, 0.5, 0}, {2, 0, 0}, {2, 0, 1}, {3, 0, 1}});
   double depth = 0;
   for (Link& l : line.links) l.rest = 0.5 + 0.1 * l.a;
@@ -339,7 +339,7 @@ TEST(Shake, APinThatMovesEvenlyMovesThePendulumWithIt) {
 }
 
 // Half a period, in the plane and out of it, and the converged motion at several moments.
-TEST(Shake, ConvergedMotionIsThatOfThePendulumWithItsVelocityAndItsFloor) {
+TEST(Shake, ConvergedMotionIsThatOfThePendulum) {
   const double a = 1.1, b = 0.4;
   const Vec3 x1(std::sin(a), -std::cos(a), 0);
   const Scene s = rods(2, {Vec3::Zero(), x1, x1 + Vec3(std::sin(b), -std::cos(b), 0)});
@@ -437,7 +437,7 @@ TEST(Shake, BendingVibratesInTheModesOfItsEnergy) {
 }
 
 // Rods below springs: both at once, and what the springs and the weights hold is kept.
-TEST(Shake, RodsBetweenSpringsKeepTheirLengthsAndTheEnergy) {
+TEST(Shake, RodsBetweenSpringsKeepLengthsAndEnergy) {
   Scene s = elastic_chain(4, 500);
   s.stiffness[static_cast<std::size_t>(Family::shear)] = kRigid[0];
   s.links[1].family = s.links[3].family = Family::shear;

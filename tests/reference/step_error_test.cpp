@@ -80,7 +80,7 @@ TEST(StepError, OfLinksAtTheirLengthsHasNothingOfTheirStrain) {
   EXPECT_LT(error.missed(scene.start, 0, scene.dt, x)[1].norm(), 1e-9);
 }
 
-TEST(StepError, OfRigidLinksIsTheDistanceFromTheNearestPlacement) {
+TEST(StepError, OfRigidLinksIsTheDistanceFromTheNearest) {
   Scene scene = hanging_sheet(6, 6, {true, false, false});
   scene.pins = {0};  // a row between two pins would resist at second order alone
   scene.stiffness = {1e5, 1e5, 1e5};

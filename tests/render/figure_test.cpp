@@ -143,7 +143,7 @@ bool holds(const Image& picture, const Image& panel, int left, int top) {
   return true;
 }
 
-TEST(Figure, EveryRunStandsInItsPanelUnderTheDotOfItsColour) {
+TEST(Figure, EveryRunStandsInItsPanel) {
   const Scene scene = test::level_sheet(5);
   std::vector<RecordedRun> runs;
   for (const auto& [strain, colour] :
@@ -174,7 +174,7 @@ TEST(Figure, EveryRunStandsInItsPanelUnderTheDotOfItsColour) {
   }
 }
 
-TEST(Figure, ASheetHasAColumnForEachRunAndARowForEachMoment) {
+TEST(Figure, ASheetHasAColumnForEachRun) {
   const Scene scene = test::sheet_over_ball(9);
   const std::vector<RecordedRun> runs{test::draped(scene, 5), test::stretched(scene, 0.02)};
   SceneRendererOptions options = small();
@@ -198,7 +198,7 @@ TEST(Figure, ASheetHasAColumnForEachRunAndARowForEachMoment) {
   }
 }
 
-TEST(Figure, TheSheetLaidFlatStandsInTheCornerUnlessItWouldHideSomeOfACloth) {
+TEST(Figure, TheSheetLaidFlatHidesNoCloth) {
   const Scene scene = test::level_sheet(9);
   const std::vector<RecordedRun> runs{test::stretched(scene, 0), test::stretched(scene, 0.01)};
   const auto layout = PageLayout::bare(400, 160, 2);
@@ -214,7 +214,7 @@ TEST(Figure, TheSheetLaidFlatStandsInTheCornerUnlessItWouldHideSomeOfACloth) {
   }
 }
 
-TEST(ColourBar, TicksStandAtTheirPlacesAndArrowsPointBeyondTheEnds) {
+TEST(ColourBar, TicksStandAtTheirPlaces) {
   for (const ColourBy by : {ColourBy::strain, ColourBy::speed}) {
     Image image(400, 90, rgb(0xFFFFFF));
     Canvas canvas(image);

@@ -147,7 +147,7 @@ TEST(ColourMap, WhatIsNoNumberLooksAsBadAsTheLargest) {
   EXPECT_EQ(ColourMap::violet().at(-7), ColourMap::violet().at(0));
 }
 
-TEST(ColourMap, LightnessIsLinearInTheValueAndHueChangesEvenly) {
+TEST(ColourMap, LightnessIsLinearInTheValue) {
   EXPECT_EQ(linear_of(0), 0);
   EXPECT_EQ(linear_of(255), 1);
   EXPECT_NEAR(linear_of(188), 0.5029, 1e-4);  // IEC 61966-2-1
@@ -178,7 +178,7 @@ TEST(ColourMap, LightnessIsLinearInTheValueAndHueChangesEvenly) {
   EXPECT_GT(std::min(teal.g, teal.b), teal.r + 40);
 }
 
-TEST(ColourMap, PositionsRunEvenlyFromTheLowestEntryToTheHighest) {
+TEST(ColourMap, PositionsRunEvenlyFromLowestToHighest) {
   const ColourMap& map = ColourMap::teal();
   const auto& table = map.table();
   ASSERT_EQ(table.size(), static_cast<std::size_t>(ColourMap::kSize));
@@ -287,7 +287,7 @@ TEST(Camera, IsTheNearestFromWhichThePointsFitTheFrame) {
       }
 }
 
-TEST(Camera, GoesBesideOrBelowTheInsetWhicheverShowsMoreIfItHidesAPoint) {
+TEST(Camera, GoesBesideOrBelowTheInset) {
   int hidden = 0, below_it = 0;
   for (const double height : {0.05, 0.2, 0.5, 0.8, 1.0, 1.5, 2.0}) {
     std::vector<Vec3> corners;
@@ -360,7 +360,7 @@ TEST(VertexValues, AreMeansOfLinksDepthsInCollidersAndSpeeds) {
   EXPECT_EQ(live.max_speed, fastest);
 }
 
-TEST(RecordedRun, ShowsTheNearestFrameAndItsSpeedsWhereTheFileHasNone) {
+TEST(RecordedRun, ShowsTheNearestFrameAndItsSpeeds) {
   const Scene scene = test::level_sheet(3);
   Trajectory trajectory = test::empty_trajectory(scene);
   for (const double t : {0.0, 0.1, 0.3, 0.4, 1.0}) {

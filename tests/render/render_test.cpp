@@ -138,7 +138,7 @@ RecordedRun with_speeds(const Scene& scene,
   return recorded_run(scene, trajectory);
 }
 
-TEST(SceneRenderer, TheBarEndsWhere98Of100ValuesOfTheMomentsAskedForLie) {
+TEST(SceneRenderer, TheBarEndsWhere98Of100ValuesLie) {
   const Scene scene = test::level_sheet(10);
   const auto high = [&](const std::function<double(std::size_t, double)>& speed, double from = 0,
                         double to = 1e9) {
@@ -172,7 +172,7 @@ TEST(SceneRenderer, TheBarEndsWhere98Of100ValuesOfTheMomentsAskedForLie) {
   EXPECT_DOUBLE_EQ(least(ColourBy::penetration), round_up(1e-3 * extent(scene), 1e-9));
 }
 
-TEST(SceneRenderer, MaterialSpaceIsLinearBetweenTheVerticesAndHasTheSheetsShape) {
+TEST(SceneRenderer, MaterialSpaceIsLinearBetweenTheVertices) {
   Scene scene = test::level_sheet(3);
   const auto flat_of = [&](int nu, int nv, double width, double height) {
     scene.mesh = make_sheet({.nu = nu, .nv = nv, .width = width, .height = height, .mass = 1});

@@ -29,7 +29,7 @@ double area(const RenderMesh& mesh) {
   return two / 2;
 }
 
-TEST(DrawnSheet, PassesThroughItsParticlesAndItsValuesAreLinear) {
+TEST(DrawnSheet, PassesThroughItsParticles) {
   const Scene scene = test::level_sheet(5);
   const ClothMesher mesher(scene, 16);  // 4 pieces a quad
   std::vector<Vec3> x = scene.start.x;
@@ -86,7 +86,7 @@ TEST(DrawnSheet, IsCoveredOnceByFacesThatAllTurnAlike) {
   }
 }
 
-TEST(DrawnCloth, WithoutAGridIsItsFacesAndWithoutFacesATubeWithBeads) {
+TEST(DrawnCloth, WithoutAGridIsItsFacesElseATube) {
   Scene scene = test::level_sheet(3);
   scene.mesh = make_sheet({.nu = 3, .nv = 3, .width = 2, .height = 1, .mass = 1});
   scene.mesh.grid.reset();
@@ -182,7 +182,7 @@ TEST(DrawnColliders, HaveTheirSizesLessTheInset) {
   EXPECT_NEAR(area(ground), 9, 1e-4);
 }
 
-TEST(DrawnCloth, IsLiftedOutOfACollidersSkinButNotOutOfItsInside) {
+TEST(DrawnCloth, IsLiftedOutOfACollidersSkinAlone) {
   Scene scene = test::level_sheet(3);
   scene.colliders.push_back({Ball{Vec3::Zero(), 1}, {}, 0});
   RenderMesh mesh;
@@ -243,7 +243,7 @@ double brightness(const Image& picture, double x, double y) {
 
 // A canopy over level ground, seen from 60 degrees above: what lies in its shade is dark, its upper
 // side and the ground far from it are as bright as if there were nothing else.
-TEST(Lights, OpenGroundIsBrightAndWhatLiesBelowACanopyIsDark) {
+TEST(Lights, OpenGroundIsBrightAndBelowACanopyDark) {
   Panel panel;
   const std::vector<Vec3> seen{Vec3(-2, 0, -2), Vec3(2, 0, 2)};
   panel.camera = fit_camera(seen, Vec3::UnitY(), View{0, 60}, 1, FitRegion{});
@@ -287,7 +287,7 @@ TEST(Lights, OpenGroundIsBrightAndWhatLiesBelowACanopyIsDark) {
   EXPECT_GT(at(covered, Vec3f(-0.65f, 0, -0.1f)), 0.9 * at(open, far)) << "on its bright side";
 }
 
-TEST(Places, FollowClothThatNothingHoldsAndPutTheGroundBelow) {
+TEST(Places, FollowClothThatNothingHolds) {
   Scene scene = test::level_sheet(5);
   const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
   const Placing loose = place(scene, runs, {0}, View{}, FitRegion{}, 1, 0.01);

@@ -194,7 +194,7 @@ TEST_F(Posters, FramesAreWholeStepsAtAboutTheRateOfTheFilm) {
   EXPECT_EQ(steps(0.25, 1, coarse), (Steps{0, 4, 8, 12, 16}));
 }
 
-TEST_F(Posters, ShowWhereTheRunsDifferMostFromAnEighthOfTheFilmOn) {
+TEST_F(Posters, ShowWhereTheRunsDifferMost) {
   const Scene scene = test::level_sheet(3);
   const auto poster = [&](const std::vector<RecordedRun>& runs) {
     return media_of(scene, runs, 1).poster_t * 64 / 3;  // the frame of 22
@@ -227,7 +227,7 @@ TEST_F(Posters, ShowWhereTheRunsDifferMostFromAnEighthOfTheFilmOn) {
       << "strain before place";
 }
 
-TEST_F(Posters, HaveTheRunsFromLeftToRightAndTheirClothLaidFlat) {
+TEST_F(Posters, HaveTheRunsAndTheirClothLaidFlat) {
   Scene scene = test::level_sheet(5);
   scene.mesh = make_sheet({.nu = 5,
                            .nv = 3,
@@ -259,7 +259,7 @@ Record ran(const std::string& scene, const std::string& solver, const Status& st
   return r;
 }
 
-TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefusesAndOtherScenesAtAWatchableSpeed) {
+TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   const Scratch scratch;
   const std::string cloth = "[cloth]\ngrid = [4, 3]\nsize = [1, 0.5]\nmass = 0.1\n",
                     small = (scratch.path() / "small.toml").string();

@@ -30,7 +30,7 @@ struct Reported {
 };
 
 // Sweeps of two solvers cost unequally: nobody is best.
-TEST(PageAnswers, HaveAValueOrWhyThereIsNoneAndMarkNobodyAtEqualSweeps) {
+TEST(PageAnswers, HaveAValueOrAReasonAndMarkNobody) {
   Reported made;
   const auto stretch = [&](const std::string& scene, const char* solver, double value) -> Record& {
     return made.add(scene, solver, {{"stretch.rms", value}});
@@ -61,7 +61,7 @@ TEST(PageAnswers, HaveAValueOrWhyThereIsNoneAndMarkNobodyAtEqualSweeps) {
   EXPECT_EQ(failures.rows.back()[0].text(), "sum of 4 scenes") << "Bullet did not run swing";
 }
 
-TEST(PageAnswers, SayTheDeepestOfTheWholeRunAndWhatASolverCannot) {
+TEST(PageAnswers, SayTheDeepestOfTheWholeRun) {
   Reported made;
   for (const char* scene : {"ball", "box"}) {
     made.add(scene, "jakobsen", {{"penetration.peak", 0.002}, {"penetration.max", 0}});
@@ -143,7 +143,7 @@ StudyBench bench_of(const std::vector<Timed>& all) {
   return bench;
 }
 
-TEST(PageAnswers, SayThatACostIsAnUpperBoundWhereNothingCheaperWasTried) {
+TEST(PageAnswers, SayThatACostIsAnUpperBound) {
   Reported made;
   made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
   made.add("hang", "pd", {{"stretch.rms", 0.005}});
@@ -168,7 +168,7 @@ TEST(PageAnswers, SayThatACostIsAnUpperBoundWhereNothingCheaperWasTried) {
   EXPECT_EQ(cells("price")[2].note, "1 × 1") << "nothing is cheaper";
 }
 
-TEST(PageAnswers, MarkNoSettingOfSolversThatReachTheErrorOnDifferentScenes) {
+TEST(PageAnswers, MarkNoSettingWhereScenesDiffer) {
   Reported made;
   for (const char* solver : {"jakobsen", "bullet"})
     made.add("hang", solver, {{"stretch.rms", 0.1}});
@@ -234,7 +234,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
 }
 
 // Where work is not equal each cell says its own, beside what it says anyway.
-TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWorkEither) {
+TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWork) {
   Reported made;
   made.add("swing", "jakobsen", {{"stretch.rms", 0.03}, {"motion.share", 0.9}});
   Record& still = made.add("swing", "vbd", {{"stretch.rms", 0.001}, {"motion.share", 0.49}});
@@ -246,7 +246,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWorkEither) {
 }
 
 // On most scenes first; of settings that reach the error on as many the cheapest, in any order.
-TEST(PageAnswers, RecommendWhatReachesTheErrorOnMostScenesAndOfEqualsTheCheapest) {
+TEST(PageAnswers, RecommendWhatReachesTheErrorOnMostScenes) {
   Reported made;
   for (const char* solver : {"jakobsen", "bullet"})
     made.add("hang", solver, {{"stretch.rms", 0.1}});
@@ -330,7 +330,7 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   EXPECT_EQ(price.rows[0][2].note, "1 × 1, mesh order");
 }
 
-TEST(PageAnswers, APenetrationSaysWhenItIsMeasuredAndHowHardBulletPushes) {
+TEST(PageAnswers, APenetrationNamesItsMomentAndBulletsPush) {
   Reported made;
   made.add("ball", "jakobsen", {{"penetration.peak", 0.001}});
   made.add("ball", "bullet", {{"penetration.peak", 0.01}}).params["hardness"] = "0.1";
@@ -402,7 +402,7 @@ struct Mapped {
   Reported made;
 };
 
-TEST(Winners, AreTheCheapestBesideWhatCannotBeToldAndWhatDoesNotCount) {
+TEST(Winners, AreTheCheapestBesideTiesAndWhatDoesNotCount) {
   Mapped one({{"ball", "jakobsen", 1, 1, 0.02, 2e-3},
               {"ball", "jakobsen", 2, 1, 0.002, 4e-3},
               {"ball", "xpbd", 1, 1, 0.02, 2.02e-3},
@@ -428,7 +428,7 @@ TEST(Winners, AreTheCheapestBesideWhatCannotBeToldAndWhatDoesNotCount) {
             "apart; 1 cell is reached by nobody.");
 }
 
-TEST(Winners, HaveTheirRangeInASentenceAndTheirLinksInTheirCell) {
+TEST(Winners, HaveTheirRangeInASentence) {
   Mapped one({{"hang", "jakobsen", 1, 1, 0.0005, 1e-3},
               {"hang", "pd", 1, 1, 0.05, 3e-3},
               {"hang", "pd", 2, 1, 0.002, 9e-3}});

@@ -136,7 +136,7 @@ TEST(Chosen, AChartHasItsPointsItsTicksItsFitAndItsTheory) {
                                      {"name", "1 × 16"}}}));
 }
 
-TEST(Chosen, AFilmHasItsPanelsItsBarAndWhatHappensWhileItLasts) {
+TEST(Chosen, AFilmHasItsPanelsItsBarAndItsEvents) {
   ReportInput input = chosen();
   input.media = {{.scene = "hang", .duration = 1, .speed = 0.5, .frame = 0.125, .poster = 0.75}};
   input.media[0].clip = {
@@ -270,7 +270,7 @@ TEST(Chosen, CostsOfTwoFoldersAreComparedSolverBySolver) {
 }
 
 // Three builds of which the last stepped; the one in between has no result of the case.
-TEST(Chosen, AHistoryHasALineForEachCaseAndBothBuildsOfAStep) {
+TEST(Chosen, AHistoryHasALineForEachCase) {
   ReportInput input = chosen();
   EXPECT_FALSE(model_of(input).contains("history"));
   const Record& now = input.studies[0].records[0];
@@ -304,7 +304,7 @@ TEST(Chosen, AHistoryHasALineForEachCaseAndBothBuildsOfAStep) {
             "before it without a result");
 }
 
-TEST(Chosen, ACostIsThatOfTheCheapestThatReachesAnErrorAndAProfileCountsThem) {
+TEST(Chosen, ACostIsThatOfTheCheapestWithinTheError) {
   ReportInput input = chosen();
   std::vector<Record>& records = input.studies[0].records;
   SceneBench scene{"hang", {1 / 1.02, 1, 1.02}, {}};
@@ -379,7 +379,7 @@ TEST(Chosen, OfManyChangesTheLargestAreListed) {
 }
 
 // What this program's own truths say of an assertion stands in the place of what was found before.
-TEST(Chosen, AssertionsHaveTheVerdictOfThisProgramWhereItJudgedThem) {
+TEST(Chosen, AssertionsHaveTheVerdictOfThisProgram) {
   ReportInput input = chosen();
   const Json earlier = model_of(input), &before = earlier["tables"]["assertions"];
   ASSERT_EQ(before["rows"].size(), assertions().size());

@@ -50,7 +50,7 @@ TEST(Slices, KeepWhatHasNoSuchSetting) {
 }
 
 // Positions that another program computed have no sweeps, but a step; rounding is their floor.
-TEST(Curves, PositionsFromAFileAreALevelOverSweepsAndPointsOverTheStep) {
+TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
   StudyResult study{"iterations", "?", synthetic::iterations("hang"), 0, {}};
   for (const double dt : {1.0 / 64, 1.0 / 32}) {
     Record file = synthetic::record("hang", "file", 1, dt);
@@ -251,7 +251,7 @@ TEST(Charts, ACurveThatLiesOnAnotherIsSaid) {
   EXPECT_TRUE(same(1).empty()) << "zeros stand side by side on the axis";
 }
 
-TEST(Charts, ATheoryLineLiesBelowTheLowestPointAndAFrontAboveNone) {
+TEST(Charts, ATheoryLineLiesBelowTheLowestPoint) {
   std::vector<Record> all = at_work({{"jakobsen", {{1, 1}, {1, 2}, {1, 4}}}});
   for (const auto& [i, y] : {std::pair{0, 8.0}, {1, 3.0}, {2, 2.0}})
     all[static_cast<std::size_t>(i)].values["stretch.rms"] = y;
@@ -270,7 +270,7 @@ TEST(Charts, ATheoryLineLiesBelowTheLowestPointAndAFrontAboveNone) {
   EXPECT_EQ(tick_of(quantity("iterations"), 1e6), "10⁶");
 }
 
-TEST(Maps, HaveTheirCellsByAscendingSettingsAndShowTheWorse) {
+TEST(Maps, HaveTheirCellsByAscendingSettings) {
   std::vector<Record> all;
   for (const double dt : {0.02, 0.01})
     for (const int sweeps : {4, 1})
@@ -291,7 +291,7 @@ TEST(Maps, HaveTheirCellsByAscendingSettingsAndShowTheWorse) {
   EXPECT_EQ((cells[{0, 0}]), &all[3]);
 }
 
-TEST(Maps, OfASceneAreOfStudiesWithThreeStepsAndThreeNumbersOfSweeps) {
+TEST(Maps, OfASceneNeedThreeStepsAndThreeSweeps) {
   const auto maps = [](const std::vector<double>& steps, const std::vector<int>& sweeps) {
     ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
     for (const char* scene : {"hang", "ball"})
@@ -309,7 +309,7 @@ TEST(Maps, OfASceneAreOfStudiesWithThreeStepsAndThreeNumbersOfSweeps) {
   EXPECT_EQ(found[0].cells.size(), 9u);
 }
 
-TEST(Maps, ThatWereAskedForNeedTwoOfEachAndMayHaveRecordsOfTheirOwn) {
+TEST(Maps, ThatWereAskedForNeedTwoOfEach) {
   ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
   for (const double dt : {0.01, 0.02}) {
     input.studies[0].records.push_back(synthetic::record("hang", "jakobsen", 1, dt));

@@ -59,7 +59,7 @@ bool same(const Json& a, const Json& b) {
   return std::abs(x - y) <= 1e-6 * std::abs(y);
 }
 
-TEST(Drawn, APointIsOfItsSolverMarkedAsItEndedAndInsideItsInterval) {
+TEST(Drawn, APointIsMarkedAsItEndedWithinItsInterval) {
   std::size_t points = 0, intervals = 0;
   for (const Made& made : sets()) {
     for (const Json& chart : made.model.value("charts", Json::array())) {
@@ -188,7 +188,7 @@ TEST(Drawn, ACellOfAMapIsTheCaseOfItsRowAndColumn) {
 }
 
 // A map over a setting of the scene: its cells differ in that one.
-TEST(Drawn, AMapNamesItsAxesAndTheSettingsThatAllItsCellsShare) {
+TEST(Drawn, AMapNamesItsAxesAndItsSharedSettings) {
   const Record other = synthetic::record("hang", "jakobsen", 8, 1.0 / 64);
   ReportInput input{.studies = {{"one", "?", {other}, 1, {}}},
                     .maps = {{"spans", "?", "dt", "cloth.span", {}}}};
@@ -210,7 +210,7 @@ TEST(Drawn, AMapNamesItsAxesAndTheSettingsThatAllItsCellsShare) {
   EXPECT_EQ(map["cells"].size(), 6u);
 }
 
-TEST(Drawn, AChartSaysTheWindowOfItsValueAndContactIsOfTheWholeRun) {
+TEST(Drawn, AChartNamesTheWindowOfItsValue) {
   int contact = 0;
   for (const Made& made : sets())
     for (const Json& chart : made.model.value("charts", Json::array())) {
@@ -262,7 +262,7 @@ TEST(Drawn, AMapIsOfTheCasesThatHaveBothOfItsSettings) {
   EXPECT_THROW(make_maps(records, "box", "dt", "iterations"), InputError);
 }
 
-TEST(Drawn, NoPointBeatsTheFrontAndNoneOfTheFrontBeatsAnother) {
+TEST(Drawn, NoPointBeatsTheFront) {
   std::size_t seen = 0;
   for (const Made& made : sets())
     for (const Json& chart : made.model.value("charts", Json::array())) {

@@ -44,7 +44,7 @@ Truths truths_of(const std::vector<std::vector<Finding>>& findings) {
   return *stored_truths(store, program_digest());
 }
 
-TEST(StoredTruths, ShowOfEachTruthTheFindingNearestToItsTolerance) {
+TEST(StoredTruths, ShowTheFindingNearestToItsTolerance) {
   const auto [shown, assertions] =
       truths_of({{finding("far", 1, 0.1, 1.02), finding("near", 1, 0.1, 0.92),
                   finding("apart", 1, 0.1, 1.5, TruthVerdict::deviates), finding("wide", 1, 1, 1.5),
@@ -196,7 +196,7 @@ class StoredStudy : public testing::Test {
   std::vector<Case> cases_;
 };
 
-TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndTheMotionsOfTheQuotedCases) {
+TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndItsMotions) {
   ASSERT_EQ(cases_.size(), 8u);
   const ReportInput input = stored_results({study_}, store_);
   ASSERT_EQ(input.studies.size(), 1u);
@@ -249,7 +249,7 @@ TEST_F(StoredStudy, IsReadWithItsPlanItsSlopeAndTheMotionsOfTheQuotedCases) {
   EXPECT_EQ(less.studies[0].records.size(), 7u);
 }
 
-TEST_F(StoredStudy, ItsMapsAndSeriesAreThoseOfItsPlotAndItsRecords) {
+TEST_F(StoredStudy, ItsMapsAndSeriesAreThoseOfItsRecords) {
   ReportInput input = stored_results({study_}, store_), empty;
   add_stored_maps(input, {study_}, store_);
   ASSERT_EQ(input.maps.size(), 1u);

@@ -25,7 +25,7 @@ ParameterFrontier frontier(const std::string& solver, const std::string& name, d
   return k;
 }
 
-TEST(FrontierPlot, BarsAreHowManyTimesHarderEachParameterMayBeMade) {
+TEST(FrontierPlot, BarsAreHowMuchHarderAParameterMayBeMade) {
   std::vector<ParameterFrontier> all{frontier("jakobsen", "time step", 0.01, 0.08, 0.1, false),
                                      frontier("bullet", "time step", 0.01, 0.02, kNone, false),
                                      frontier("jakobsen", "size, down", 8, 0.5, 0.25, true),

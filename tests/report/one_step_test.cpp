@@ -64,7 +64,7 @@ TEST(OneStep, ItsPointsAreCasesWithTheirIterationsAndValues) {
 }
 
 // What is 0, or was not measured, has no place on a logarithmic axis.
-TEST(OneStep, AChartHasWhatIsAboveZeroAndSaysWhereSolversEnd) {
+TEST(OneStep, AChartHasPositiveValuesAndWhereSolversEnd) {
   const OneStep step(found());
   const auto drawn = [&](const char* kind) { return step_records(step, kind).size(); };
   EXPECT_EQ(drawn("distance"), 6u);

@@ -78,7 +78,7 @@ TEST_F(Plots, AFailedCaseIsAMarkAndARowNeverAGap) {
 }
 
 // Nine solvers, of which each would be a row of each panel's key.
-TEST_F(Plots, PanelsShareTheirAxesAndOneKeyThatTakesNoneOfTheirRoom) {
+TEST_F(Plots, PanelsShareTheirAxesAndOneKey) {
   std::vector<PlotPanel> panels;
   std::vector<std::vector<Record>> all;
   for (const char* scene : {"hang", "ball", "box"}) {
@@ -157,7 +157,7 @@ Record made(const std::string& id, const std::string& solver, int sweeps, double
   return r;
 }
 
-TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) {
+TEST_F(Plots, AScriptDrawsEveryRowAndFailuresAbove) {
   std::vector<Record> all{made("j1", "jakobsen", 1, 0.08), made("j4", "jakobsen", 4, 0.02),
                           made("j16", "jakobsen", 16, 0),  made("b1", "bullet", 1, 0.3),
                           made("b4", "bullet", 4, 0.1),    made("b,16", "bullet", 16, 0.05)};
@@ -226,7 +226,7 @@ TEST_F(Plots, AScriptDrawsEveryRowUnderItsSolverInShownUnitsAndWhatFailedAbove) 
 }
 
 // Twelve in a plot of its own, eight in one of several panels.
-TEST_F(Plots, EverySettingIsNamedOnTheAxisUnlessTheyWouldNotFit) {
+TEST_F(Plots, EverySettingIsNamedOnTheAxisIfItFits) {
   const auto named = [&](std::size_t panels, int settings) {
     std::vector<std::vector<Record>> all(panels);
     std::vector<PlotPanel> shown;
@@ -246,7 +246,7 @@ TEST_F(Plots, EverySettingIsNamedOnTheAxisUnlessTheyWouldNotFit) {
   EXPECT_FALSE(named(2, 9));
 }
 
-TEST_F(Plots, AxesAreAsTheirUnitsSayAndAFloorAndAFrontAreDrawnInThem) {
+TEST_F(Plots, AxesAreAsTheirUnitsSay) {
   std::vector<Record> all;
   for (const auto& [dt, y] : {std::pair{0.002, 0.05}, {0.004, 0.1}, {0.008, 0.25}}) {
     Record r = synthetic::record("hang", "jakobsen", 16, dt);
@@ -285,7 +285,7 @@ TEST_F(Plots, AxesAreAsTheirUnitsSayAndAFloorAndAFrontAreDrawnInThem) {
   EXPECT_TRUE(front.starts_with("125 0.5\n250 -0.09")) << front.substr(0, 40);
 }
 
-TEST_F(Plots, AMapHasItsTicksItsColoursAndItsGlyphsInEachPanel) {
+TEST_F(Plots, AMapHasTicksColoursAndGlyphsInEachPanel) {
   std::vector<Record> all;
   for (const char* solver : {"jakobsen", "bullet"})
     for (const double dt : {0.02, 0.01})
@@ -356,7 +356,7 @@ TEST_F(Plots, AFigureIsAsWideAsItIsAskedToBeWithItsKeyBelow) {
                InputError);
 }
 
-TEST_F(Plots, SeriesAreDrawnAsTheyAreAndProfilesUpToTheLargestFactor) {
+TEST_F(Plots, SeriesAreDrawnAsTheyAre) {
   const std::vector<TimeSeries> series{
       {"hang", "jakobsen", "A", "stretch.rms", {0, 0.5, 1}, {0.01, std::nan(""), 0.02}, "k"},
       {"hang", "bullet", "B", "energy.mean", {0, 1}, {9, 9}},
@@ -429,7 +429,7 @@ TEST_F(Plots, AMapHasARowForEveryCase) {
   EXPECT_EQ(count(csv, "\n"), records.size() + 1);
 }
 
-TEST_F(Plots, NamesWithQuotesCommasAndLineBreaksReachNobodysSyntax) {
+TEST_F(Plots, NamesWithQuotesAndLineBreaksAreHarmless) {
   auto records = synthetic::iterations("hang");
   for (Record& r : records) {
     r.params["mode"] = r.params["iterations"] == "4" ? "it's, \"odd\"\n`date` $0 %d" : "plain";
@@ -480,7 +480,7 @@ TEST_F(Plots, ABrokenScriptLeavesNoFile) {
   EXPECT_EQ(files(), 1);
 }
 
-TEST_F(Plots, UnknownKindsAndValuesAreInputErrorsWithASuggestion) {
+TEST_F(Plots, UnknownKindsAndValuesHaveASuggestion) {
   const auto records = synthetic::iterations("hang");
   EXPECT_THROW(draw({.kind = "stabilty"}, records), InputError);
   EXPECT_THROW(draw({.kind = "series"}, records), InputError);
@@ -493,7 +493,7 @@ TEST_F(Plots, UnknownKindsAndValuesAreInputErrorsWithASuggestion) {
   }
 }
 
-TEST(Curves, LabelsNameOnlyWhatVariesAndCurvesKeepTheirSolver) {
+TEST(Curves, LabelsNameOnlyWhatVaries) {
   auto records = synthetic::iterations("hang");
   for (Record& r : records) r.params["projection"] = "exact";
   auto other = records;

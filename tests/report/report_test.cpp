@@ -292,7 +292,7 @@ TEST(Model, WhatResultsSayNothingOfIsAllThatWasNotRun) {
 }
 
 // Of more cases than a page can carry all that something on it names, and others evenly.
-TEST(CasesOfAPage, AreAllOrThoseThatAreNamedAndAsManyOthersAsThereIsRoomFor) {
+TEST(CasesOfAPage, AreThoseNamedAndOthersWhileThereIsRoom) {
   ReportInput input{.studies = {{"many", "?", {}, 0, {}}}};
   std::vector<Record>& records = input.studies[0].records;
   for (std::size_t i = 0; i < 3 * kMostCases; ++i) {
@@ -336,7 +336,7 @@ TEST(Model, SolversStandInTheOrderOfTheStudy) {
   EXPECT_EQ(solvers[0]["colour"], model_of(example())["solvers"][1]["colour"]);
 }
 
-TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndNothingThatStaysZero) {
+TEST(Model, AFilmShowsTheScenesOwnQuantityFirst) {
   ReportInput input = example();
   input.media = {{.scene = "ball", .clip = {.type = "image/png", .bytes = "x", .panels = {}}}};
   input.media[0].duration = 2.5;
@@ -348,7 +348,7 @@ TEST(Model, AFilmShowsTheScenesOwnQuantityFirstAndNothingThatStaysZero) {
   EXPECT_EQ(shown, (std::vector<std::string>{"slip.distance", "stretch.rms"}));
 }
 
-TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {
+TEST(Model, PicturesThatWouldBurstThePageAreLeftOut) {
   ReportInput input = example();
   const Clip clip{.type = "video/mp4", .bytes = std::string(4'000'000, 'x'), .panels = {}};
   input.media = {{.scene = "ball", .clip = clip}, {.scene = "hang", .clip = clip}};
@@ -359,7 +359,7 @@ TEST(Model, PicturesThatWouldBurstThePageAreLeftOutAndSaidSo) {
   EXPECT_TRUE(films[1].contains("left_out"));
 }
 
-TEST(Model, ScenesThatNoStudyRanAreThereWithWhoRefusesThem) {
+TEST(Model, ScenesOutsideStudiesHaveWhoRefusesThem) {
   ReportInput input = example();
   SceneMedia more{.scene = "twist", .summary = "A strip, wound up"};
   more.refused = {{"bullet", "self-collision is not what it does"}};
@@ -370,7 +370,7 @@ TEST(Model, ScenesThatNoStudyRanAreThereWithWhoRefusesThem) {
   EXPECT_EQ(scenes.back()["refusals"][0]["solver"], "bullet");
 }
 
-TEST(ComparedSolvers, OnlyWhatAnswersTheSameQuestionIsQuotedSideBySide) {
+TEST(ComparedSolvers, OnlyTheSameQuestionIsQuotedSideBySide) {
   ReportInput input = example();
   for (Record& r : input.studies[0].records)
     if (r.solver == "bullet") r.spec.overrides = {"cloth.grid=[8, 8]"};

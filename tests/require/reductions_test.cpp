@@ -31,7 +31,7 @@ Strings steps_of(const Case& one, const std::string& name) {
   return all;
 }
 
-TEST(Reductions, OfAGridHalveItTwiceAndKeepFourVerticesAlongASide) {
+TEST(Reductions, OfAGridHalveItTwice) {
   const auto steps = [](const std::string& grid) {
     return steps_of(hang({"cloth.grid=" + grid}), "resolution");
   };
@@ -56,7 +56,7 @@ TEST(Reductions, OfADurationAreHalvesDownToAStep) {
   EXPECT_EQ(steps("0.015625"), Strings{}) << "one";
 }
 
-TEST(Reductions, OfParametersAreTheCheaperChoiceAndHalvesOfNumbers) {
+TEST(Reductions, OfParametersAreCheaperChoicesAndHalves) {
   const Case one =
       hang({}, "jakobsen:substeps=5,iterations=8,precision=double,tethers=on,levels=3");
   EXPECT_EQ(steps_of(one, "substeps"), (Strings{"5 -> 3", "5 -> 2", "5 -> 1"}));
@@ -180,7 +180,7 @@ TEST(Drafts, FindTheirMeshFromWhereverTheyAreWritten) {
   EXPECT_EQ(make_case(written).scene->mesh.size(), 3);
 }
 
-TEST(Perturbed, StartsDifferByOneVertexOfFourSpreadOverTheFreeOnes) {
+TEST(Perturbed, StartsDifferByOneOfFourFreeVertices) {
   const Scratch scratch;
   const Case full = hang({"cloth.grid=[4, 3]"});
   const Scene& scene = *full.scene;

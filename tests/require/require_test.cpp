@@ -108,7 +108,7 @@ TEST(Effects, OneOfSeveralCollidersGoes) {
   EXPECT_EQ(std::get<Ball>(less.scene->colliders[0].shape).radius, 0.2);
 }
 
-TEST(Answers, ShapesOfNestedAndOtherGridsAreComparedAtTheSameCloth) {
+TEST(Answers, ShapesOfOtherGridsAreComparedAtTheSameCloth) {
   const Observation fine = observation("hang", {"cloth.grid=[33, 33]"}, bent);
   const KeptAnswer shape{"shape", 0.01};
   const auto from = [&](const std::string& grid, const Vec3& off) {
@@ -145,7 +145,7 @@ TEST(Answers, ToleranceIsReadInTheUnitsThatAreShown) {
     EXPECT_THROW(parse_answer(wrong, full), InputError) << wrong;
 }
 
-TEST(Answers, AValueThatIsGoneWithItsObstacleIsMeasuredOnTheMotion) {
+TEST(Answers, ALostValueIsMeasuredOnTheMotion) {
   Observation full = observation("plane", {}, [](const Vec3& x) { return x; });
   full.record.values["penetration.max"] = 0;
   Observation without = observation("plane", {"collider=[]"},

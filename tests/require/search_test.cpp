@@ -49,7 +49,7 @@ const std::string kStrip =
     "0, 1]\nstrength = 0\n"
     "[links]\nshear = false\n[time]\ndt = \"1/64\"\nduration = 0.25\n";
 
-TEST_F(Requirements, DropWhatDoesNothingKeepWhatMattersAndNameWhatCannotBe) {
+TEST_F(Requirements, DropWhatDoesNothingAndKeepWhatMatters) {
   const Requirement found =
       find(kStrip, {.full = {"", {}, "jakobsen:substeps=4,iterations=2,precision=float"},
                     .keep = {"shape:0.01%", "stretch.max:0.01%"},
@@ -114,7 +114,7 @@ double farthest(const State& a, const State& b) {
   return most;
 }
 
-TEST_F(Requirements, AShapeThatARoundingErrorMovesIsGivenUpAndTheRestIsKept) {
+TEST_F(Requirements, AShapeThatRoundingMovesIsGivenUp) {
   constexpr double kTolerance = 2e-7;
   RequireOptions options{.full = {"", {}, "jakobsen:substeps=4,iterations=2,precision=float"},
                          .keep = {"stretch.max:50%", "shape:2e-7", "energy.mean"},
@@ -184,7 +184,7 @@ TEST_F(Requirements, AShapeThatARoundingErrorMovesIsGivenUpAndTheRestIsKept) {
 
 // In free fall symplectic steps of h fall g t h / 2 too far, damping slows: both at once are too
 // much.
-TEST_F(Requirements, OfTwoThatAreTooMuchTogetherTheSecondGoesAsFarAsItMay) {
+TEST_F(Requirements, OfTwoTooMuchTheSecondGoesAsFarAsItMay) {
   const Requirement found = find(
       "[cloth]\ngrid = [4, 3]\nsize = [1, 0.3]\nmass = 0.1\n[forces]\ndamping = 0.48\n"
       "[links]\nshear = false\n[time]\ndt = \"1/64\"\nduration = 0.25\n",
@@ -219,7 +219,7 @@ TEST_F(Requirements, OfTwoThatAreTooMuchTogetherTheSecondGoesAsFarAsItMay) {
               4e-4);
 }
 
-TEST_F(Requirements, OfClothAtRestAllGoesWhatGoesAltogetherFirstThenWhatSavesMost) {
+TEST_F(Requirements, OfClothAtRestEverythingGoes) {
   const Requirement found = find(
       "[cloth]\ngrid = [8, 3]\nsize = [1, 0.3]\nmass = 0.1\npins = [\"top-left\"]\n"
       "[forces]\ngravity = [0, 0, 0]\n[time]\ndt = \"1/64\"\nduration = 0.25\n",

@@ -215,7 +215,7 @@ TEST_F(StoreTest, AResultIsNeverReplaced) {
   EXPECT_EQ(store_.digest(), digest);
 }
 
-TEST_F(StoreTest, TheSameResultWithItsMotionTakesThePlaceOfOneWithout) {
+TEST_F(StoreTest, AResultWithItsMotionReplacesOneWithout) {
   const Record r = some_record();
   put(r);
   const std::string digest = store_.digest();
@@ -244,7 +244,7 @@ TEST_F(StoreTest, AFailureGivesWayToAResult) {
   EXPECT_NE(store_.digest(), nothing) << "failures do not count, results do";
 }
 
-TEST_F(StoreTest, ACaseThatDoesNotMatchItsDigestIsSaidAndCountsAsNone) {
+TEST_F(StoreTest, ACaseOfAnotherDigestIsReportedAsMissing) {
   const Record r = some_record();
   put(r);
   const std::string digest = store_.digest();
@@ -263,7 +263,7 @@ TEST_F(StoreTest, ACaseThatDoesNotMatchItsDigestIsSaidAndCountsAsNone) {
   }
 }
 
-TEST_F(StoreTest, ADamagedFileIsRefusedToReadersAndSetAsideByWriters) {
+TEST_F(StoreTest, ADamagedFileIsRefusedOrSetAside) {
   const Record r = some_record();
   for (const bool header : {true, false}) {
     fs::remove_all(root_);
@@ -308,7 +308,7 @@ TEST_F(StoreTest, WhereNoFileCanBeMadeIsSaidBeforeACaseRuns) {
   fs::remove(root_);
 }
 
-TEST_F(StoreTest, OfAProcessThatIsKilledWhileWritingNothingStays) {
+TEST_F(StoreTest, OfAProcessKilledWhileWritingNothingStays) {
   Record failure = some_record(), other = some_record();
   failure.key[0] = 'b', failure.status = {Status::Kind::timeout, "wall time", 5, -1};
   other.key = failure.key;
@@ -337,7 +337,7 @@ TEST_F(StoreTest, OfAProcessThatIsKilledWhileWritingNothingStays) {
   EXPECT_TRUE(said_.empty());
 }
 
-TEST_F(StoreTest, OfResultsThatComeAtOnceOneStaysAndTheOthersAreConflicts) {
+TEST_F(StoreTest, OfResultsAtOnceOneStaysAndOthersConflict) {
   constexpr int kCases = 30, kWriters = 3;
   store_.prepare();
   std::vector<pid_t> writers;

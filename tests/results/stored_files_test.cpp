@@ -82,7 +82,7 @@ TEST(StoredFiles, FlippedBytesAreNamedOrRead) {
   }
 }
 
-TEST(StoredFiles, WrongTypesAndMissingKeysAreNamedWithTheirPlace) {
+TEST(StoredFiles, WrongTypesAndMissingKeysHaveTheirPlace) {
   const auto message = [](std::string from, const std::string& to) -> std::string {
     std::string text = to_json(stored_record(), 1);
     text.replace(text.find(from), from.size(), to);

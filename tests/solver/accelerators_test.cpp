@@ -180,7 +180,7 @@ TEST(Accelerators, WorkInterleavedAsWellAsPacked) {
   }
 }
 
-TEST(Memory, OfASheetIsAtMostAHundredBytesAVertexAndOfAMeshTwoHundred) {
+TEST(Memory, OfASheetIsAtMostAHundredBytesAVertex) {
   const auto per_vertex = [](const Scene& scene, const char* solver) {
     const SolverChoice choice = parse_solver(solver);
     double bytes = 0;

@@ -38,7 +38,7 @@ std::vector<Vec3> bent(const Scene& s, double a, double b, double c) {
   return x;
 }
 
-TEST(Bending, SecondDerivativesOfQuadraticShapesAreExactOnAnyMesh) {
+TEST(Bending, SecondDerivativesOfQuadraticsAreExact) {
   Scene s = irregular_sheet(9, 11, 0.02);
   s.bending = Bending{1, 1, kWarp};
   const std::vector<Vec3> x = bent(s, 0.7, -0.4, 0.9);
@@ -117,7 +117,7 @@ TEST(Bending, AStripAtAnAngleToTheWarpIsAsStiffAsThePlate) {
   }
 }
 
-TEST(Bending, AGridHasSecondDifferencesAlongItsLinesAndTwists) {
+TEST(Bending, AGridHasSecondDifferencesAndTwists) {
   Scene s = hanging_sheet(5, 9, {false, false, false});
   s.pins.clear();
   s.bending = Bending{3, 2, kWarp};
@@ -129,7 +129,7 @@ TEST(Bending, AGridHasSecondDifferencesAlongItsLinesAndTwists) {
   for (const BendingElement& e : elements) EXPECT_LE(e.size, 4u);
 }
 
-TEST(Bending, AShellIsUnfoldedAndPinsThatCannotMoveCostNothing) {
+TEST(Bending, AShellIsUnfoldedAndFixedPinsCostNothing) {
   Scene s = hanging_sheet(3, 9, {false, false, false});
   s.bending = Bending{1, 1, kWarp};
   const std::vector<Vec3> flat = s.mesh.rest;
@@ -204,7 +204,7 @@ TEST(Bending, AloneItIsTheSameStepForEverySolver) {
   EXPECT_GT(largest_distance(exact.x, after_one_step(s, "xpbd:substeps=1,iterations=1").x), 1e-5);
 }
 
-TEST(Bending, MovesNoCentreOfMassAndTheSameForThreadsAndInstructionSets) {
+TEST(Bending, MovesNoCentreOfMassAndHasTheSameBits) {
   Scene s = crumpled(hanging_sheet(20, 20, {true, true, false}), 0.01);
   s.pins.clear();
   s.bending = Bending{1e-4, 5e-5, kWarp};
@@ -230,7 +230,7 @@ TEST(Bending, MovesNoCentreOfMassAndTheSameForThreadsAndInstructionSets) {
 }
 
 // What decides is the curvature of a wave from vertex to vertex: h < 2/w, w^2 ~ 64 B/(m/A l^4).
-TEST(Bending, ExplicitStepsAreStableUpToTheLimitOfLinearTheory) {
+TEST(Bending, ExplicitStepsAreStableUpToLinearTheory) {
   Scene s = hanging_sheet(8, 8, {true, false, false});
   s.bending = Bending{0.02, 0.02, kWarp};
   s.gravity = Vec3::Zero();

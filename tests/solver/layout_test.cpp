@@ -138,7 +138,7 @@ TEST(Order, AtRandomIsFisherYatesWithMersennesTwister) {
 }
 
 // Small sheets have as many vectors as their links need; bend links reach two columns.
-TEST(InterleavedLayout, OfASmallSheetHasAVectorMoreThanItsLinksReachColumns) {
+TEST(InterleavedLayout, OfASmallSheetHasAVectorMoreThanColumns) {
   for (const bool bend : {false, true})
     for (const int columns : {8, 12, 16}) {
       const Scene scene = hanging_sheet(columns, 5, {true, true, bend});

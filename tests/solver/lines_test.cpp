@@ -82,7 +82,7 @@ TEST(Lines, AStraightChainOfAnyMassesIsRightAfterOneSweep) {
   EXPECT_GT(left(s, with_sweeps("order=mesh", 20)), 0.3 * left(s, with_sweeps("order=mesh", 0)));
 }
 
-TEST(Lines, BetweenTwoPinsAStraightChainStaysStraightAndSharesItsStretchOut) {
+TEST(Lines, AStraightChainBetweenPinsSharesItsStretch) {
   for (const auto& [precision, near] : {std::pair("float", 1e-4), std::pair("double", 1e-6)}) {
     Scene s = hanging_sheet(1, 13, {true, false, false});
     s.pins = {0, 12}, s.gravity.setZero();
@@ -164,7 +164,7 @@ TEST(Lines, AndChebyshevAreCountedAsWhatTheyDo) {
   }
 }
 
-TEST(Lines, AndChebyshevHaveTheSameBitsForThreadsAndInstructionSets) {
+TEST(Lines, AndChebyshevHaveTheSameBitsEverywhere) {
   const Scene s = crumpled(hanging_sheet(31, 33), 0.01);
   for (const std::string how : {"method=lines", "chebyshev=0.9", "chebyshev=0.9,layout=batches",
                                 "method=jacobi-underrelaxed,chebyshev=0.9"})

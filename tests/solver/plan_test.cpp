@@ -61,7 +61,7 @@ std::map<std::string, PassCost> plan(const Scene& scene, const std::string& solv
   return lines;
 }
 
-TEST(Plan, EveryPassVisitsWhatTheSceneHasAsOftenAsItIsAskedTo) {
+TEST(Plan, EveryPassVisitsItemsAsOftenAsAsked) {
   Scene scene = hanging_sheet(20, 7);
   scene.pins = {0, 1, 19};
   scene.wind = Wind{.velocity = {1, 0, 0}, .strength = 0.1};
@@ -120,7 +120,7 @@ TEST(Plan, EveryPassVisitsWhatTheSceneHasAsOftenAsItIsAskedTo) {
     EXPECT_EQ(plan(scene, solver).size(), 1u) << solver << ": there is nothing but motion";
 }
 
-TEST(Plan, ContactOfFacesOfParticlesAndOfSolidsHasItsLines) {
+TEST(Plan, ContactOfFacesAndOfSolidsHasItsLines) {
   Scene scene = hanging_sheet(20, 7);
   scene.colliders = {{.shape = Ball{{0.5, -9, 0}, 0.1}}, {.shape = Box{{0, -9, 0}, {1, 2, 3}}}};
   scene.self_collision = SelfCollision{.radius = 0.001};
@@ -190,7 +190,7 @@ double held_by_reported(const std::string& solver, int n, bool contact, bool win
 }
 
 // Of a larger sheet contact and accelerators hold as much more as their passes say.
-TEST(Plan, MemoryOfContactWindTethersAndLevelsIsWhatTheirPassesReport) {
+TEST(Plan, MemoryOfOtherPassesIsWhatTheyReport) {
   if (mallinfo2().uordblks == 0)
     GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
   const auto check = [&](const std::string& solver, bool contact, bool wind = false) {

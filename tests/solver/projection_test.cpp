@@ -22,7 +22,7 @@ TEST(Projection, TheExactFormRestoresTheRestLength) {
       EXPECT_NEAR(projected<Projection::exact>(length, 1, share, 1 - share), 1, 1e-13);
 }
 
-TEST(Projection, WithoutTheRootTheErrorIsSquaredAndTheLinkEndsShort) {
+TEST(Projection, WithoutTheRootTheErrorIsSquared) {
   for (const double e : {-0.5, -0.1, 1e-3, 0.1, 1.0, 4.0}) {
     const double after = projected<Projection::sqrt_free>(1 + e, 1) - 1;
     EXPECT_NEAR(after, -e * e / (2 + 2 * e + e * e), 1e-15);

@@ -91,7 +91,7 @@ double asymmetry(const State& state, int nu, int nv) {
   return most;
 }
 
-TEST(Relaxation, JacobiKeepsMirrorSymmetryAndGaussSeidelDoesNot) {
+TEST(Relaxation, JacobiKeepsMirrorSymmetryGaussSeidelDoesNot) {
   const Scene scene = hanging_sheet(9, 9);
   const State jacobi =
       simulate(scene, listing("precision=double,method=jacobi-underrelaxed,iterations=8"), 64);
@@ -114,7 +114,7 @@ TEST(Relaxation, EveryOrderVisitsEveryLinkOnce) {
   }
 }
 
-TEST(Relaxation, LinksOfAColourShareNoVertexAndTilesOfAPhaseNeither) {
+TEST(Relaxation, LinksOfAColourShareNoVertex) {
   const Scene scene = hanging_sheet(70, 35);
   std::size_t links = 0;
   for (const Phase& phase : colour(scene.links, scene.mesh)) {
@@ -153,7 +153,7 @@ TEST(Relaxation, ZeroIterationsIsFreeFallAndNegativeIsAnError) {
   EXPECT_THROW(parse_solver("jakobsen:iterations=-1"), InputError);
 }
 
-TEST(Relaxation, AVertexWithoutLinksFallsAndSoDoesAClothWithoutAny) {
+TEST(Relaxation, AVertexWithoutLinksFalls) {
   Scene scene = hanging_sheet(5, 5);
   std::erase_if(scene.links, [](const Link& l) { return l.a == 12 || l.b == 12; });
   Scene loose = scene;
@@ -187,7 +187,7 @@ TEST(Relaxation, LinksThatCannotMoveOrHaveNoLengthDoNoHarm) {
       }
 }
 
-TEST(Order, ListsPhaseAfterPhaseTileAfterTileColourAfterColour) {
+TEST(Order, ListsPhasesThenTilesThenColours) {
   const auto link = [](int a) { return Link{a, a + 1, 1}; };
   const std::vector<Phase> phases{{{{link(0), link(1)}, {link(2)}}, {{link(3)}}},
                                   {{{link(4)}, {link(5), link(6)}}}};
@@ -201,7 +201,7 @@ TEST(Order, ListsPhaseAfterPhaseTileAfterTileColourAfterColour) {
 }
 
 /// The vertices of each tile, by their places in memory: those that lie at 0 to 1023 and so on.
-TEST(Order, TilesAreSquaresOfAGridAndNeighbourhoodsOfAnyOtherMesh) {
+TEST(Order, TilesAreSquaresOfAGridOrNeighbourhoods) {
   const Scene grid = hanging_sheet(70, 35);
   const std::vector<std::uint32_t> rank = tile_ranks(grid.mesh);
   std::vector<std::uint32_t> expected;  // squares of 32, row after row, each vertex by vertex

@@ -142,7 +142,7 @@ TEST(SolverRefusals, OfSubstepsThatFloatLosesSayHowManyItKeeps) {
 }
 
 /// By the vertices that move, not by those that there are.
-TEST(SolverSettings, ImplicitFactorsUpToAHundredThousandVerticesThatMove) {
+TEST(SolverSettings, ImplicitFactorsUpToAHundredThousandVertices) {
   Scene scene = hanging_sheet(317, 317);  // 100489
   scene.pins.clear();
   for (const int pins : {488, 489}) {
@@ -178,7 +178,7 @@ Scene chain(int links) {
   return scene;
 }
 
-TEST(LinearTheory, HoldsForSweepsInTheScenesOrderWhateverSolverMakesThem) {
+TEST(LinearTheory, HoldsForSweepsInTheScenesOrder) {
   const auto growth = [](const Scene& scene, const std::string& solver) -> double {
     const auto theory = linear_stability(scene, parse_solver(solver));
     return theory ? theory->growth : -1;

@@ -133,7 +133,7 @@ TEST(ThreadPool, WhatWorkThrowsComesToTheCaller) {
   }
 }
 
-TEST(ThreadPool, WithoutMemoryForItsThreadsThrowsAndEndsThoseThatBegan) {
+TEST(ThreadPool, WithoutMemoryForItsThreadsThrows) {
   rlimit before{};
   getrlimit(RLIMIT_AS, &before);
   rlim_t pages = 0;

@@ -24,7 +24,7 @@ Convergence of_one(const Scene& scene, const std::string& solver, int most) {
   return converge(scene, scene.start, 0, {solver}, most).front();
 }
 
-TEST(Convergence, ExactStepOfSpringsAgreesWithADenseNewtonProgram) {
+TEST(Convergence, ExactStepOfSpringsAgreesWithDenseNewton) {
   const Stiffness soft{800, 300, 50};
   for (const unsigned seed : {11u, 12u}) {
     const Scene scene = irregular_net(seed);
@@ -137,7 +137,7 @@ std::vector<Vec3> nearest_placement(const Scene& scene, const std::vector<Vec3>&
 }
 
 /// Sheets that fold along their rows, and chains and nets, with velocities at random.
-TEST(Convergence, ExactStepOfRigidLinksAgreesWithDenseNewtonOnTheKktSystem) {
+TEST(Convergence, ExactStepOfRigidLinksAgreesWithDenseKkt) {
   Stiffness rigid;
   rigid.fill(std::numeric_limits<double>::infinity());
   for (const unsigned seed : {3u, 4u, 5u})
@@ -160,7 +160,7 @@ TEST(Convergence, ExactStepOfRigidLinksAgreesWithDenseNewtonOnTheKktSystem) {
 
 /// A sweep minimises over one vertex after the other: it lowers the energy, and may lead away from
 /// the exact step at first, where stretch goes before bends do.
-TEST(Convergence, VertexBlockDescentLowersTheGapInEverySweepAndGoesARoundaboutWay) {
+TEST(Convergence, VertexBlockDescentLowersTheGapInEverySweep) {
   const Scene scene = let_go(6, 6, {true, true, false});
   const State state = state_at(scene, parse_solver("implicit:structural=1e5,shear=1e5"), 0.5);
   for (const char* order : {"coloured", "mesh"}) {
@@ -190,7 +190,7 @@ TEST(Convergence, BeginsWhereTheScenesOwnMotionHasBroughtIt) {
 }
 
 /// All goes along the chain: strains shrink as the sweep's matrix says.
-TEST(Convergence, GaussSeidelAndJacobiContractOnAStraightChainAsPrinted) {
+TEST(Convergence, GaussSeidelAndJacobiContractAsPrinted) {
   constexpr int kLinks = 8;
   const Scene scene = hanging_sheet(1, kLinks + 1, {true, false, false}, Lumping::equal);
   using reference::Sweep;
@@ -227,7 +227,7 @@ TEST(Convergence, ProjectiveDynamicsContractsAsItsFormulaSays) {
 }
 
 /// Projection along the directions of the moment depends on the order: not the nearest placement.
-TEST(Convergence, GaussSeidelOfRigidLinksEndsOnAFloorAndAdmmDoesNot) {
+TEST(Convergence, GaussSeidelOfRigidLinksEndsOnAFloor) {
   Scene scene = hanging_sheet(1, 6, {true, false, false});
   for (std::size_t i = 1; i < scene.start.v.size(); ++i)
     scene.start.v[i] = {3, 0, static_cast<double>(i % 2)};

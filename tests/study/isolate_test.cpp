@@ -36,7 +36,7 @@ class Isolated : public testing::Test {
   const Case one_ = make_case(kSmall);
 };
 
-TEST_F(Isolated, IsToldAllOfTheCaseAndBoundInTimeMemoryAndFiles) {
+TEST_F(Isolated, IsToldAllOfTheCaseAndBound) {
   scripted_.write(
       "for word; do echo \"$word\"; done >$folder/words; cat /proc/self/limits >$folder/limits\n");
   const auto words = [&](int frames) {
@@ -102,7 +102,7 @@ TEST_F(Isolated, WhatIsEndedFromOutsideHasNoRecord) {
   EXPECT_EQ(record_of("sleep 9", {.seconds = 0.05}).status.reason, "wall time");
 }
 
-TEST(ProcessEnds, OutOfMemoryIsToldFromAKillByTheMemoryThatItHad) {
+TEST(ProcessEnds, OutOfMemoryIsToldFromAKill) {
   const std::size_t limit = std::size_t{1} << 30;
   EXPECT_TRUE((ProcessEnd{-1, SIGKILL, limit / 2 - 1}).from_outside(limit));
   EXPECT_FALSE((ProcessEnd{-1, SIGKILL, limit / 2}).from_outside(limit));
@@ -180,7 +180,7 @@ TEST_F(Isolated, WhatIsNoPropertyOfTheCaseIsNoRecord) {
 }
 
 // The test program runs it (tests/support/main.cpp).
-TEST(IsolatedRun, GivesWhatTheCaseGivesInsideAndTheMotionThatWasAskedFor) {
+TEST(IsolatedRun, GivesWhatTheCaseGivesAndItsMotion) {
   const Scratch scratch;
   const Case one = make_case({kSmall.scene, kSmall.overrides, "jakobsen:iterations=2"});
   const Record record = IsolatedCase(one, scratch.path(), {}, 4).wait();

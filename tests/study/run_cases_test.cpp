@@ -69,7 +69,7 @@ class Runs : public testing::Test {
   std::vector<std::string> ended_;
 };
 
-TEST_F(Runs, TheLongestGoesFirstAndWhatIsStoredIsNotRunAgain) {
+TEST_F(Runs, TheLongestGoesFirstAndNothingRunsTwice) {
   std::vector<Case> cases;
   double work = 0;
   for (const int n : {2, 9, 1, 5})
@@ -125,7 +125,7 @@ TEST_F(Runs, OnlyFailuresAreRunAgainOnRequest) {
   EXPECT_FALSE(store_.find(cases[2].key)) << "what was never run is no failure";
 }
 
-TEST_F(Runs, WhatIsStoredWithoutItsMotionIsRunAgainForItUnlessItFailed) {
+TEST_F(Runs, WhatIsStoredWithoutItsMotionIsRunAgain) {
   const std::vector<Case> cases{scripted_case(2), scripted_case(1)};
   give(cases[0]), give(cases[1], Kind::oom);
   run(cases);
@@ -177,7 +177,7 @@ TEST_F(Runs, NoMoreAtATimeThanAreAllowed) {
   EXPECT_EQ(most, 2);
 }
 
-TEST_F(Runs, WhatHasNotEndedByTheDeadlineIsKilledAndNotStored) {
+TEST_F(Runs, WhatMissesTheDeadlineIsKilledAndNotStored) {
   const std::vector<Case> cases{scripted_case(2), scripted_case(1)};
   const CampaignProgress none = run(cases, {.deadline = SteadyClock::now()});
   EXPECT_EQ((std::tuple{none.cases, none.ran}), (std::tuple{std::size_t{2}, std::size_t{0}}));
@@ -209,7 +209,7 @@ TEST_F(Runs, OneCaseIsTakenFromTheStoreOrRunAndKept) {
   EXPECT_EQ(store_.keys(), std::vector{one.key});
 }
 
-TEST_F(Runs, OfAStudyWhatIsStoredIsCollectedInThePlansOrder) {
+TEST_F(Runs, OfAStudyResultsComeInThePlansOrder) {
   Study study;
   study.scenes = {"hang"}, study.solvers = {"scripted"};
   study.settings = {"cloth.grid=[4, 4]", "time.duration=0.25"};

@@ -51,7 +51,7 @@ iterations = [1, 2]
                                  "fall dt=0.5 jakobsen:iterations=2,precision=double"}));
 }
 
-TEST(Study, SettingsThatASearchChoseStandInThePlaceOfItsSolversSceneByScene) {
+TEST(Study, SearchedSettingsReplaceSolversSceneByScene) {
   const Scratch scratch;
   const auto file = scratch.path() / "mine.toml", searched = scratch.path() / "mine-searched.toml";
   std::ofstream(file) << R"(
@@ -120,7 +120,7 @@ TEST(Study, WhatIsWrongWithItAndWithItsScenesIsSaidAtOnce) {
   }
 }
 
-TEST(Study, AParameterVariesForThoseWhoHaveItAndDoNotFixIt) {
+TEST(Study, AParameterVariesWhereItIsNotFixed) {
   const Study study = study_of(R"(
 question = "?"
 scenes = ["fall"]
@@ -134,7 +134,7 @@ axes.iterations = [4]
                      "fall bullet:iterations=1"}));
 }
 
-TEST(Study, RangesAreLinearOrLogarithmicAndWholeWhereTheyMustBe) {
+TEST(Study, RangesAreLinearLogarithmicOrWhole) {
   const Study study = study_of(R"(
 question = "?"
 scenes = ["fall"]
@@ -192,7 +192,7 @@ axes."time.dt" = ["1/64", 0.015625]
   EXPECT_EQ(cases_of(study).size(), 1u);
 }
 
-TEST(Study, MoreCasesThanAnybodyWaitsForAreRefusedBeforeTheyAreMade) {
+TEST(Study, TooManyCasesAreRefusedBeforeTheyAreMade) {
   const Study study = study_of(R"(
 question = "?"
 scenes = ["fall", "chain"]

@@ -114,7 +114,7 @@ TEST(Scratches, AreBelowTmpdirAndGoWithAllThatIsInThem) {
   EXPECT_EQ(Scratch().path().parent_path(), "/tmp");
 }
 
-TEST(Scratches, OfKilledProcessesAreRemovedByTheNextAndThoseOfLivingOnesStay) {
+TEST(Scratches, OfKilledProcessesAreRemovedByTheNext) {
   const std::string program = TAUT_BINARY_DIR "/taut";
   if (!fs::exists(program)) GTEST_SKIP() << "this build has the tests alone";
   const Scratch outer;
@@ -200,7 +200,7 @@ TEST(ShippedData, AreFoundByNameAndFilesByPath) {
             "TAUT_DATA is '" + (data / "scenes/a.toml").string() + "', which is no folder");
 }
 
-TEST(ShippedData, AreThoseOfTheTreeUnlessTheEnvironmentSaysOtherwise) {
+TEST(ShippedData, AreThoseOfTheTreeOrOfTheEnvironment) {
   const Environment none("TAUT_DATA", "");
   EXPECT_TRUE(fs::equivalent(data_folder(), fs::path(TAUT_SOURCE_DIR) / "experiments"));
   {

@@ -206,7 +206,7 @@ TEST(Processes, AreAnsweredAndTalkedTo) {
   writer.join();
 }
 
-TEST(Processes, TakeWithThemWhatTheyStartedEvenWhatLeftTheirSession) {
+TEST(Processes, TakeWithThemWhatTheyStarted) {
   std::string line;
   Process process(shell("setsid sleep 1000 & echo $!; read wait"),
                   {.input = Stream::piped, .output = Stream::piped});
@@ -230,7 +230,7 @@ TEST(Processes, TakeWithThemWhatTheyStartedEvenWhatLeftTheirSession) {
   EXPECT_FALSE(bystander.poll()) << "another one goes on";
 }
 
-TEST(Processes, OfTheirGroupNobodyStaysEvenWithoutAnEnvironment) {
+TEST(Processes, OfTheirGroupNobodyStays) {
   std::string line;
   Process process(shell("env -i sleep 1000 & echo $!"), {.output = Stream::piped});
   ASSERT_TRUE(process.read_line(line, 20));
@@ -270,7 +270,7 @@ TEST(Processes, AnInterruptionOfBeforeIsNone) {
   EXPECT_TRUE(end && end->exit_code == 4);
 }
 
-TEST(Processes, HaveThisOnesEnvironmentOneMarkAndNoBlockedSignal) {
+TEST(Processes, HaveThisEnvironmentAndNoBlockedSignal) {
   const std::string marks = "env | grep ^" + descent() + "; grep SigBlk /proc/self/status";
   const std::string one = said(marks), other = said(marks);
   const auto number = [](const std::string& text) {
@@ -327,7 +327,7 @@ TEST(ShellWords, AreQuotedWhereAShellWouldNotTakeThemAsTheyAre) {
     EXPECT_EQ(said("printf %s " + shell_word(odd)), odd);
 }
 
-TEST(ShellWords, AProgramIsOnThePathIfAFolderOfItHasItAndMayRunIt) {
+TEST(ShellWords, AProgramIsOnThePathIfItMayRun) {
   const Scratch scratch;
   write_file(scratch.path() / "there", "#!/bin/sh\n");
   const std::string before = std::getenv("PATH");

@@ -42,7 +42,7 @@ TEST(BenchedCases, CountIfTheyWereTimedAndCompleted) {
       << "per simulated second";
 }
 
-TEST(BenchedCases, AreCandidatesByTheSizeOfTheirErrorOrByWhatFailed) {
+TEST(BenchedCases, AreCandidatesByErrorOrFailure) {
   SceneBench bench{"sheet", {1, 1, 1}, {timed("a", {1, 3}), timed("b", {1, 1}), timed("c", {})}};
   bench.cases[0].record.values["e"] = -0.25;
   bench.cases[1].record.status = {Status::Kind::exploded, "energy", 12, 3};
@@ -72,7 +72,7 @@ TEST(BenchedCases, AreComparedWithinASessionAlone) {
   EXPECT_FALSE(bench.ratio(1, 0));
 }
 
-TEST(BenchedCases, ASearchWentToTheEndIfEveryParameterOfTheSolverDid) {
+TEST(BenchedCases, ASearchEndedIfEveryParameterDid) {
   SceneBench bench{
       "sheet", {1, 1, 1}, {timed("xpbd", {1, 1}), timed("xpbd", {1, 1}), timed("bullet", {1, 1})}};
   const auto set = [&](std::size_t at, const char* substeps, const char* sweeps) {

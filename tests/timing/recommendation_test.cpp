@@ -35,7 +35,7 @@ std::string rows(const Recommendation& found, const SceneBench& bench) {
   return all;
 }
 
-TEST(Recommendation, TheCheapestWithinTheErrorWinsAndTheRivalIsAnotherSolver) {
+TEST(Recommendation, TheCheapestWinsAndTheRivalIsAnotherSolver) {
   const SceneBench b = bench({finalist("a", 2, 0.009), finalist("a", 1, 0.01),
                               finalist("b", 3, 0.001), finalist("c", 0.1, 0.02)});
   const Recommendation found = recommend(b, {0.01, {}}, "e", 0.05);
@@ -80,7 +80,7 @@ TEST(Recommendation, ANoisyMachineIsNeverClear) {
   EXPECT_EQ(found.certainty, Certainty::likely);
 }
 
-TEST(Recommendation, ABudgetBuysTheSmallestErrorAndIsClearOnlyIfTheWholeIntervalFits) {
+TEST(Recommendation, ABudgetBuysTheSmallestError) {
   const SceneBench b =
       bench({finalist("a", 1, 0.01), finalist("b", 2, 0.001), finalist("c", 9, 0)});
   EXPECT_EQ(recommend(b, {{}, 4}, "e", 0.05).best, 1u);
@@ -94,7 +94,7 @@ TEST(Recommendation, NobodyIsRecommendedForWhatNobodyReaches) {
             Certainty::unopposed);
 }
 
-TEST(Recommendation, EverySolverIsNamedWithWhatItCostsOrHowNearItCame) {
+TEST(Recommendation, EverySolverIsNamedWithCostOrNearestError) {
   SceneBench b = bench({finalist("jakobsen", 1, 0.01), finalist("bullet", 3, 0.001),
                         finalist("xpbd", 0.1, 0.02), finalist("mass-spring", 0.01, 0.001)});
   b.cases[3].record.status.kind = Status::Kind::exploded;  // a fast failure never ranks
@@ -181,7 +181,7 @@ std::vector<double> session(int rounds, double sigma, std::mt19937_64& random) {
   return samples;
 }
 
-TEST(Recommendation, ASecondSessionLiesInsideTheIntervalInNineOfTenRuns) {
+TEST(Recommendation, ASecondSessionLiesInsideTheInterval) {
   std::mt19937_64 random(1);
   for (const int rounds : {2, 8})  // as few as advise takes, and as many as it wants
     for (const double sigma : {0.01, 0.1}) {

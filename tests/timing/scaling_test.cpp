@@ -81,7 +81,7 @@ TEST(Scaling, WhatEndedBadlyIsNoPointOfTheLine) {
   EXPECT_EQ(plan_bytes(record), 23) << "held once, however often it is gone through";
 }
 
-TEST(Scaling, ACaseIsExpectedToTakeWhatTheOneBeforeTookInProportionToItsSize) {
+TEST(Scaling, ACaseIsExpectedToTakeTimeByItsSize) {
   std::vector<double> expected;
   measure_scaling(squares({4, 8}), 1e9, [&](const Case& one, double seconds) {
     expected.push_back(seconds);

@@ -73,7 +73,7 @@ TEST(SearchPath, ColumnsByDoublingThenBisection) {
 
 // With dear substeps more sweeps pay. Costs of what meets the error: 176 (16/1), 96 (8/2), 112
 // (8/4), 72 (4/8): the columns of the two cheapest are halved, then the sweeps of the best.
-TEST(SearchPath, TheTwoCheapestColumnsAndThenTheSweepsAreBisected) {
+TEST(SearchPath, TheTwoCheapestColumnsAreBisected) {
   EXPECT_EQ(way(kXpbd, within(0.01), links(10)),
             "1/1 2/1 4/1 8/1 16/1 8/2 4/2 4/4 8/4 4/8 2/8 2/16 3/8 6/2 7/2 4/6 4/7");
 }
@@ -90,7 +90,7 @@ TEST(SearchPath, WithFixedSubstepsTheSweepsAloneAreSearched) {
       << "two columns without progress end it";
 }
 
-TEST(SearchPath, WithFixedSweepsTheSubstepsAloneAreSearchedToATenth) {
+TEST(SearchPath, WithFixedSweepsTheSubstepsAreSearched) {
   const Law law = [](const Setting& s) { return Outcome{s.n, 1 / s.n}; };
   const std::string way_to_52 = "1/1 2/1 4/1 8/1 16/1 32/1 64/1 48/1 56/1 52/1";
   EXPECT_EQ(way("xpbd:iterations=1,precision=double", within(0.02), law), way_to_52);

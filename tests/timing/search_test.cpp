@@ -48,7 +48,7 @@ Candidate best_of(const std::vector<Candidate>& tried, const Target& target) {
 
 constexpr const char* kPlain = "xpbd:precision=double";
 
-TEST(Search, FindsNearlyWhatAFullGridWouldFindInAFewDozenRuns) {
+TEST(Search, FindsNearlyWhatAFullGridWouldFind) {
   for (const double overhead : {0.1, 1.0, 10.0})
     for (const double error : {0.1, 0.01, 1e-3, 1e-4}) {
       Formula formula{overhead};
@@ -85,7 +85,7 @@ TEST(Search, ARivalThatIsFarCheaperEndsItEarly) {
   EXPECT_LT(beaten.runs, alone.runs / 2);
 }
 
-TEST(Search, WithoutRefinementItDoublesSubstepsAndSweepsAlone) {
+TEST(Search, WithoutRefinementItOnlyDoubles) {
   Formula coarse, whole;
   const Target target{1e-3, {}};
   const auto columns = search_settings(kPlain, target, std::ref(coarse), {}, SearchDepth::columns);
@@ -122,7 +122,7 @@ TEST(Search, BeginsWithWhatCostsLeast) {
 
 /// Springs of stiffness K lag behind by 20/K, however many substeps there are, and a stiff one
 /// needs the more of them.
-TEST(Search, StiffensSpringsThatCannotReachTheErrorAndNoOthers) {
+TEST(Search, StiffensOnlySpringsThatCannotReachTheError) {
   const auto run = [](const std::string& setting) -> std::optional<Candidate> {
     const Params params = parse_solver(setting).params;
     EXPECT_EQ(params.real("structural"), params.real("shear")) << "both together";
@@ -166,7 +166,7 @@ TEST(Search, RepeatedItGoesOnFromWhatAnAlternativeMadeBest) {
 }
 
 /// AVBD with its least stiffness explodes: nothing reaches the error before it is changed.
-TEST(Search, RepeatedItTriesAlternativesWhereNothingReachesTheError) {
+TEST(Search, RepeatedItTriesAlternatives) {
   const auto run = [](const std::string& setting) -> std::optional<Candidate> {
     const Params params = parse_solver(setting).params;
     const double work = params.integer("substeps") * params.integer("iterations");

@@ -66,7 +66,7 @@ TEST(Statistics, TheIntervalIsSeededAndShrinksWithSamples) {
 // The median of a resample of n (odd) samples is at most the k-th smallest iff at least half of its
 // draws are, of which each is with probability k/n: the ends of the interval are known order
 // statistics.
-TEST(Statistics, TheIntervalEndsAtTheOrderStatisticsOfTheBinomialLaw) {
+TEST(Statistics, TheIntervalEndsAtOrderStatistics) {
   const auto at_most = [](int n, int k) {  // P(median <= k-th smallest)
     double p = 0;
     for (int j = (n + 1) / 2; j <= n; ++j)
@@ -99,7 +99,7 @@ TEST(Statistics, TheIntervalEndsAtTheOrderStatisticsOfTheBinomialLaw) {
   EXPECT_EQ(one.high, 4);
 }
 
-TEST(Statistics, ARatioIsThatOfTheBlocksAndItsWordsFollowFromItsEnds) {
+TEST(Statistics, ARatioIsThatOfTheBlocks) {
   // three blocks of ratio 2, 3 and 8, whatever the machine's speed in each
   const Interval ratio = interleaved_ratio(std::vector{2.0, 4.0, 20.0, 40.0, 1.5, 0.5},
                                            std::vector{1.0, 2.0, 8.0, 12.0, 0.2, 0.05});
@@ -159,7 +159,7 @@ TEST(Statistics, TheIntervalHoldsTheTrueMedianAsOftenAsItSays) {
   EXPECT_NEAR(missed(0.5), 0.5, 0.08);
 }
 
-TEST(Statistics, AnAaComparisonIsNeverADifferenceInAHundredBenches) {
+TEST(Statistics, AnAaComparisonIsNeverADifference) {
   int declared = 0, noisy = 0;
   for (unsigned bench = 0; bench < 100; ++bench) {
     NoisyMachine machine(bench);
@@ -184,7 +184,7 @@ Certainty recorded_bench(std::size_t first, double factor) {
                interleaved_ratio(samples(first, 1), samples(first + 1, 1)));
 }
 
-TEST(Statistics, RecordedSamplesOfOneCodeAreNeverADifferenceButATwofoldCostIs) {
+TEST(Statistics, RecordedSamplesOfOneCodeAreNoDifference) {
   int benches = 0, declared = 0, seen = 0;
   for (std::size_t first = 0; first + 3 < std::size(kRecorded); ++first) {
     ++benches;
@@ -210,7 +210,7 @@ TEST(Statistics, ATwentyPercentChangeIsSeenDespiteTheNoise) {
   EXPECT_EQ(faster, 0);
 }
 
-TEST(Statistics, TwoSessionsAgreeThoughTheMachineRunsAtAnotherSpeed) {
+TEST(Statistics, TwoSessionsAgreeAtAnotherSpeed) {
   int overlapping = 0, apart = 0;
   for (unsigned k = 0; k < 50; ++k) {
     const auto session = [](unsigned seed, double factor, double speed) {

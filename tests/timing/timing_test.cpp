@@ -210,7 +210,7 @@ TEST(Benches, GoForthAndBackAndTheFirstCaseIsItsOwnControl) {
   EXPECT_TRUE(time_cases({}, {}).timings.empty());
 }
 
-TEST(Benches, AFailureCostsItsOwnCaseAndADeadlineTheRoundsThatWouldNotEnd) {
+TEST(Benches, AFailureCostsItsOwnCaseAlone) {
   const Scripted scripted(
       "case $4 in *iterations=2*) echo ready; read a; echo '! no clock'; cat >/dev/null;; *) :; " +
       kWorker + " esac");

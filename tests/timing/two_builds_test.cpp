@@ -26,7 +26,7 @@ TEST(TwoBuilds, ARatioBeyondIntervalAndControlIsADifference) {
 }
 
 // Of a machine with fifteen processes on two cores: "likely" by judge(), and no alarm.
-TEST(TwoBuilds, WhatIdenticalCodeDidIsNoAlarmHoweverFarTheMiddleIs) {
+TEST(TwoBuilds, WhatIdenticalCodeDidIsNoAlarm) {
   const TwoBuilds loaded{"a", "", {0.613, 0.676, 0.866}, {0.973, 1.35, 1.43}, kQuiet, kQuiet};
   EXPECT_TRUE(is_difference(judge(loaded.cpu, loaded.cpu_control)));
   EXPECT_FALSE(loaded.differs());
@@ -50,7 +50,7 @@ TEST(TwoBuilds, WhatWasNotTimedSaysWhyAndIsNoDifference) {
   EXPECT_EQ(table.at(table.rows[0], "verdict").text(), "not timed: now: it died");
 }
 
-TEST(TwoBuilds, ABuildIsAFolderOrAKeptOneAndTheErrorNamesThose) {
+TEST(TwoBuilds, ABuildIsAFolderOrAKeptOne) {
   const Scratch scratch;
   const auto said = [&](const std::string& build) -> std::string {
     try {

@@ -183,7 +183,7 @@ double missed_fraction(const char* response, double plate) {
   return below / 400.0;
 }
 
-TEST(Contact, APlateIsMissedByOneMinusThicknessOverWayUnlessSwept) {
+TEST(Contact, APlateIsMissedByAKnownShareUnlessSwept) {
   const double way = 20 * kDt;
   for (const double share : {0.25, 0.5, 0.75}) {
     EXPECT_NEAR(missed_fraction(",contact=freeze", share * way), 1 - share, 0.005);

@@ -67,7 +67,7 @@ TEST(SelfCollision, NoneOfManyFastPairsPassesWhereverTheCellsLie) {
     EXPECT_GE((state.x[2 * i + 1] - state.x[2 * i]).dot(apart[i]), 0.1 - 1e-12) << i;
 }
 
-TEST(SelfCollision, SlowParticlesNeverOverlapThoughTheyAreSearchedSeldom) {
+TEST(SelfCollision, SlowParticlesNeverOverlap) {
   for (double gap = 0.11; gap < 0.3; gap += 0.007) {
     const Vec3 v(0.08, 0, 0);  // an 80th of the diameter in a step
     const Scene scene = particles({{0, 0, 0}, {gap, 0, 0}}, {v, -v});
@@ -152,7 +152,7 @@ double moved(const Scene& scene, const State& state) {
   return most;
 }
 
-TEST(SelfCollision, ALargeRadiusJamsTheOctreeInTheAirAndNotTheGrid) {
+TEST(SelfCollision, ALargeRadiusJamsTheOctreeAndNotTheGrid) {
   Scene scene = fat_sheet();
   EXPECT_LT(moved(scene, run(scene, "self=grid", 20)), 1e-9);  // nothing fights at rest
   scene.gravity = {0, -9.81, 0};
@@ -292,7 +292,7 @@ Lists lists_of(NeighbourGrid<Real>& grid, const Points<Real>& x, Real reach) {
 
 constexpr std::size_t kShared = ThreadPool::kWorthSharing + 1000;
 
-TEST(NeighbourGrid, ListsAreTheSameFromEveryInstructionSetAndAnyThreads) {
+TEST(NeighbourGrid, ListsAreTheSameFromEveryInstructionSet) {
   const Points<float> x = points<float>(anywhere(kShared, 2, 6));
   for (const float reach : {0.4F, 0.1F}) {  // few of the buckets are used, and most of them
     Lists first;
@@ -311,7 +311,7 @@ TEST(NeighbourGrid, ListsAreTheSameFromEveryInstructionSetAndAnyThreads) {
 
 // In a cube, in a plane, on a line so long that it wraps around the grid, and with a tenth of all
 // in a few cells.
-TEST(NeighbourGrid, ListsOfPartsThatAreNoNeighboursShareNoParticleAndNoneHasMostPairs) {
+TEST(NeighbourGrid, ListsOfPartsApartShareNoParticle) {
   ThreadPool one_thread(1);
   struct Cloud {
     Vec3 size;
@@ -366,7 +366,7 @@ TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
 
 // Links that pull in a step's sweeps bring together what was apart when its pairs were searched: by
 // up to the way that each has made.
-TEST(SelfCollision, ParticlesThatALinkPullsTogetherInAFastStepStayApart) {
+TEST(SelfCollision, ParticlesPulledTogetherFastStayApart) {
   // From as far as 3/2 diameters and the way.
   for (const auto& [mass, far] : {std::pair(1.0, 0.2), {4.0, 0.2}, {1.0, 0.24}, {4.0, 0.24}}) {
     Scene scene = particles({{0, 0, 0}, {far, -0.05, 0}, {-0.5, 0.05, 0}},

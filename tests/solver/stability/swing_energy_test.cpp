@@ -30,7 +30,7 @@ double energy(const Scene& scene, const State& state) {
   return sum;
 }
 
-TEST(SwingEnergy, IsKeptByTheReferenceNearlyBySubstepsAndNotBySweeps) {
+TEST(SwingEnergy, IsKeptByTheReferenceAndNotBySweeps) {
   const Scene scene = swing();
   const double start = energy(scene, scene.start), unit = 0.2 * 9.81;
   reference::Shake shake(scene, 1.0 / 512);

@@ -57,7 +57,7 @@ std::string refused(const Work& work) {
 
 // 64 MB for the program, 2 kB for each vertex and link of the largest case; a tenth of a second to
 // start, 15 ns for each visit.
-TEST_F(Folder, APlanAsksForWhatItsLongestShardAndItsLargestCaseNeed) {
+TEST_F(Folder, APlanAsksForWhatItsLargestShardNeeds) {
   EXPECT_EQ(estimated_seconds(0), 0.1);
   EXPECT_NEAR(estimated_seconds(1e9), 15.1, 1e-9);
   Study study;
@@ -86,7 +86,7 @@ TEST_F(Folder, APlanAsksForWhatItsLongestShardAndItsLargestCaseNeed) {
   EXPECT_EQ(refused([&] { plan(study, {}, {60, 0}, 1, 1); }), "this study has no case");
 }
 
-TEST(JobScript, AsksForTimeAndMemoryAndNamesTheCommandOfAShard) {
+TEST(JobScript, AsksForTimeAndMemoryOfAShard) {
   const Plan plan{"study", "small", 8, {120, std::size_t{4096} << 20}, 90, 1200, 100 << 20};
   EXPECT_EQ(shard_minutes(plan), 51) << "2 x 20 + 10 + 1";
   const std::string text = job_script(plan, Scheduler::slurm),
@@ -135,7 +135,7 @@ TEST_F(Folder, ItsStatusIsThatOfEveryShard) {
             root_.path().string() + ": no folder of `taut cluster submit`");
 }
 
-TEST_F(Folder, AMergeTakesResultsBeforeFailuresAndSaysWhatIsMissing) {
+TEST_F(Folder, AMergeTakesResultsBeforeFailures) {
   const fs::path folder = make("c", {1, 1, 2, 2, 2});
   put(shard_folder(folder, 1), 0, 1, Kind::timeout), put(shard_folder(folder, 1), 1, 1, Kind::oom);
   put(shard_folder(folder, 2), 0, 5), put(shard_folder(folder, 2), 2, 6);
@@ -184,7 +184,7 @@ TEST_F(Folder, AFailureDoesNotHideThatTwoResultsDiffer) {
   } while (std::ranges::next_permutation(order).found);
 }
 
-TEST_F(Folder, AMergeNamesWhatDiffersAndWhatOneFolderAloneHas) {
+TEST_F(Folder, AMergeNamesConflictsAndWhatOneSideLacks) {
   const auto sentences = [&](const std::vector<fs::path>& folders, const fs::path& into) {
     const MergePlan plan = Merge(folders).look(Store(into));
     std::string all;
