@@ -115,7 +115,8 @@ class BulletDeformable final : World, public BulletSolver {
   }
 
   void store(State& state) const override {
-    state.x.resize(scene_.start.x.size()), state.v.resize(state.x.size());
+    state.x.resize(scene_.start.x.size());
+    state.v.resize(state.x.size());
     for (std::size_t i = 0; i < state.x.size(); ++i) {
       state.x[i] = from_bullet(node(i).m_x);
       state.v[i] = from_bullet(node(i).m_v);

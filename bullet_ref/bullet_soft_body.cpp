@@ -105,7 +105,8 @@ class BulletSoftBody final : World, public BulletSolver {
   }
 
   void store(State& state) const override {
-    state.x.resize(scene_.start.x.size()), state.v.resize(state.x.size());
+    state.x.resize(scene_.start.x.size());
+    state.v.resize(state.x.size());
     for (std::size_t i = 0; i < state.x.size(); ++i) {
       const btSoftBody::Node& n = node(i);
       state.x[i] = from_bullet(n.m_x);

@@ -70,9 +70,10 @@ class Code {
       copy_raw();
     else if (text_[at_] == '"' || (text_[at_] == '\'' && !follows_word()))
       copy_literal(text_[at_]);
-    else if (std::isspace(static_cast<unsigned char>(text_[at_])))
-      blank_ = true, ++at_;
-    else
+    else if (std::isspace(static_cast<unsigned char>(text_[at_]))) {
+      blank_ = true;
+      ++at_;
+    } else
       put(text_[at_++]);
   }
 

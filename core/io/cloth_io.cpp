@@ -126,7 +126,10 @@ bool read_sheet(Section& cloth, const Fabric* fabric, const FileKeys& said, Scen
   const double sine = shape.u.cross(shape.v).norm();
   if (sine < 1e-3) cloth.report("v", "must not be parallel to 'u'");
   const auto grid = read_grid(cloth);
-  if (grid) shape.nu = grid->nu, shape.nv = grid->nv;
+  if (grid) {
+    shape.nu = grid->nu;
+    shape.nv = grid->nv;
+  }
   const bool sized = read_size(cloth, shape);
   const auto mass =
       read_mass(cloth, fabric, said, grid && sized ? shape.width * shape.height * sine : 1);

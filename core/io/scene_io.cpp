@@ -272,12 +272,16 @@ Bending read_bending(Section& section, const Fabric* fabric) {
   if (value && value->is_table()) {
     Section both(section.diagnostics(), *value, "'stiffness' in [bending]");
     both.need({"warp", "weft"});
-    bending.warp = both.number("warp", range, 1), bending.weft = both.number("weft", range, 1);
+    bending.warp = both.number("warp", range, 1);
+    bending.weft = both.number("weft", range, 1);
     both.finish();
   } else {
     bending.warp = bending.weft = section.number("stiffness", range, 1);
   }
-  if (fabric) bending.warp = fabric->warp, bending.weft = fabric->weft;
+  if (fabric) {
+    bending.warp = fabric->warp;
+    bending.weft = fabric->weft;
+  }
   bending.direction.setZero();
   read_keys(section, "bending", bending);
   section.finish();
@@ -393,7 +397,10 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
     const double depth = -surface(shape, scene.start.x[i]).distance;
     if (pinned(scene, i) || depth <= rounding) continue;
     ++count;
-    if (depth > deepest) deepest = depth, vertex = i;
+    if (depth > deepest) {
+      deepest = depth;
+      vertex = i;
+    }
   }
   if (count == 0) return;
   root.diagnostics().report(

@@ -17,7 +17,10 @@ class Adjacency {
  public:
   Adjacency(std::span<const Link> links, int vertices)
       : first_(to_index(vertices) + 1), ends_(2 * links.size()) {
-    for (const Link& link : links) ++first_[to_index(link.a) + 1], ++first_[to_index(link.b) + 1];
+    for (const Link& link : links) {
+      ++first_[to_index(link.a) + 1];
+      ++first_[to_index(link.b) + 1];
+    }
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     std::vector<int> next(first_.begin(), first_.end() - 1);
     for (int l = 0; l < static_cast<int>(links.size()); ++l) {
@@ -55,13 +58,15 @@ auto shortest_ways(const Adjacency& neighbours, std::span<const int> starts,
   using Real = decltype(length_of(0, Adjacency::End{}));
   ShortestPaths<Real> paths;
   paths.length.resize(neighbours.size(), std::numeric_limits<Real>::infinity());
-  paths.start.resize(neighbours.size(), -1), paths.before = paths.start;
+  paths.start.resize(neighbours.size(), -1);
+  paths.before = paths.start;
   using Reached = std::pair<Real, int>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
   const auto reach = [&](int v, Real length, int start, int before) {
     if (!(length < paths.length[to_index(v)])) return;
     paths.length[to_index(v)] = length;
-    paths.start[to_index(v)] = start, paths.before[to_index(v)] = before;
+    paths.start[to_index(v)] = start;
+    paths.before[to_index(v)] = before;
     open.emplace(length, v);
   };
   for (const int v : starts) reach(v, 0, v, -1);

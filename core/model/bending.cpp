@@ -41,7 +41,8 @@ Patch patch(const Mesh& mesh, const Triangle& t, const Opposite& opposite, const
   Patch p{.area = normal.norm() / 2};
   for (const int v : t) {
     const Vec3 d = rest(v) - rest(t[0]);
-    p.vertex.push_back(v), p.at.emplace_back(along.dot(d), across.dot(d));
+    p.vertex.push_back(v);
+    p.at.emplace_back(along.dot(d), across.dot(d));
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const int a = t[k], b = t[(k + 1) % 3];
@@ -74,7 +75,9 @@ Eigen::MatrixXd second_derivative(const Patch& p) {
     const Vec2 share = sides.inverse() * (x - p.at[0]);
     const Vec3 row = squares(x) - share.x() * squares(p.at[1]) - share.y() * squares(p.at[2]);
     rows.row(k) = row.transpose() / row.norm();
-    off(k, 0) = share.x() + share.y() - 1, off(k, 1) = -share.x(), off(k, 2) = -share.y();
+    off(k, 0) = share.x() + share.y() - 1;
+    off(k, 1) = -share.x();
+    off(k, 2) = -share.y();
     off(k, 3 + k) = 1;
     off.row(k) /= row.norm();
   }
@@ -94,7 +97,8 @@ BendingElement element(const Patch& p, const Eigen::RowVectorXd& weights, double
   BendingElement e{.stiffness = stiffness};
   double sum = 0;
   for (const auto& [v, w] : parts) {
-    e.vertex[e.size] = v, e.weight[e.size++] = w;
+    e.vertex[e.size] = v;
+    e.weight[e.size++] = w;
     sum += w;
   }
   if (e.size > 0) e.weight[0] -= sum;  // to the last bit: a shift bends nothing
@@ -153,7 +157,8 @@ std::vector<Triangle> other_diagonals(const std::vector<Triangle>& triangles) {
     const int first = a[static_cast<std::size_t>(at)], last = *alone(b, a),
               next = a[static_cast<std::size_t>((at + 1) % 3)],
               before = a[static_cast<std::size_t>((at + 2) % 3)];
-    all.push_back({first, next, last}), all.push_back({first, last, before});
+    all.push_back({first, next, last});
+    all.push_back({first, last, before});
   }
   return all;
 }

@@ -50,7 +50,8 @@ class Bytes {
       add(body->mesh->vertices());
       add(body->mesh->triangles());
     }
-    add(c.motion), add("collider", c);
+    add(c.motion);
+    add("collider", c);
   }
   void add(const Bending& b) { add(b.warp), add(b.weft), add("bending", b); }
   void add(const Wind& w) { add("wind", w); }
@@ -74,7 +75,8 @@ class Bytes {
       if (!key.later) return add(value);
       if (!key.counts(value, initial)) return;
       Bytes bytes(keys_);
-      bytes.add(text_.size()), bytes.add(value);
+      bytes.add(text_.size());
+      bytes.add(value);
       later_.emplace_back(key.path, bytes.text_);
     };
     each_key(section, part, visit, keys_);
@@ -161,9 +163,18 @@ namespace {
 
 Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
   Bytes bytes(keys);
-  bytes.add(s.mesh), bytes.add(s.start), bytes.add(s.pins), bytes.add(s.pin_motions);
-  bytes.add(s.links), bytes.add(s.colliders), bytes.add(s.wind), bytes.add(s.self_collision);
-  bytes.add("forces", s), bytes.add("cloth", s), bytes.add(s.dt), bytes.add(s.steps);
+  bytes.add(s.mesh);
+  bytes.add(s.start);
+  bytes.add(s.pins);
+  bytes.add(s.pin_motions);
+  bytes.add(s.links);
+  bytes.add(s.colliders);
+  bytes.add(s.wind);
+  bytes.add(s.self_collision);
+  bytes.add("forces", s);
+  bytes.add("cloth", s);
+  bytes.add(s.dt);
+  bytes.add(s.steps);
   if (s.stiffness != kRigid)  // a scene without has the bytes that it had before there was any
     for (const double k : s.stiffness) bytes.add(k);
   if (s.bending) bytes.add(s.bending);

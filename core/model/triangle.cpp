@@ -129,7 +129,8 @@ TrianglePoint closest_point(const Corners& t, const Vec3& p) {
     const Vec3 point = at(t, weights);
     const double distance2 = (point - p).squaredNorm();
     if (least >= 0 && distance2 >= least) continue;
-    least = distance2, best = {point, weights};
+    least = distance2;
+    best = {point, weights};
   }
   return best;
 }
@@ -150,7 +151,8 @@ Deepest deepest_in(const Capsule& capsule, const Corners& t) {
     improve(closest_point(t, passage(from, to, t)));
     return best;
   }
-  improve(closest_point(t, from)), improve(closest_point(t, to));
+  improve(closest_point(t, from));
+  improve(closest_point(t, to));
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
     Vec3 weights = Vec3::Zero();
@@ -173,7 +175,8 @@ Deepest deepest_in(const Box& box, const Corners& t, double at_least) {
     const auto k = static_cast<Eigen::Index>(axis);
     const Vec3 along(local[0][k], local[1][k], local[2][k]);
     const Vec3 half = Vec3::Constant(box.half_extents[k]);
-    depths[2 * axis] = half - along, depths[2 * axis + 1] = half + along;
+    depths[2 * axis] = half - along;
+    depths[2 * axis + 1] = half + along;
   }
   double ceiling = depths[0].maxCoeff();
   for (const Vec3& d : depths) ceiling = std::min(ceiling, d.maxCoeff());

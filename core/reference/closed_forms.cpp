@@ -126,7 +126,8 @@ double spring_grid_eigenvalue(int nu, bool shear, bool bend) {
     for (const Link& l : links) {
       const Vec3 n12 = (mesh.rest[at(l.b)] - mesh.rest[at(l.a)]).normalized();
       const Vec3 pull = n12.dot(u[at(l.b)] - u[at(l.a)]) * n12;
-      next[at(l.a)] -= pull, next[at(l.b)] += pull;
+      next[at(l.a)] -= pull;
+      next[at(l.b)] += pull;
     }
     double square = 0;
     for (const Vec3& v : next) square += v.squaredNorm();
@@ -159,7 +160,8 @@ Catenary discrete_catenary(int links, double span, double link, double load, dou
   while (gap(high) < 0) high *= 2;
   Catenary c;
   c.horizontal = bisect(0.0, high, gap);
-  c.x = {0}, c.y = {0};
+  c.x = {0};
+  c.y = {0};
   for (int i = 0; i < links; ++i) {
     const double t = slope(i, c.horizontal), l = length(i, c.horizontal), secant = std::hypot(1, t);
     c.tension.push_back(c.horizontal * secant);

@@ -19,7 +19,10 @@ struct PowerLaw {
 inline PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   double mx = 0, my = 0, sxx = 0, sxy = 0, rest = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) mx += std::log(x[i]) / n, my += std::log(y[i]) / n;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mx += std::log(x[i]) / n;
+    my += std::log(y[i]) / n;
+  }
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double dx = std::log(x[i]) - mx;
     sxx += dx * dx;
@@ -36,8 +39,11 @@ inline PowerLaw fit_power_law(std::span<const double> x, std::span<const double>
 inline std::array<double, 2> two_term_recurrence(const std::vector<double>& y) {
   double aa = 0, ab = 0, bb = 0, ac = 0, bc = 0;
   for (std::size_t n = 1; n + 1 < y.size(); ++n) {
-    aa += y[n] * y[n], ab += y[n] * y[n - 1], bb += y[n - 1] * y[n - 1];
-    ac += y[n] * y[n + 1], bc += y[n - 1] * y[n + 1];
+    aa += y[n] * y[n];
+    ab += y[n] * y[n - 1];
+    bb += y[n - 1] * y[n - 1];
+    ac += y[n] * y[n + 1];
+    bc += y[n - 1] * y[n + 1];
   }
   const double det = aa * bb - ab * ab;
   return {(ac * bb - bc * ab) / det, (aa * bc - ab * ac) / det};

@@ -405,7 +405,10 @@ double ImplicitStep::stretch(const Points& x) const {
 double ImplicitStep::square_distance(const Points& x, const Points& to) const {
   double sum = 0, mass = 0;
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (inertia_[i] > 0) sum += mass_[i] * (x[i] - to[i]).squaredNorm(), mass += mass_[i];
+    if (inertia_[i] > 0) {
+      sum += mass_[i] * (x[i] - to[i]).squaredNorm();
+      mass += mass_[i];
+    }
   return mass > 0 ? sum / mass : 0;
 }
 

@@ -156,7 +156,8 @@ struct Shake::Impl {
       const double length = d.norm();
       if (length == 0) continue;  // no direction to pull in
       const Vec3 pull = stiffness_of(scene, l) * (length - l.rest) / length * d;
-      f[to_index(l.a)] += pull, f[to_index(l.b)] -= pull;
+      f[to_index(l.a)] += pull;
+      f[to_index(l.b)] -= pull;
     }
     for (const BendingElement& e : bending) {
       const Vec3 push = e.stiffness * e.value([&](std::size_t i) { return x[i]; });
@@ -277,14 +278,18 @@ bool rows_stay_straight(const Scene& scene) {
 Scene first_column(const Scene& scene) {
   const Grid& grid = *scene.mesh.grid;
   Scene column = scene;
-  column.mesh = {}, column.start = {}, column.pins = {0};
+  column.mesh = {};
+  column.start = {};
+  column.pins = {0};
   column.mesh.grid = Grid{1, grid.nv};
   for (int j = 0; j < grid.nv; ++j) {
     const auto at = to_index(grid.index(0, j));
     double mass = 0;
     for (int i = 0; i < grid.nu; ++i) mass += scene.mesh.mass[to_index(grid.index(i, j))];
-    column.mesh.rest.push_back(scene.mesh.rest[at]), column.mesh.mass.push_back(mass);
-    column.start.x.push_back(scene.start.x[at]), column.start.v.push_back(scene.start.v[at]);
+    column.mesh.rest.push_back(scene.mesh.rest[at]);
+    column.mesh.mass.push_back(mass);
+    column.start.x.push_back(scene.start.x[at]);
+    column.start.v.push_back(scene.start.v[at]);
   }
   column.links = grid_links(column.mesh, {});
   return column;

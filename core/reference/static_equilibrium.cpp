@@ -136,7 +136,10 @@ class Problem {
         for (int q = 0; q < 3; ++q)
           if (row + p >= col + q) out.emplace_back(row + p, col + q, sign * block(p, q));
     };
-    put(a, a, 1), put(b, b, 1), put(a, b, -1), put(b, a, -1);
+    put(a, a, 1);
+    put(b, b, 1);
+    put(a, b, -1);
+    put(b, a, -1);
   }
   void add_jacobian(const Vector& y, int j, int row, std::vector<Triplet>& out) const {
     const Vec3 g = delta(y, j) / link(j).rest;

@@ -50,7 +50,10 @@ class StepError::Work {
     std::vector<bool> pinned(column_.size());
     for (const int pin : scene.pins) pinned[to_index(pin)] = true;
     for (std::size_t i = 0; i < column_.size(); ++i)
-      if (!pinned[i]) column_[i] = static_cast<int>(moving_.size()), moving_.push_back(i);
+      if (!pinned[i]) {
+        column_[i] = static_cast<int>(moving_.size());
+        moving_.push_back(i);
+      }
     for (const Link& l : scene.links)
       if (const double k = stiffness[static_cast<std::size_t>(l.family)];
           k > 0 && (column_[to_index(l.a)] >= 0 || column_[to_index(l.b)] >= 0))
@@ -198,7 +201,8 @@ class StepError::Work {
         if (column_[v] >= 0) hardness_[to_index(column_[v])] += stiffness(l);
     }
     for (double& k : hardness_) k *= kContactHardness;
-    shapes_.clear(), carried_.clear();
+    shapes_.clear();
+    carried_.clear();
     for (const Collider& c : scene_.colliders) {
       const Motion& m = c.motion;
       const Eigen::Quaterniond turn = m.rotation(t + h) * m.rotation(t).conjugate();

@@ -34,7 +34,8 @@ class Textbook {
   }
 
   void load(const State& state) {
-    x_.clear(), old_.clear();
+    x_.clear();
+    old_.clear();
     for (std::size_t i = 0; i < state.x.size(); ++i) {
       x_.push_back(state.x[i].template cast<Real>());
       old_.push_back(x_[i] - dt_ * state.v[i].template cast<Real>());

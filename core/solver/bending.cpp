@@ -60,7 +60,8 @@ class BendingPass final : public Pass<Real> {
         const double w = w_[to_index(e.vertex[i])], c = e.weight[i];
         mobility += w * c * c;
         p.vertex[i] = static_cast<std::uint32_t>(e.vertex[i]);
-        p.weight[i] = static_cast<Real>(c), p.move[i] = static_cast<Real>(w * c);
+        p.weight[i] = static_cast<Real>(c);
+        p.move[i] = static_cast<Real>(w * c);
       }
       p.softness = static_cast<Real>(softness);
       p.inverse = static_cast<Real>(1 / (mobility + softness));

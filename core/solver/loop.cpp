@@ -60,7 +60,8 @@ class Pins {
     }
     std::vector<Held> held;
     for (const int v : free) held.push_back({v});
-    held_ = {std::move(held), layout}, moved_ = {std::move(moved), layout};
+    held_ = {std::move(held), layout};
+    moved_ = {std::move(moved), layout};
   }
   Pins() = default;
 
@@ -180,7 +181,8 @@ class Loop final : public Solver {
 
   void store(State& state) const override {
     pool_.finish();  // who visits substeps comes while work is queued
-    state.x.resize(p_.size()), state.v.resize(p_.size());
+    state.x.resize(p_.size());
+    state.v.resize(p_.size());
     for (std::size_t i = 0; i < p_.size(); ++i) {
       state.x[i] = p_.x[i].template cast<double>();
       state.v[i] = (p_.x[i] - p_.previous[i]).template cast<double>() / h_;

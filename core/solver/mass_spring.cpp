@@ -101,7 +101,8 @@ class Springs final : public Pass<Real> {
         const Real half = drag_ * p.w[i] * static_cast<Real>(h) / 2;
         p.x.set(i, p.previous[i] + (moves - half * keep * moved_[i]) / (1 + half));
       } else {  // x + v h instead, with the velocity v'
-        p.x.add(i, moved_[i] - moves), p.previous.add(i, moved_[i] - moves);
+        p.x.add(i, moved_[i] - moves);
+        p.previous.add(i, moved_[i] - moves);
       }
     }
   }

@@ -80,9 +80,12 @@ class Anderson {
       if (theta.allFinite())
         Eigen::Map<Eigen::VectorXd>(out.front().data(), g.size()) = g - dg * theta;
     }
-    if (residuals_.size() == window_)
-      residuals_.erase(residuals_.begin()), images_.erase(images_.begin());
-    residuals_.push_back(f), images_.push_back(g);
+    if (residuals_.size() == window_) {
+      residuals_.erase(residuals_.begin());
+      images_.erase(images_.begin());
+    }
+    residuals_.push_back(f);
+    images_.push_back(g);
     return out;
   }
   std::size_t bytes() const { return 2 * window_ * vertices_ * sizeof(Vec3); }

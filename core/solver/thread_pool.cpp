@@ -76,7 +76,8 @@ void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
     if (next >= stages) return;
     const bool alone = gate_.load(std::memory_order_relaxed) == 1;
     if (!me.owns(part) && me.patience > 0 && !alone) {
-      --me.patience, pause();
+      --me.patience;
+      pause();
       continue;
     }
     if (p.begun.load(std::memory_order_relaxed) != next) {

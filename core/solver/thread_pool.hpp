@@ -79,7 +79,8 @@ class ThreadPool {
       };
     };
     if (threads_.empty() || !shared) {
-      stage(0)(0, blocks), stage(1)(0, blocks);
+      stage(0)(0, blocks);
+      stage(1)(0, blocks);
       return;
     }
     if (stages_.size() + 2 > kMostStages) finish();  // both at once: see blocks_per_unit_

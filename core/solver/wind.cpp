@@ -42,7 +42,8 @@ class SheetWindPass final : public WindPass<Real> {
     kernel_ = lanes == kWide ? kernels<Real>(simd).wide_wind : kernels<Real>(simd).narrow_wind;
     quad_rows_ = rows - 1;
     const std::size_t row = to_index(lanes * vectors);
-    w_.resize(to_index(rows) * row), diagonals_.resize(2 * row);
+    w_.resize(to_index(rows) * row);
+    diagonals_.resize(2 * row);
     const std::size_t lane_count = to_index(lanes);
     for (std::size_t v = 0; v < w.size(); ++v) {
       const std::size_t in_row = layout.slot(v) % stride;

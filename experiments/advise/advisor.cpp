@@ -47,7 +47,8 @@ class Advisor {
 
   Case make(const std::string& solver) {
     Case one = maker_.make({wanted_.scene, wanted_.settings, parse_solver(solver).canonical()});
-    duration_ = one.scene->duration(), dt_ = one.scene->dt;
+    duration_ = one.scene->duration();
+    dt_ = one.scene->dt;
     return one;
   }
 

@@ -53,7 +53,8 @@ std::vector<std::string> by_expected_cost(std::vector<std::string> solvers,
   for (const std::string& solver : solvers) try {
       items[solver] = kUnknown;
       const Case one = maker.make({scene, settings, cheapest_setting(solver)});
-      name = one.scene->name, name_of[solver] = one.choice.entry->name;
+      name = one.scene->name;
+      name_of[solver] = one.choice.entry->name;
       items[solver] = items_of(one);
     } catch (const std::runtime_error&) {
       // of another program: it has to be run to be known

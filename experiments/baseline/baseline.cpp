@@ -81,8 +81,10 @@ class RowComparison {
   void move(const std::string& name, double before, double now, const std::string& text) {
     add(Change::Kind::value_moved, text);
     Change& change = result_.findings.back();
-    change.scene = now_.spec.scene, change.value = name;
-    change.before = before, change.now = now;
+    change.scene = now_.spec.scene;
+    change.value = name;
+    change.before = before;
+    change.now = now;
   }
   void add(const ComparedValue& one, const Tolerance& tolerance, bool known) {
     using Kind = ComparedValue::Kind;
@@ -267,7 +269,9 @@ std::vector<MovedValue> roll_up(const Comparison& comparison,
     auto at = std::ranges::find_if(
         all, [&](const MovedValue& m) { return m.solver == c.solver && m.group == group; });
     if (at == all.end()) at = all.insert(all.end(), MovedValue{c.solver, group});
-    ++at->cases, at->less += c.now<c.before, at->more += c.now> c.before;
+    ++at->cases;
+    at->less += c.now < c.before;
+    at->more += c.now > c.before;
     if (!at->largest || std::abs(relative_change(c.before, c.now)) > std::abs(at->relative()))
       at->largest = &c;
   }

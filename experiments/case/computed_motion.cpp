@@ -27,8 +27,10 @@ int decimals(const std::vector<Vec3>& x) {
   double power = 1;
   for (const Vec3& v : x)
     for (const double c : v)
-      while (digits < 16 && std::abs(c * power - std::round(c * power)) > 1e-15 * power + 1e-9)
-        ++digits, power *= 10;
+      while (digits < 16 && std::abs(c * power - std::round(c * power)) > 1e-15 * power + 1e-9) {
+        ++digits;
+        power *= 10;
+      }
   return digits;
 }
 
@@ -70,7 +72,10 @@ class Neighbours {
     auto at = std::ranges::lower_bound(order_, x.x() - radius, {},
                                        [&](std::size_t i) { return all_[i].x(); });
     for (; at != order_.end() && all_[*at].x() <= x.x() + radius; ++at)
-      if (const double d = (all_[*at] - x).norm(); d <= radius) radius = d, best = *at;
+      if (const double d = (all_[*at] - x).norm(); d <= radius) {
+        radius = d;
+        best = *at;
+      }
     return best;
   }
 
@@ -112,7 +117,8 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
   for (std::size_t i = 0; i < file.size(); ++i) {
     const std::size_t same = neighbours.within(file[i], tolerance);
     if (same == kNoVertex) {
-      ++strays, first_stray = std::min(first_stray, i);
+      ++strays;
+      first_stray = std::min(first_stray, i);
     } else if (match.of_scene[same] != kNoVertex) {
       match.mismatch = "its vertices " + std::to_string(match.of_scene[same]) + " and " +
                        std::to_string(i) + " both lie on the scene's vertex " +

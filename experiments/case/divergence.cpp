@@ -283,7 +283,10 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
     if (free_mass_[i] == 0) continue;
     const double v2 = state.v[i].squaredNorm();
     energy += free_mass_[i] * v2 / 2;
-    if (v2 > fastest) fastest = v2, fastest_vertex = i;
+    if (v2 > fastest) {
+      fastest = v2;
+      fastest_vertex = i;
+    }
   }
   if (energy > 10 * budget_.available(t)) return explode("energy", step, fastest_vertex), false;
   if (status_.kind != Status::Kind::extreme) judge_stretch(step, state);

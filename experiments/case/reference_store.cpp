@@ -65,7 +65,8 @@ Reference read_reference(const std::filesystem::path& path) {
 
 std::string reference_digest(const Scene& scene, const std::string& kind) {
   Scene same = scene;
-  same.dt = 1, same.steps = 1;
+  same.dt = 1;
+  same.steps = 1;
   if (kind == "static") {
     same.damping = 0;
     for (Vec3& v : same.start.v) v.setZero();

@@ -91,7 +91,10 @@ std::function<int()> bind(const VerbEntry& entry, CLI::App& app) {
   app.add_flag("--quiet", *quiet, "Print nothing but errors; the exit code says how it went");
   return [run = std::move(run), quiet] {
     std::optional<DiscardedOutput> discarded;
-    if (*quiet) discarded.emplace(), show_progress(false);
+    if (*quiet) {
+      discarded.emplace();
+      show_progress(false);
+    }
     return run();
   };
 }

@@ -45,9 +45,10 @@ class Splitter {
         quote_ = 0;
       else if (quote_ != 0)
         add(c);
-      else if (c == '\'' || c == '"')
-        quote_ = c, begun_ = true;
-      else if (c == ' ' || c == '\t')
+      else if (c == '\'' || c == '"') {
+        quote_ = c;
+        begun_ = true;
+      } else if (c == ' ' || c == '\t')
         end_word();
       else if (std::string_view("\n|&;<>(){}").find(c) != std::string_view::npos)
         refuse();

@@ -95,7 +95,8 @@ const SolverEntry* recorded(const std::string& name, std::string_view params) {
   Entry& one = at->second;
   if (fresh) {
     one = {called, digest, kPositions};
-    one.entry.name = one.name, one.entry.implementation = one.implementation;
+    one.entry.name = one.name;
+    one.entry.implementation = one.implementation;
   }
   return &one.entry;
 }

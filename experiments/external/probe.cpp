@@ -25,7 +25,8 @@ Scene sheet(int side, std::vector<int> pins) {
   scene.start = {scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};
   scene.pins = std::move(pins);
   scene.links = grid_links(scene.mesh, {});
-  scene.dt = kDt, scene.steps = kSteps;
+  scene.dt = kDt;
+  scene.steps = kSteps;
   return scene;
 }
 
@@ -63,11 +64,14 @@ class Prober {
     try {
       one.said = look();
     } catch (const CheckFailed& wrong) {
-      one.verdict = Verdict::failed, one.said = wrong.said;
+      one.verdict = Verdict::failed;
+      one.said = wrong.said;
     } catch (const Refused& refused) {
-      one.verdict = Verdict::skipped, one.said = "says that it cannot: " + refused.said;
+      one.verdict = Verdict::skipped;
+      one.said = "says that it cannot: " + refused.said;
     } catch (const SolverFailure& failure) {
-      one.verdict = Verdict::failed, one.said = failure.status + ": " + failure.what();
+      one.verdict = Verdict::failed;
+      one.said = failure.status + ": " + failure.what();
       one.status = failure.status;
       connection_.reset();
     }
@@ -95,7 +99,10 @@ class Prober {
 
   /// The state after so many steps of the scene's dt, from its start or from where it is.
   State run(const Scene& scene, int steps, bool from_start = true) {
-    if (from_start) load_state(connection(), scene.start), step_ = 0;
+    if (from_start) {
+      load_state(connection(), scene.start);
+      step_ = 0;
+    }
     State state;
     for (int n = 0; n < steps; ++n, ++step_)
       take_steps(connection(), step_ * scene.dt, scene.dt, 1);
@@ -250,8 +257,10 @@ std::string tells_its_time(Prober& probe) {
   for (int i = 0; i < 30; ++i) take_steps(connection, 0, scene.dt, 0);
   const double before = connection.cpu_seconds();
   empty = (before - begin) / 30;
-  while (steps < 400 && connection.cpu_seconds() - before < 0.3)
-    said += take_steps(connection, steps * scene.dt, scene.dt, kBatch), steps += kBatch;
+  while (steps < 400 && connection.cpu_seconds() - before < 0.3) {
+    said += take_steps(connection, steps * scene.dt, scene.dt, kBatch);
+    steps += kBatch;
+  }
   const double took = (connection.cpu_seconds() - before - steps / kBatch * empty) / steps;
   const std::string clock = text(1e6 * took) + " us CPU a step of 576 vertices, beside " +
                             text(1e6 * empty) + " us for an empty exchange";

@@ -113,9 +113,10 @@ class SpecReader {
     const std::string type = j.at("type").text();
     if (type == "choice")
       read_choice();
-    else if (type == "text")
-      spec_.kind = ParamSpec::Kind::text, spec_.default_value = keep(text_or(j, "default"));
-    else if (type == "integer" || type == "real")
+    else if (type == "text") {
+      spec_.kind = ParamSpec::Kind::text;
+      spec_.default_value = keep(text_or(j, "default"));
+    } else if (type == "integer" || type == "real")
       read_number(type == "integer");
     else
       j.at("type").fail("'" + type + "' is none of integer, real, choice, text");
@@ -135,12 +136,14 @@ class SpecReader {
     const std::string given = j_.at("default").text();
     if (std::ranges::find(choices, given) == choices.end())
       j_.at("default").fail("'" + given + "' is not one of " + all);
-    spec_.choices = keep(all), spec_.default_value = keep(given);
+    spec_.choices = keep(all);
+    spec_.default_value = keep(given);
   }
 
   void read_number(bool whole) {
     spec_.kind = whole ? ParamSpec::Kind::integer : ParamSpec::Kind::real;
-    spec_.min = j_.at("min").number(), spec_.max = j_.at("max").number();
+    spec_.min = j_.at("min").number();
+    spec_.max = j_.at("max").number();
     const double given = j_.at("default").number();
     if (!(spec_.min <= given && given <= spec_.max)) j_.at("default").fail("is outside min to max");
     if (whole && (spec_.min < -kLargestInteger || spec_.max > kLargestInteger))
@@ -223,7 +226,8 @@ std::string scene_file(const Scene& scene) {
             {"wind", scene.wind ? json_of("wind", *scene.wind) : Json()},
             {"self_collision",
              scene.self_collision ? json_of("self_collision", *scene.self_collision) : Json()}};
-  file.update(json_of("forces", scene)), file.update(json_of("cloth", scene));
+  file.update(json_of("forces", scene));
+  file.update(json_of("cloth", scene));
   for (int version : {1, 2})
     if (!beyond(version, scene).empty()) file["format"] = kFormats[version];
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
@@ -344,7 +348,8 @@ void store_state(Connection& connection, int vertices, State& state) {
   const std::size_t half = judged(connection, [&] { return read_store(answer, vertices); }) / 2,
                     n = to_index(vertices);
   const std::string bytes = connection.take(2 * half);
-  state.x.resize(n), state.v.resize(n);
+  state.x.resize(n);
+  state.v.resize(n);
   if (half == 0) return;
   std::memcpy(static_cast<void*>(state.x.data()), bytes.data(), half);
   std::memcpy(static_cast<void*>(state.v.data()), bytes.data() + half, half);

@@ -53,7 +53,8 @@ void read_rows(Database& database, History& history) {
     HistoryRow& row = history.rows.back();
     row.keys[at->second] = one.text(2);
     if (one.null(3)) continue;
-    row.scene = one.text(7), row.solver = one.text(8);
+    row.scene = one.text(7);
+    row.solver = one.text(8);
     std::shared_ptr<const HistoryPoint>& point = known[one.text(4)];
     if (!point) {
       HistoryPoint fresh{one.text(2), one.text(5), false, {}};

@@ -32,7 +32,8 @@ class Area final : public Metric {
     const bool at_end = end_.contains(m.step);
     const Strains s = measure(m.state);
     square_.add(m.step, at_end, s.mean_square);
-    growth_.add(m.step, at_end, s.growth), loss_.add(m.step, at_end, s.loss);
+    growth_.add(m.step, at_end, s.growth);
+    loss_.add(m.step, at_end, s.loss);
     total_.add(m.step, at_end, s.total);
   }
   std::vector<double> finish() override {
@@ -53,8 +54,10 @@ class Area final : public Metric {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const double a = area(faces_[f], state.x), e = a / rest_[f] - 1;
       s.mean_square += e * e / static_cast<double>(faces_.size());
-      s.growth = std::max(s.growth, e), s.loss = std::max(s.loss, -e);
-      sum += a, sum0 += rest_[f];
+      s.growth = std::max(s.growth, e);
+      s.loss = std::max(s.loss, -e);
+      sum += a;
+      sum0 += rest_[f];
     }
     s.total = sum / sum0 - 1;
     return s;

@@ -36,7 +36,8 @@ class Cantilever final : public Metric {
   explicit Cantilever(const Scene& scene)
       : grid_(*scene.mesh.grid), down_(scene.gravity.normalized()), end_(scene) {
     const Vec3 out = end_of(scene.mesh.rest);
-    overhang_ = out.norm(), out_ = out / overhang_;
+    overhang_ = out.norm();
+    out_ = out / overhang_;
   }
 
   void observe(const Snapshot& m) override { angle_.add(m.step, end_.contains(m.step), now(m)[0]); }

@@ -36,7 +36,8 @@ class Drape final : public Metric {
         cloth_(area_if(scene, kAll)),
         end_(scene) {
     const Vec3 down = scene.gravity.normalized();
-    across_ = down.unitOrthogonal(), other_ = down.cross(across_);
+    across_ = down.unitOrthogonal();
+    other_ = down.cross(across_);
   }
 
   void observe(const Snapshot& m) override {
@@ -78,7 +79,8 @@ class Drape final : public Metric {
     double near = Summary::kInfinity, far = 0;  // from the centre to the cloth's own edge
     for (const int v : rim_of(scene.mesh)) {
       const double distance = (x[to_index(v)] - centre).norm();
-      near = std::min(near, distance), far = std::max(far, distance);
+      near = std::min(near, distance);
+      far = std::max(far, distance);
     }
     if (near < 0.99 * far) return area_of_pinned(scene);
     double radius = 0;
@@ -112,7 +114,8 @@ class Drape final : public Metric {
     std::vector<std::pair<double, double>> p;  // along lines, across them
     for (const Vec3& one : x) {
       p.emplace_back(across_.dot(one), other_.dot(one));
-      low = std::min(low, p.back().second), high = std::max(high, p.back().second);
+      low = std::min(low, p.back().second);
+      high = std::max(high, p.back().second);
     }
     const double width = (high - low) / kLines;
     if (!(width > 0)) return 0;
@@ -144,7 +147,8 @@ class Drape final : public Metric {
         const auto& [bx, by] = p[to_index(t[(k + 1) % 3])];
         if ((ay <= at) == (by <= at)) continue;
         const double crossing = ax + (at - ay) / (by - ay) * (bx - ax);
-        from = std::min(from, crossing), to = std::max(to, crossing);
+        from = std::min(from, crossing);
+        to = std::max(to, crossing);
       }
       if (from < to) covered[to_index(n)].emplace_back(from, to);
     }

@@ -38,9 +38,13 @@ class EnergyLoss final : public Metric {
     if (m.step == 0 || now.kinetic < least_.kinetic) least_ = now;
     if (now.kinetic > 0 && least_.kinetic <= kTurn * std::min(largest_, now.kinetic)) {
       turn();
-      largest_ = now.kinetic, least_ = now;
+      largest_ = now.kinetic;
+      least_ = now;
     }
-    if (now.kinetic > largest_) largest_ = now.kinetic, least_ = now;
+    if (now.kinetic > largest_) {
+      largest_ = now.kinetic;
+      least_ = now;
+    }
   }
   std::vector<double> finish() override {
     if (exchanged_ <= kSwing * energy_.unit()) return {Summary::kNone};
@@ -62,7 +66,8 @@ class EnergyLoss final : public Metric {
       exchanged_ += largest_;
     else
       first_ = least_.total;
-    turned_ = true, last_ = least_.total;
+    turned_ = true;
+    last_ = least_.total;
   }
 
   MechanicalEnergy energy_;

@@ -92,8 +92,10 @@ class Faces final : public Metric {
     if (has<Box>()) box_.add(m.step, at_end, d.box);
     if (has<Capsule>()) capsule_.add(m.step, at_end, d.capsule);
     if (has_solid_body()) mesh_.add(m.step, at_end, d.mesh);
-    if (has_round())
-      geometry_.add(m.step, at_end, d.geometry), excess_.add(m.step, at_end, d.excess);
+    if (has_round()) {
+      geometry_.add(m.step, at_end, d.geometry);
+      excess_.add(m.step, at_end, d.excess);
+    }
   }
   std::vector<double> finish() override {
     return {any_.max(),     any_.peak(), geometry_.max(),

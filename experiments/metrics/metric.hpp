@@ -205,7 +205,8 @@ class Summary {
     peak_ = larger(peak_, value);
     if (!in_last_second) return;
     max_ = larger(max_, value);
-    sum_ += value, ++count_;
+    sum_ += value;
+    ++count_;
   }
   double mean() const { return count_ > 0 ? sum_ / count_ : kNone; }
   double max() const { return max_; }
@@ -240,7 +241,10 @@ inline double mean_square_speed(const State& state, const std::vector<std::size_
 inline Vec3 mean(const std::vector<double>& mass, const std::vector<Vec3>& vectors) {
   Vec3 sum = Vec3::Zero();
   double total = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i) sum += mass[i] * vectors[i], total += mass[i];
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    sum += mass[i] * vectors[i];
+    total += mass[i];
+  }
   return sum / total;
 }
 

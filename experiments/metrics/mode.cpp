@@ -31,7 +31,8 @@ LowestMode lowest_mode(const Rows& rows, double g) {
     std::vector<double> moved(n);
     double force = 0, weight = 0;
     for (std::size_t j = n; j-- > 0;) {
-      force += rows.mass[j] * mode.shape[j], weight += rows.mass[j] * g;
+      force += rows.mass[j] * mode.shape[j];
+      weight += rows.mass[j] * g;
       moved[j] = rows.length[j] * force / weight;
     }
     std::partial_sum(moved.begin(), moved.end(), moved.begin());

@@ -14,7 +14,9 @@ struct Depths {
   int count = 0;
   void add(double depth) {
     if (!(depth > 0)) return;
-    max = std::max(max, depth), sum += depth, ++count;
+    max = std::max(max, depth);
+    sum += depth;
+    ++count;
   }
   double mean() const { return count > 0 ? sum / count : 0; }
 };
@@ -75,7 +77,8 @@ class Penetration final : public Metric {
     const bool at_end = end_.contains(m.step);
     const Contact contact = measure(m);
     const auto add = [&](Kind& kind, const Depths& d) {
-      kind.max.add(m.step, at_end, d.max), kind.mean.add(m.step, at_end, d.mean());
+      kind.max.add(m.step, at_end, d.max);
+      kind.mean.add(m.step, at_end, d.mean());
     };
     add(any_, contact.any);
     for (std::size_t k = 0; k < kKinds; ++k)

@@ -92,7 +92,8 @@ class Principal final : public Metric {
     frame.col(0) = a.normalized();
     frame.col(1) = (b - frame.col(0).dot(b) * frame.col(0)).normalized();
     Eigen::Matrix2d edges;
-    edges.col(0) = frame.transpose() * a, edges.col(1) = frame.transpose() * b;
+    edges.col(0) = frame.transpose() * a;
+    edges.col(1) = frame.transpose() * b;
     const auto in_plane = [&](const Vec3& d) {
       return Eigen::Vector2d((frame.transpose() * d).normalized());
     };

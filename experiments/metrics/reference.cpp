@@ -107,7 +107,8 @@ class Distance final : public Metric {
     std::vector<double> values(std::size(kValues), Summary::kNone);
     if (!known_.rest) return values;
     const Gap gap = from(*known_.rest, m.state);
-    values[0] = std::sqrt(gap.mean_square), values[1] = gap.max;
+    values[0] = std::sqrt(gap.mean_square);
+    values[1] = gap.max;
     return values;
   }
 

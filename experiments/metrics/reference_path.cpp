@@ -31,19 +31,24 @@ void ReferencePath::reach(const Moment& moment, const std::vector<Vec3>& x) {
   const std::vector<Vec3>& r = moment.reference.x;
   for (const std::size_t i : free_) {
     const Vec3 way = r[i] - reference_left_[i];
-    along_ += way.dot(x[i] - left_[i]), way_ += way.squaredNorm();
-    apart_ += (x[i] - r[i]).squaredNorm(), from_start_ += (r[i] - start_[i]).squaredNorm();
+    along_ += way.dot(x[i] - left_[i]);
+    way_ += way.squaredNorm();
+    apart_ += (x[i] - r[i]).squaredNorm();
+    from_start_ += (r[i] - start_[i]).squaredNorm();
   }
-  left_ = x, reference_left_ = r;
+  left_ = x;
+  reference_left_ = r;
 }
 
 void ReferencePath::measure(Moment& moment, const std::vector<Vec3>& x) const {
   double square = 0, beside = 0;
   for (const std::size_t i : free_) {
     const Vec3 apart = x[i] - moment.reference.x[i];
-    square += apart.squaredNorm(), beside += apart.dot(last_[i] - moment.reference.x[i]);
+    square += apart.squaredNorm();
+    beside += apart.dot(last_[i] - moment.reference.x[i]);
   }
-  moment.square.push_back(square), moment.beside.push_back(beside);
+  moment.square.push_back(square);
+  moment.beside.push_back(beside);
 }
 
 bool ReferencePath::moves() const {
@@ -83,14 +88,18 @@ double ReferencePath::phase() const {
   double best = 0, least = square_of(0), most = least;
   const auto look = [&](double shift) {
     const double square = square_of(shift);
-    if (square < least) best = shift, least = square;
+    if (square < least) {
+      best = shift;
+      least = square;
+    }
     most = std::max(most, square);
   };
   for (std::size_t k = 0; k + 1 < kinks.size(); ++k) {
     const double from = kinks[k], half = (kinks[k + 1] - from) / 2;
     const std::array y{square_of(from), square_of(from + half), square_of(from + 2 * half)};
     const double bend = y[0] - 2 * y[1] + y[2], at = bend > 0 ? (y[0] - y[2]) / (2 * bend) : 2;
-    look(from), look(from + 2 * half);
+    look(from);
+    look(from + 2 * half);
     if (std::abs(at) < 1) look(from + (1 + at) * half);
   }
   return most - least > 1e-9 * most ? best : Summary::kNone;

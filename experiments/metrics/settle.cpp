@@ -25,7 +25,8 @@ class Settle final : public Metric {
   void observe(const Snapshot& m) override {
     // The speed of the start is the scene's, often 0 by construction.
     if (m.step > 0 && rests(m.state)) return;
-    since_ = m.t, place_ = m.state.x;
+    since_ = m.t;
+    place_ = m.state.x;
   }
   std::vector<double> finish() override { return {since_}; }
   std::vector<double> now(const Snapshot&) const override { return {Summary::kNone}; }

@@ -15,12 +15,16 @@ struct Strain {
   std::size_t count = 0;
 
   void add(double e) {
-    square += e * e, ++count;
-    tension = std::max(tension, e), shortening = std::max(shortening, -e);
+    square += e * e;
+    ++count;
+    tension = std::max(tension, e);
+    shortening = std::max(shortening, -e);
   }
   void add(const Strain& s) {
-    square += s.square, count += s.count;
-    tension = std::max(tension, s.tension), shortening = std::max(shortening, s.shortening);
+    square += s.square;
+    count += s.count;
+    tension = std::max(tension, s.tension);
+    shortening = std::max(shortening, s.shortening);
   }
   double mean_square() const {
     return count > 0 ? square / static_cast<double>(count) : Summary::kNone;
@@ -36,7 +40,8 @@ struct Group {
   void add(int step, bool at_end, const Strain& s) {
     if (!exists) return;
     square.add(step, at_end, s.mean_square());
-    tension.add(step, at_end, s.tension), shortening.add(step, at_end, s.shortening);
+    tension.add(step, at_end, s.tension);
+    shortening.add(step, at_end, s.shortening);
   }
   /// Nearest rank: the smallest magnitude that at least 95 % of the links do not exceed.
   void sample(int step) {

@@ -66,8 +66,14 @@ struct Solid {
       }
       const double side = d > 0 ? 1 : -1;
       const double in = (-side * h - a[axis]) / d, out = (side * h - a[axis]) / d;
-      if (in > p.in_at) p.in_at = in, p.in = -side * Vec3::Unit(axis);
-      if (out < p.out_at) p.out_at = out, p.out = side * Vec3::Unit(axis);
+      if (in > p.in_at) {
+        p.in_at = in;
+        p.in = -side * Vec3::Unit(axis);
+      }
+      if (out < p.out_at) {
+        p.out_at = out;
+        p.out = side * Vec3::Unit(axis);
+      }
     }
     p.hit = p.in_at < p.out_at && std::isfinite(p.in_at);
     return p;

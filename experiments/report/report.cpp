@@ -106,7 +106,8 @@ class Builder {
     std::size_t planned = 0;
     for (const StudyResult& study : input_.studies)
       planned += std::max(study.planned, study.records.size()) - study.records.size();
-    one["cases"] = refs_.cases().size(), one["planned"] = refs_.cases().size() + planned;
+    one["cases"] = refs_.cases().size();
+    one["planned"] = refs_.cases().size() + planned;
     if (listed < refs_.cases().size()) one["listed"] = listed;
     return one;
   }
@@ -167,7 +168,8 @@ class Builder {
                {"dash", style.dash}};
       for (const SolverInfo& info : input_.solvers) {
         if (info.name != solver) continue;
-        one["summary"] = info.summary, one["source"] = info.source;
+        one["summary"] = info.summary;
+        one["source"] = info.source;
         for (const auto& [reason, scenes] : info.unsupported)
           one["unsupported"].push_back({{"reason", reason}, {"scenes", scenes}});
       }

@@ -54,7 +54,8 @@ std::vector<TimeSeries> series_of(const QuotedScene& quoted, const ComparedSolve
 
 /// Without what few cases need (complete_quoted), or none.
 Record slim(Record r) {
-  r.digest = std::string(), r.log = std::string();
+  r.digest = std::string();
+  r.log = std::string();
   r.step_cost = std::vector<PassCost>();  // `= {}` would keep its memory
   std::erase_if(r.resolved_settings,
                 [](const ResolvedSetting& one) { return one.name != kFloorOfStrain; });
@@ -71,8 +72,10 @@ void complete_quoted(ReportInput& input, const Store& store) {
   for (StudyResult& study : input.studies)
     for (Record& r : study.records)
       if (quoted.contains(&r))
-        if (const std::optional<Record> whole = store.find(r.key))
-          r.step_cost = whole->step_cost, r.resolved_settings = whole->resolved_settings;
+        if (const std::optional<Record> whole = store.find(r.key)) {
+          r.step_cost = whole->step_cost;
+          r.resolved_settings = whole->resolved_settings;
+        }
 }
 
 }  // namespace
@@ -188,7 +191,8 @@ Differences stored_differences(const Store& a, const Store& b) {
   for (const auto& [name, record] : of_a)
     if (const auto at = of_b.find(name); record && at != of_b.end() && at->second)
       found.pairs.emplace_back(std::move(*record), std::move(*at->second));
-  found.only_a = in_a.size() - found.pairs.size(), found.only_b = in_b.size() - found.pairs.size();
+  found.only_a = in_a.size() - found.pairs.size();
+  found.only_b = in_b.size() - found.pairs.size();
   auto timed_a = all_timed(a, found.noise), timed_b = all_timed(b, found.noise);
   for (auto& [host, in_b_here] : timed_b) {
     const auto same = timed_a.find(host);

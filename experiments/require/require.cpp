@@ -53,7 +53,8 @@ class Search {
                                        .deadline = at(share),
                                        .progress = options_.progress});
     found_.interrupted = found_.interrupted || run.campaign.interrupted;
-    found_.cases += run.campaign.cases, found_.ran += run.campaign.ran;
+    found_.cases += run.campaign.cases;
+    found_.ran += run.campaign.ran;
     std::vector<std::optional<Observation>> seen(run.cases.size());
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (const auto& record = run.records[i]) {
@@ -282,7 +283,8 @@ class Search {
           return chosen;
         }
         if (!trial.within) continue;
-        best = std::move(trial), chosen = std::move(more);
+        best = std::move(trial);
+        chosen = std::move(more);
         break;
       }
     return chosen;

@@ -248,7 +248,11 @@ void Store::say_damaged(const std::string& what, const std::string& why) const {
 
 std::optional<Record> Store::find(const Case& one) const {
   std::optional<Record> record = find(one.key);
-  if (record) record->spec = one.spec, record->id = one.id, record->scene = one.scene->name;
+  if (record) {
+    record->spec = one.spec;
+    record->id = one.id;
+    record->scene = one.scene->name;
+  }
   return record;
 }
 

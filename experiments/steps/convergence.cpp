@@ -62,8 +62,12 @@ double contraction(const std::vector<ConvergencePoint>& points, double floor) {
   const std::size_t last = std::max<std::size_t>(2, falling.size() / 3);
   if (falling.size() < last + 1) return kUnknown;
   double k = 0, y = 0, kk = 0, ky = 0;
-  for (const auto& [at, log_distance] : std::span(falling).last(last))
-    k += at, y += log_distance, kk += at * at, ky += at * log_distance;
+  for (const auto& [at, log_distance] : std::span(falling).last(last)) {
+    k += at;
+    y += log_distance;
+    kk += at * at;
+    ky += at * log_distance;
+  }
   const auto n = static_cast<double>(last);
   return std::exp((n * ky - k * y) / (n * kk - k * k));
 }
@@ -112,7 +116,8 @@ ConvergencePoint point_of(const ExactStep& exact, int iterations, const Stepped&
 /// The solver's iterates, beside the exact step.
 void follow(Convergence& all, const Scene& scene, const State& from, double at, int most,
             const ExactStep& exact) {
-  all.problem = exact.minimum.problem, all.exact_residual = exact.minimum.residual;
+  all.problem = exact.minimum.problem;
+  all.exact_residual = exact.minimum.residual;
   all.moved = exact.minimum.moved;
   const AccuracyParameters& accuracy = parse_solver(all.solver).entry->accuracy;
   const std::string one =

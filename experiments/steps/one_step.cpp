@@ -97,7 +97,8 @@ Record record_of(const Answer& found, const Table& points, const std::vector<Cel
   Record r;
   const std::string solver = points.at(row, "solver").text();
   const SolverChoice choice = parse_solver(solver);
-  r.scene = found.fact("scene").text(), r.dt = found.fact("dt").number();
+  r.scene = found.fact("scene").text();
+  r.dt = found.fact("dt").number();
   r.spec = {r.scene, {}, solver};
   describe_solver(r, choice);
   r.substeps = 1;

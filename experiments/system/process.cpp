@@ -60,14 +60,17 @@ struct Pipes {
     int ends[2];
     if (options.input == Stream::piped) {  // a socket: writing to it raises no SIGPIPE
       if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail_start(program, errno);
-      input = Descriptor(ends[0]), child_input = Descriptor(ends[1]);
+      input = Descriptor(ends[0]);
+      child_input = Descriptor(ends[1]);
     }
     if (options.output == Stream::piped || options.errors == Stream::piped) {
       if (pipe2(ends, O_CLOEXEC) != 0) fail_start(program, errno);
-      output = Descriptor(ends[0]), child_output = Descriptor(ends[1]);
+      output = Descriptor(ends[0]);
+      child_output = Descriptor(ends[1]);
     }
     if (pipe2(ends, O_CLOEXEC) != 0) fail_start(program, errno);
-    failed = Descriptor(ends[0]), child_failed = Descriptor(ends[1]);
+    failed = Descriptor(ends[0]);
+    child_failed = Descriptor(ends[1]);
   }
 };
 
@@ -185,7 +188,8 @@ Process::Process(std::vector<std::string> words, const ProcessOptions& options) 
   ssize_t got = 0;
   while (error == 0 && (got = read(pipes.failed.get(), &error, sizeof error)) < 0 && errno == EINTR)
     error = 0;
-  input_ = pipes.input.release(), output_ = pipes.output.release();
+  input_ = pipes.input.release();
+  output_ = pipes.output.release();
   if (error == 0) return;
   stop();
   fail_start(words.front(), error);

@@ -67,9 +67,12 @@ Table cases_of(const StudyBench& bench, const BenchReport& report) {
       const auto& [record, timing, not_accepted] = scene.cases[i];
       Cell id(record.id), cost, cpu, wall, bytes;
       id.key = record.key;
-      if (timing.failure.empty())
-        cost = scene.cases[i].cost(), cpu = bootstrap_median(timing.samples),
-        wall = median(timing.wall), bytes = timing.peak_bytes;
+      if (timing.failure.empty()) {
+        cost = scene.cases[i].cost();
+        cpu = bootstrap_median(timing.samples);
+        wall = median(timing.wall);
+        bytes = timing.peak_bytes;
+      }
       const auto times = i > first ? scene.ratio(i, first) : std::nullopt;
       table.rows.push_back(
           {scene.scene, id, record.solver, cost, cpu, wall, bytes, record.value(report.metric),

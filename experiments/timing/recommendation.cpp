@@ -137,8 +137,10 @@ void add(Table& table, const Recommendation& recommendation, const SceneBench& b
                                                             answer});
     if (!solver.at) return;
     const BenchedCase& c = bench.cases[*solver.at];
-    cells[3] = parse_solver(c.record.spec.solver).brief(), cells[3].key = c.record.key;
-    cells[4] = c.record.value(metric), cells[5] = c.cost();
+    cells[3] = parse_solver(c.record.spec.solver).brief();
+    cells[3].key = c.record.key;
+    cells[4] = c.record.value(metric);
+    cells[5] = c.cost();
   };
   if (recommendation.best)
     row({bench.cases[*recommendation.best].record.solver, recommendation.best, {}}, {},

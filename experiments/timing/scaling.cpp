@@ -18,7 +18,10 @@ std::optional<PowerLaw> fit(const std::vector<BenchedCase>& cases,
                             const std::function<double(const BenchedCase&)>& value) {
   std::vector<double> x, y;
   for (const BenchedCase& c : cases)
-    if (c.stable() && value(c) > 0) x.push_back(c.record.vertices), y.push_back(value(c));
+    if (c.stable() && value(c) > 0) {
+      x.push_back(c.record.vertices);
+      y.push_back(value(c));
+    }
   if (x.size() < 3) return {};
   return fit_power_law(x, y);
 }

@@ -69,7 +69,10 @@ Measured least(const Case& base, double error, Store& store, const ScalingOption
   };
   int low = 0, high = 1;
   std::optional<bool> met;
-  while ((met = meets(high)) && !*met && high < kMost) low = high, high *= 2;
+  while ((met = meets(high)) && !*met && high < kMost) {
+    low = high;
+    high *= 2;
+  }
   while (met && *met && high - low > std::max(1, high / 20)) {
     const int middle = (low + high) / 2;
     const auto enough = meets(middle);

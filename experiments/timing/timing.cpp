@@ -295,7 +295,8 @@ TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions
       [&](std::size_t i) { sample(cases[i]); },
       [&] {
         SampledCase& twin = control.twin(cases);
-        sample(twin), sample(twin);
+        sample(twin);
+        sample(twin);
       });
   TimingSession session;
   for (SampledCase& one : cases) {

@@ -40,7 +40,8 @@ Tip tip(const Scene& s, const std::vector<Vec3>& x) {
 
 /// Where it comes to rest: implicit Euler's steps are so long that inertia does not count.
 State at_rest(Scene s) {
-  s.dt = 1, s.damping = 0;
+  s.dt = 1;
+  s.damping = 0;
   Simulation sim(s, "implicit:iterations=2000");
   for (int n = 0; n < 100; ++n) {
     const std::vector<Vec3> before = sim.state().x;
@@ -162,7 +163,8 @@ TAUT_TRUTH(bent_alike, 6, 14,
            "solvers that take bending as projections, forces, a factor or a Hessian settle alike",
            "one quadratic energy") {
   Scene s = heavy(16, 5, 5e3);
-  s.damping = 5, s.dt = 1.0 / 64;
+  s.damping = 5;
+  s.dt = 1.0 / 64;
   if (!can_run(findings, kImplicit, s)) return;
   const State exact = at_rest(s);
   for (const char* solver :

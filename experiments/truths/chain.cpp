@@ -156,7 +156,10 @@ TAUT_TRUTH(hanging_chain_modes, 4, 8,
     }
     reference::Shake shake(s, dt);
     std::vector<double> y;
-    for (int k = 0; k < 400; ++k) shake.step(), y.push_back(shake.state().x.back().x());
+    for (int k = 0; k < 400; ++k) {
+      shake.step();
+      y.push_back(shake.state().x.back().x());
+    }
     findings.equal(kShake, "mode " + std::to_string(mode) + " of 16 links in motion", "rad/s",
                    std::sqrt(2 - two_term_recurrence(y)[0]) / dt, printed[0][mode - 1], 1e-4);
   }
@@ -200,7 +203,8 @@ TAUT_TRUTH(discrete_catenary, 4, 9,
   const double stiffness = 200;
   const std::string springs = mass_spring("verlet", stiffness, 0.05);
   Scene elastic = s;
-  elastic.dt = 1.0 / 1024, elastic.stiffness = {stiffness, stiffness, stiffness};
+  elastic.dt = 1.0 / 1024;
+  elastic.stiffness = {stiffness, stiffness, stiffness};
   const double stretched =
       reference::discrete_catenary(n, 0.8, 1.0 / n, mass * kG, stiffness).sag();
   // Those that stop short of the step's equilibrium start g dt^2 below: off in second order, as

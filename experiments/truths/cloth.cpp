@@ -58,7 +58,8 @@ SquareSlopes square_slopes(Scene s, const std::function<std::string(int)>& solve
   for (const int k : {8, 16, 32, 64}) {
     Simulation sim(s, solver(k));
     settle(sim, 1e-7, 32, 6000);
-    sweeps.push_back(k), asymmetry.push_back(asymmetry_of(sim));
+    sweeps.push_back(k);
+    asymmetry.push_back(asymmetry_of(sim));
     strain.push_back(rms_strain(s, sim.state()));
     distance.push_back(max_distance(sim.state().x, s.mesh.rest));
   }

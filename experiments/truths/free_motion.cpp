@@ -179,7 +179,8 @@ TAUT_TRUTH(wind_tilt, 3, 8,
       for (int i = 0; i < 2; ++i) {
         const Vec3 d = sim.x(2 * j + i) - sim.x(i);
         const double tilt = std::atan2(d.z(), -d.y()) * 180 / std::numbers::pi;
-        flattest = std::min(flattest, tilt), steepest = std::max(steepest, tilt);
+        flattest = std::min(flattest, tilt);
+        steepest = std::max(steepest, tilt);
       }
     // Stretched faces catch more wind: strain e adds e cos(tilt) sin(tilt) rad.
     const double slack = 1e-6 + max_strain(s, sim.state()) * 90 / std::numbers::pi;

@@ -55,8 +55,10 @@ TAUT_TRUTH(metric_energy, 10, 2, "free fall conserves (KE + PE)/(m g L)", "the e
   for (int n = 0; n <= s.steps; ++n) {
     const double t = n * s.dt;
     State state = s.start;
-    for (std::size_t i = 0; i < state.x.size(); ++i)
-      state.x[i] += s.gravity * t * t / 2, state.v[i] = s.gravity * t;
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      state.x[i] += s.gravity * t * t / 2;
+      state.v[i] = s.gravity * t;
+    }
     falling.push_back(state);
   }
   findings.below("metric:energy", "energy of a body in free fall, per m g L", "1",
@@ -334,7 +336,10 @@ TAUT_TRUTH(metric_mode, 10, 14,
       if (!can_run(findings, solver, let_go)) continue;
       Simulation sim(let_go, solver);
       std::vector<State> states{let_go.start};
-      for (int step = 0; step < 640; ++step) sim.step(), states.push_back(sim.state());
+      for (int step = 0; step < 640; ++step) {
+        sim.step();
+        states.push_back(sim.state());
+      }
       findings.equal(solver, "mode.damping" + at, "1", measured("mode.damping", let_go, states),
                      decay / std::hypot(decay, angle), 1e-4);
       findings.equal(solver, "mode.period" + at, "1", measured("mode.period", let_go, states),

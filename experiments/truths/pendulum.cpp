@@ -226,7 +226,8 @@ TAUT_TRUTH(double_pendulum, 4, 5,
       for (int r = 10; r <= 13; ++r) {
         const double dt = std::ldexp(1, -r);
         Simulation sim(double_pendulum(dt), solver, t << r);
-        dts.push_back(dt), ends.push_back(sim.x(2));
+        dts.push_back(dt);
+        ends.push_back(sim.x(2));
         errors.push_back((sim.x(2) - exact[1]).norm());
       }
       const PowerLaw order = fit_power_law(dts, errors);

@@ -64,7 +64,10 @@ TAUT_TRUTH(xpbd_spring, 8, 2, "a compliant spring moves the same for any number 
     if (!can_run(findings, solver, s)) continue;
     Simulation sim(s, solver);
     std::vector<double> y{0.5};
-    for (int n = 0; n < 12; ++n) sim.step(), y.push_back(-sim.x(1).y() - 1);
+    for (int n = 0; n < 12; ++n) {
+      sim.step();
+      y.push_back(-sim.x(1).y() - 1);
+    }
     const auto [p, q] = two_term_recurrence(y);
     findings.equal(solver, "implicit Euler whatever the sweeps: 2/(1 + w^2 dt^2)", "1", p,
                    2 / (1 + w2 * dt * dt), 1e-10);

@@ -88,7 +88,8 @@ TAUT_TRUTH(hooke_oscillator, 3, 3,
       const double x = displacement(sim);
       worst = std::max(worst, std::abs(x - x0 * std::cos(n * phase)));
       const double energy = std::pow((x - before) / dt, 2) / 2 + kOmega * kOmega * x * before / 2;
-      least = std::min(least, energy), most = std::max(most, energy);
+      least = std::min(least, energy);
+      most = std::max(most, energy);
       before = x;
     }
     findings.below(solver, "distance from x0 cos(n W dt), sin(W dt/2) = w dt/2, 1000 steps", "m",
@@ -101,7 +102,8 @@ TAUT_TRUTH(hooke_oscillator, 3, 3,
       Simulation mass(oscillator(h, x0), solver);
       const auto y = mass.record(100, [&] { return displacement(mass); });
       const double frequency = std::acos(two_term_recurrence(y)[0] / 2) / h;
-      steps.push_back(h), errors.push_back(std::abs(frequency - kOmega) / kOmega);
+      steps.push_back(h);
+      errors.push_back(std::abs(frequency - kOmega) / kOmega);
     }
     const PowerLaw order =
         fit_power_law({steps.begin() + 1, steps.end()}, {errors.begin() + 1, errors.end()});
@@ -117,7 +119,10 @@ TAUT_TRUTH(spring_step_limit, 3, 4,
     const double limit = sign_change(1.9 / kOmega, 2.1 / kOmega, 1e-9, [&](double dt) {
       Simulation sim(oscillator(dt, 1e-6), solver);
       std::vector<double> y{1e-6};
-      for (int n = 0; n < 8; ++n) sim.step(), y.push_back(displacement(sim));
+      for (int n = 0; n < 8; ++n) {
+        sim.step();
+        y.push_back(displacement(sim));
+      }
       return two_term_recurrence(y)[0] + 2;
     });
     findings.equal(solver, "largest stable dt w/2", "1", limit * kOmega / 2, 1, 1e-6);

@@ -62,8 +62,12 @@ bool within(double measured, double expected, double tolerance) {
 Finding finding(std::string_view subject, std::string_view quantity, std::string_view unit,
                 double measured, double expected, double tolerance) {
   Finding f;
-  f.subject = subject, f.quantity = quantity, f.unit = unit;
-  f.measured = measured, f.expected = expected, f.tolerance = tolerance;
+  f.subject = subject;
+  f.quantity = quantity;
+  f.unit = unit;
+  f.measured = measured;
+  f.expected = expected;
+  f.tolerance = tolerance;
   f.verdict = within(measured, expected, tolerance) ? TruthVerdict::passed : TruthVerdict::broken;
   return f;
 }
@@ -106,7 +110,9 @@ void Findings::deviates(std::string_view subject, std::string_view quantity, std
 
 void Findings::not_applicable(std::string_view subject, std::string_view why) {
   Finding f;
-  f.subject = subject, f.verdict = TruthVerdict::not_applicable, f.why = why;
+  f.subject = subject;
+  f.verdict = TruthVerdict::not_applicable;
+  f.why = why;
   f.measured = f.expected = std::nan("");
   add(std::move(f));
 }

@@ -110,14 +110,20 @@ class Simulation {
   template <class Value>
   std::vector<double> record(int steps, const Value& value) {
     std::vector<double> all;
-    for (int n = 0; n < steps; ++n) step(), all.push_back(value());
+    for (int n = 0; n < steps; ++n) {
+      step();
+      all.push_back(value());
+    }
     return all;
   }
   /// The largest of what `error(n)` returns after the steps n = 1, 2, ... `steps`.
   template <class Error>
   double worst(int steps, const Error& error) {
     double most = 0;
-    for (int n = 1; n <= steps; ++n) step(), most = std::max(most, error(n));
+    for (int n = 1; n <= steps; ++n) {
+      step();
+      most = std::max(most, error(n));
+    }
     return most;
   }
   const State& state() const { return state_; }

@@ -23,7 +23,8 @@ Gap gap(const Scene& scene, std::string_view a, std::string_view b) {
   Simulation ours(scene, a), theirs(scene, b);
   Gap g;
   for (int n = 1; n <= 600; ++n) {
-    ours.step(), theirs.step();
+    ours.step();
+    theirs.step();
     const double d = max_distance(ours.state().x, theirs.state().x);
     if (n == 1) g.first = d;
     if (!(d <= g.largest)) g.largest = d;

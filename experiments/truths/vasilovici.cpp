@@ -83,7 +83,8 @@ TAUT_TRUTH(octree_split, 8, 9, "an octree of boxes misses what collides across a
     for (const double sy : {-1, 1})
       for (const double sz : {-1, 1}) x.emplace_back(sx, sy, sz);
   Scene s = bare::scene(x, std::vector<double>(x.size(), 1.0), {});
-  s.start.v[0] = {0.1, 0.1, 0.1}, s.start.v[1] = -s.start.v[0];
+  s.start.v[0] = {0.1, 0.1, 0.1};
+  s.start.v[1] = -s.start.v[0];
   s.self_collision = SelfCollision{.radius = 0.05};
   const auto gap = [&](const std::string& method) {
     Simulation sim(s, "jakobsen:precision=double,substeps=1,self=" + method, 40);
@@ -136,7 +137,8 @@ TAUT_TRUTH(verlet_fixed_step, 8, 11,
   for (int n = 0; n < kSteps; ++n) {
     const double now = x;
     x = 2 * x - before;
-    before = now, t += n % 2 == 0 ? kStep : kStep / 2;
+    before = now;
+    t += n % 2 == 0 ? kStep : kStep / 2;
   }
   findings.equal("closed form", "way of a free particle over speed times time, steps of h and h/2",
                  "1", x / t, 4.0 / 3, 1e-12);
@@ -149,7 +151,8 @@ TAUT_TRUTH(spring_families, 8, 12,
   const std::string solver = jakobsen(16);
   const auto loss = [&](bool shear, bool bend) {
     Scene s = bare::sheet(9, 9, {true, shear, bend});
-    s.gravity = {0, -kG, 0}, s.damping = 1;
+    s.gravity = {0, -kG, 0};
+    s.damping = 1;
     s.pins = {0, 8};
     Simulation sim(s, solver, 640);
     return s.start.x[8 * 9 + 4].y() - sim.x(8 * 9 + 4).y();
@@ -201,7 +204,8 @@ TAUT_TRUTH(box_nearest_side, 8, 15,
   const Scene s = particle_at_box({0.48, 0.55, 0}, {0, -0.15 * 64, 0});
   if (!can_run(findings, discrete, s)) return;
   Simulation wrong(s, discrete), right(s, continuous);
-  wrong.step(), right.step();
+  wrong.step();
+  right.step();
   findings.equal(discrete, "distance from the side, for it is put out there, not where it came in",
                  "m", 0.5 - wrong.x(0).x(), 0, 1e-9);
   findings.equal(discrete, "its depth below the top", "m", 0.5 - wrong.x(0).y(), 0.1, 1e-6);

@@ -25,7 +25,8 @@ class Sag final : public Metric {
 
   void observe(const Snapshot& m) override {
     const auto [square, most] = way(m);
-    square_.add(m.step, end_.contains(m.step), square), most_.add(m.step, false, most);
+    square_.add(m.step, end_.contains(m.step), square);
+    most_.add(m.step, false, most);
   }
   std::vector<double> finish() override { return {std::sqrt(square_.mean()), most_.peak()}; }
   std::vector<double> now(const Snapshot& m) const override {
@@ -38,7 +39,8 @@ class Sag final : public Metric {
     double sum = 0, most = 0;
     for (std::size_t i = 0; i < start_.size(); ++i) {
       const double square = (m.state.x[i] - start_[i]).squaredNorm();
-      sum += square, most = std::max(most, std::sqrt(square));
+      sum += square;
+      most = std::max(most, std::sqrt(square));
     }
     return {sum / static_cast<double>(start_.size()), most};
   }

@@ -49,7 +49,8 @@ class MadeUp final : public Solver {
     const double length = between.norm(), w = w_[a] + w_[b];
     if (w == 0 || length == 0) return;
     const Vec3 move = (length - link.rest) / (length * w) * between;
-    state_.x[a] += w_[a] * move, state_.x[b] -= w_[b] * move;
+    state_.x[a] += w_[a] * move;
+    state_.x[b] -= w_[b] * move;
   }
   Scene scene_;
   std::vector<double> w_;  // 1/kg, 0 for pins

@@ -149,9 +149,10 @@ std::vector<Rows> markdown_tables(const std::string& text) {
     for (std::size_t i = 2; i + 1 < line.size(); ++i) {
       if (line[i] == '\\')
         row.back() += line[++i];
-      else if (line.compare(i, 3, " | ") == 0)
-        row.emplace_back(), i += 2;
-      else if (line.substr(i) != " |")
+      else if (line.compare(i, 3, " | ") == 0) {
+        row.emplace_back();
+        i += 2;
+      } else if (line.substr(i) != " |")
         row.back() += line[i];
       else
         break;

@@ -25,9 +25,11 @@ TEST(Findings, HaveTheirCaseTheirValueAndWhatItWas) {
   const Baseline before{row("ball", "bullet", {{"stretch.max", 0.25}, {"old", 1}}),
                         row("hang", "jakobsen", {{"stretch.max", 0.5}})};
   Baseline now = before;
-  now[0].status = {"exploded", "energy"}, now[0].projections = 90,
+  now[0].status = {"exploded", "energy"};
+  now[0].projections = 90;
   now[0].values = {{"stretch.max", kNaN}, {"new", 2}, {"none", kNaN}};
-  now[1].status = {"timeout"}, now[1].values["stretch.max"] = 0.5000001;
+  now[1].status = {"timeout"};
+  now[1].values["stretch.max"] = 0.5000001;
   const Comparison found =
       compare(before, now, Tolerances({{"default", {0, 1e-9, false, "close"}}}));
   struct Expected {
@@ -85,14 +87,17 @@ TEST(Findings, DifferencesBeyondTheSeventhDigitAreShown) {
 
 TEST(Findings, OfAFlakyRowAreItsStatusAlone) {
   Baseline before{row("a", "s", {{"x", 1}})}, now = before;
-  now[0].values["x"] = 2, now[0].projections = 1, now[0].flaky = true;
+  now[0].values["x"] = 2;
+  now[0].projections = 1;
+  now[0].flaky = true;
   Comparison found = compare(before, now, {});
   ASSERT_EQ(found.findings.size(), 1u);
   EXPECT_EQ(found.findings[0].text, "does not repeat bit for bit: now flaky");
   EXPECT_FALSE(found.regressed() || found.mismatched());
   before[0].flaky = true;
   EXPECT_TRUE(compare(before, now, {}).findings.empty());
-  now[0].flaky = false, now[0].status = {"crash"};
+  now[0].flaky = false;
+  now[0].status = {"crash"};
   found = compare(before, now, {});
   ASSERT_EQ(found.findings.size(), 1u);
   EXPECT_EQ(found.findings[0].kind, Kind::status_changed);
@@ -102,7 +107,8 @@ TEST(Findings, OfAFlakyRowAreItsStatusAlone) {
 TEST(Findings, OfCasesThatDoNotMatchNameBoth) {
   const Baseline before{row("a", "s", {}), row("b", "s", {}), row("c", "s", {})};
   Baseline now{row("a", "s", {}), row("b", "s", {}), row("d", "s", {})};
-  now[0].id = "another", now[1].scene = "0123456789abcdef";
+  now[0].id = "another";
+  now[1].scene = "0123456789abcdef";
   const Comparison found = compare(before, now, {});
   std::vector<std::string> texts;
   for (const Change& one : found.findings) texts.push_back(one.id + ": " + one.text);
@@ -173,7 +179,8 @@ TEST(Updates, TakeRowsOfAnotherQuestionAnew) {
   EXPECT_EQ(values(), (std::vector<double>{1.25, 1})) << "sorted by id";
   now[0].frontier = "--of dt";
   EXPECT_EQ(values(), (std::vector<double>{1.25, 1.25}));
-  now[0].frontier = "", now[0].spec.solver = "s:k=1";
+  now[0].frontier = "";
+  now[0].spec.solver = "s:k=1";
   EXPECT_EQ(values(), (std::vector<double>{1.25, 1.25}));
 }
 
@@ -194,7 +201,9 @@ TEST(Reproduced, AStatusHasItsReasonUnlessItRefuses) {
   record.status = {Status::Kind::unsupported, "no contact", -1, -1};
   EXPECT_EQ(baseline_row(record, "c").status, RowStatus{"unsupported"});
   record.status = {};
-  record.projections = 7, record.id = "id", record.values = {{"x", 1}};
+  record.projections = 7;
+  record.id = "id";
+  record.values = {{"x", 1}};
   const BaselineRow made = baseline_row(record, "c");
   EXPECT_EQ((std::tuple{made.status, made.projections, made.id, made.scene}),
             (std::tuple{RowStatus{"ok"}, std::size_t{7}, std::string("id"), std::string("c")}));
@@ -205,7 +214,9 @@ TEST(Reproduced, AStatusHasItsReasonUnlessItRefuses) {
 TEST(BaselineFolders, KeepEveryFieldAndRefuseWhatTheyShould) {
   const Scratch scratch;
   BaselineRow one = row("a", "s:k=2", {{"x", 0.1 + 0.2}, {"none", kNaN}});
-  one.spec.overrides = {"b=\"1\"", "c=2"}, one.flaky = true, one.frontier = "--of dt";
+  one.spec.overrides = {"b=\"1\"", "c=2"};
+  one.flaky = true;
+  one.frontier = "--of dt";
   one.status = {"exploded", "energy"};
   write_baseline(scratch.path(), {row("z", "s", {}), one, row("a", "t", {})});
   const Baseline back = read_baseline(scratch.path());

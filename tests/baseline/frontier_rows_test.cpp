@@ -78,7 +78,9 @@ TEST_F(FrontierFiles, WhatWasFoundIsARowOfItsBaseline) {
   const FrontierQuestion question = read(kTwo)[1];
   CaseFrontier found;
   found.frontier.kind = Frontier::Kind::bracketed;
-  found.frontier.stable = 5, found.frontier.unstable = 6, found.frontier.stable_above = {8, 9};
+  found.frontier.stable = 5;
+  found.frontier.unstable = 6;
+  found.frontier.stable_above = {8, 9};
   BaselineRow row = frontier_row(question, found);
   const Case base = make_case(question.base);
   EXPECT_EQ(row.id, frontier_id(question));
@@ -90,7 +92,8 @@ TEST_F(FrontierFiles, WhatWasFoundIsARowOfItsBaseline) {
   EXPECT_EQ(row.values,
             (std::map<std::string, double>{
                 {"frontier.stable", 5}, {"frontier.unstable", 6}, {"frontier.stable_above", 2}}));
-  found.frontier.kind = Frontier::Kind::all_stable, found.frontier.stable_above.clear();
+  found.frontier.kind = Frontier::Kind::all_stable;
+  found.frontier.stable_above.clear();
   row = frontier_row(question, found);
   EXPECT_EQ(row.status.kind, "all stable");
   EXPECT_EQ(row.values, (std::map<std::string, double>{{"frontier.stable_above", 0}}));

@@ -13,7 +13,11 @@ namespace {
 
 Change moved(const char* solver, const char* value, double before, double now) {
   Change c;
-  c.id = c.solver = solver, c.scene = "hang", c.value = value, c.before = before, c.now = now;
+  c.id = c.solver = solver;
+  c.scene = "hang";
+  c.value = value;
+  c.before = before;
+  c.now = now;
   return c;
 }
 

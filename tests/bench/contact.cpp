@@ -55,7 +55,8 @@ void run(benchmark::State& state, const Subject& s) {
   const State start = settled(scene, s.seconds);
   std::erase_if(scene.links, [](const Link& l) { return l.family != Family::structural; });
   Scene bare = scene;
-  bare.colliders.clear(), bare.self_collision.reset();
+  bare.colliders.clear();
+  bare.self_collision.reset();
   std::unique_ptr<Solver> solvers[4];  // without contact, with it; few sweeps, many
   for (std::size_t i = 0; i < 4; ++i)
     solvers[i] = make(i < 2 ? bare : scene, with_sweeps(kSweeps[i % 2], s.setting));
@@ -81,9 +82,10 @@ void run(benchmark::State& state, const Subject& s) {
 
 void add(const Subject& s) {
   std::string name = "contact/" + std::to_string(s.side) + "/" + s.scene + "/" + s.setting;
-  if (s.scene == "crumple")
-    name += s.seconds < 0.5 ? "/begins to fold" : "/all of it folds",
-        name += "/" + std::to_string(s.steps) + " steps";
+  if (s.scene == "crumple") {
+    name += s.seconds < 0.5 ? "/begins to fold" : "/all of it folds";
+    name += "/" + std::to_string(s.steps) + " steps";
+  }
   benchmark::RegisterBenchmark(name.c_str(), [s](benchmark::State& state) {
     run(state, s);
   })->Unit(benchmark::kMicrosecond);

@@ -76,7 +76,10 @@ std::vector<Repeated> rows_of(const SolverEntry& entry) {
     row.by = entry.accuracy.substeps;
   else
     row.solver += std::string(entry.accuracy.substeps) + "=1";
-  if (entry.name == "implicit") row.few = 1, row.many = 4;
+  if (entry.name == "implicit") {
+    row.few = 1;
+    row.many = 4;
+  }
   std::vector<Repeated> rows;
   for (const char* precision : {"float", "double"}) {
     Repeated& one = rows.emplace_back(row);

@@ -42,7 +42,9 @@ void run(benchmark::State& state, const std::string& name, int side) {
   };
   double before = 0, shared = 0, after = 0, both = 0;
   for (auto _ : state) {
-    before += time(*one), shared += time(*two), after += time(*one);
+    before += time(*one);
+    shared += time(*two);
+    after += time(*one);
     const double begin = seconds_of(CLOCK_MONOTONIC);
     std::thread other([&] { time(*another); });
     time(*one);

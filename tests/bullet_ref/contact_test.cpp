@@ -88,14 +88,18 @@ struct LawOfFriction {
   double height = 0, along = 0;
   double way_out = 0, way_along = 0;  ///< of the last substep [m]
   void substep() {
-    way_out -= 9.81 * std::cos(slope) * h * h, way_along += 9.81 * std::sin(slope) * h * h;
+    way_out -= 9.81 * std::cos(slope) * h * h;
+    way_along += 9.81 * std::sin(slope) * h * h;
     const double depth = -(height + way_out);
     if (depth > 0) {
       const double kept = std::abs(way_along) < mu * std::abs(way_out) ? 0 : 1 - mu;
-      for (int pass = 0; pass < passes && way_out <= 1e-16; ++pass)
-        way_along *= kept, way_out = -hardness * (height + way_out);
+      for (int pass = 0; pass < passes && way_out <= 1e-16; ++pass) {
+        way_along *= kept;
+        way_out = -hardness * (height + way_out);
+      }
     }
-    height += way_out, along += way_along;
+    height += way_out;
+    along += way_along;
   }
 };
 
@@ -106,7 +110,8 @@ double slide(double slope, double mu, const std::string& bullet, double start_he
   const auto [u, v] = axes(normal);
   const Vec3 start = (kThickness + start_height) * normal;
   Scene scene = sheet_above({.shape = Plane{normal, 0}, .friction = mu}, start, u, v);
-  scene.dt = 1.0 / 64, scene.steps = 64;
+  scene.dt = 1.0 / 64;
+  scene.steps = 64;
   const SolverChoice choice = parse_solver(bullet);
   const auto solver = choice.entry->make(scene, choice.params);
   solver->load(scene.start);

@@ -79,8 +79,10 @@ TEST(BulletLibrary, OneStepOfTheHangingSheetIsOursToRounding) {
   const auto ours = solver(listing("projection=sqrt-free," + common), scene);
   const auto bullet = solver("bullet:" + common, scene);
   State p, q;
-  ours->step(0, scene.dt), bullet->step(0, scene.dt);
-  ours->store(p), bullet->store(q);
+  ours->step(0, scene.dt);
+  bullet->step(0, scene.dt);
+  ours->store(p);
+  bullet->store(q);
   for (std::size_t i = 0; i < p.x.size(); ++i)
     ASSERT_LT((p.x[i] - q.x[i]).norm(), kDouble ? 1e-14 : 1e-6) << "vertex " << i;
 }

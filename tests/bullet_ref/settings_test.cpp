@@ -29,7 +29,8 @@ std::string six_digits(double value) {
 
 Scene with_everything() {
   Scene scene = hanging_sheet(3, 3);
-  scene.damping = 0.5, scene.thickness = 0.01;
+  scene.damping = 0.5;
+  scene.thickness = 0.01;
   scene.wind = Wind{};
   scene.colliders = {{.shape = Plane{Vec3::UnitY(), -9}}, {.shape = Ball{{9, 9, 9}, 1}}};
   return scene;
@@ -65,10 +66,13 @@ TEST(BulletSettings, OfTheSoftBodyAreTheseLines) {
   const std::string solver = "bullet:substeps=2,stiffness=1.5,margin=0.02,voxel=0.5,hardness=0.3,";
   EXPECT_EQ(settings(with_everything(), solver + "order=contacts-first"), all + contact);
   Scene calm = with_everything();
-  calm.wind.reset(), calm.colliders.erase(calm.colliders.begin());
+  calm.wind.reset();
+  calm.colliders.erase(calm.colliders.begin());
   Lines other = contact;
-  other.erase(other.begin()), other.pop_back();
-  other[0].second = "links, then contacts", other[5].second = "none";
+  other.erase(other.begin());
+  other.pop_back();
+  other[0].second = "links, then contacts";
+  other[5].second = "none";
   EXPECT_EQ(settings(calm, solver + "order=links-first,friction=refuse"), all + other);
 }
 
@@ -104,7 +108,8 @@ TEST(BulletSettings, OfTheDeformableBodyAreTheseLines) {
             start + springs + middle + limit + wind + contact);
   scene.pins.clear();
   EXPECT_EQ(settings(scene, solver), start + implicit + middle + wind + contact + stability);
-  scene.wind.reset(), scene.colliders.clear();
+  scene.wind.reset();
+  scene.colliders.clear();
   EXPECT_EQ(settings(scene, solver), start + implicit + middle);
 }
 
@@ -143,7 +148,8 @@ bool too_far(const std::string& solver, const Vec3& at, const Vec3& velocity = V
              bool collider = true) {
   Scene scene = hanging_sheet(3, 3);
   if (collider) scene.colliders = {{.shape = Ball{{9, 9, 9}, 1}}};
-  scene.start.x[8] = at, scene.start.v[8] = velocity;
+  scene.start.x[8] = at;
+  scene.start.v[8] = velocity;
   scene.gravity.setZero();
   const SolverChoice choice = parse_solver(solver);
   const auto made = choice.entry->make(scene, choice.params);

@@ -48,7 +48,8 @@ std::unique_ptr<Solver> solver(const std::string& text, const Scene& scene) {
 
 double distance(const Solver& a, const Solver& b) {
   State p, q;
-  a.store(p), b.store(q);
+  a.store(p);
+  b.store(q);
   double largest = 0;
   for (std::size_t i = 0; i < p.x.size(); ++i)
     largest = std::max(largest, (p.x[i] - q.x[i]).norm());
@@ -106,8 +107,10 @@ TEST_P(Twin, ReorderedLinksTakeTheSamePathBitForBit) {
   const Scene scene = hang(GetParam(), Vec3::UnitZ());
   const auto plain = solver("bullet:iterations=8", scene),
              best = solver("bullet:iterations=8,reorder=on,faces=off", scene);
-  for (int n = 0; n < 200; ++n)
-    plain->step(n * scene.dt, scene.dt), best->step(n * scene.dt, scene.dt);
+  for (int n = 0; n < 200; ++n) {
+    plain->step(n * scene.dt, scene.dt);
+    best->step(n * scene.dt, scene.dt);
+  }
   EXPECT_EQ(distance(*plain, *best), 0);
 }
 

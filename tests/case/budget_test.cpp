@@ -45,10 +45,12 @@ TEST(Budget, DoesNotDependOnHowAMotionIsCutIntoSteps) {
   cut.dt /= 32;
   for (const double t : {0.0, 0.25, 4.0})
     EXPECT_NEAR(EnergyBudget(whole, 32).available(t) / EnergyBudget(cut).available(t), 1, 1e-12);
-  whole.dt = 4, cut.dt = 0.125;
+  whole.dt = 4;
+  cut.dt = 0.125;
   EXPECT_EQ(legitimate_strain(whole, 32), legitimate_strain(cut));
   EXPECT_LT(legitimate_strain(whole, 32), legitimate_strain(whole));
-  whole.colliders.clear(), cut.colliders.clear();
+  whole.colliders.clear();
+  cut.colliders.clear();
   const auto sweeps = [](std::size_t each) {
     return std::vector<PassCost>{{.pass = "links", .repeats = each, .projections = true}};
   };
@@ -57,7 +59,8 @@ TEST(Budget, DoesNotDependOnHowAMotionIsCutIntoSteps) {
 
 TEST(Budget, WhatMovesAtTheStartHasItsKineticEnergy) {
   Scene scene = chain();
-  scene.start.v[2] = {3, 0, 4}, scene.start.v[4] = {0, 1, 0};
+  scene.start.v[2] = {3, 0, 4};
+  scene.start.v[4] = {0, 1, 0};
   EXPECT_NEAR(more(chain(), scene, 1), 0.04 * (25 + 1) / 2, 1e-12);
   scene.start.v[0] = {7, 7, 7};
   EXPECT_NEAR(more(chain(), scene, 1), 0.52, 1e-12) << "a pin has none";
@@ -90,7 +93,8 @@ TEST(Budget, ManyLinksOfACutShareTheirLoad) {
 
 TEST(Budget, WindBlowsByItsLaw) {
   Scene plain = hanging_sheet(3, 2, {true, false, false});
-  plain.pins.clear(), plain.gravity.setZero();
+  plain.pins.clear();
+  plain.gravity.setZero();
   Scene scene = plain;
   scene.wind = Wind{.velocity = {2, 3, 6}, .strength = 0.5};  // 7 m/s on 0.5 m^2
   EXPECT_NEAR(more(plain, scene, 3), 0.5 * 0.5 * 49 / 4 * 3, 1e-12);
@@ -150,7 +154,8 @@ TEST(Budget, ABrokenStartIsRepairedInOneStep) {
 TEST(Budget, TheWorldEndsATensOfItsWaysAway) {
   Scene scene = chain({0, -kG, 0});
   for (Vec3& x : scene.start.x) x.x() += 2;
-  scene.start.v[3] = {0, 0, 3}, scene.start.v[1] = {1, 0, 0};
+  scene.start.v[3] = {0, 0, 3};
+  scene.start.v[1] = {1, 0, 0};
   scene.pin_motions = {{{0}, {.velocity = {0, 4, 0}}}};
   const double size = std::hypot(2, 1) + 1, dt = scene.dt;
   const auto farthest = [&](double speed, double acceleration, double t) {
@@ -229,7 +234,9 @@ TEST(Verdict, ASolverThatStoresAnotherClothIsInError) {
 TEST(Verdict, TheFastestVertexIsNamedAndASecondExtremeIsNot) {
   const Scene scene = chain({0, -kG, 0});
   State state = scene.start;
-  state.v[1] = {1e4, 0, 0}, state.v[3] = {0, 2e4, 0}, state.v[4] = {0, 0, 1.5e4};
+  state.v[1] = {1e4, 0, 0};
+  state.v[3] = {0, 2e4, 0};
+  state.v[4] = {0, 0, 1.5e4};
   DivergenceDetector verdict(scene, {});
   EXPECT_FALSE(verdict.observe(5, 0.1, state));
   EXPECT_EQ(verdict.status().vertex, 3);

@@ -89,9 +89,11 @@ TEST(StateDigest, OfAStateKnowsEveryBit) {
   std::set<std::string> digests{digest(state)};
   other.v[1].z() = -0.0;
   EXPECT_TRUE(digests.insert(digest(other)).second) << "-0 is not 0";
-  other = state, other.x[1].z() = std::nextafter(6, 7);
+  other = state;
+  other.x[1].z() = std::nextafter(6, 7);
   EXPECT_TRUE(digests.insert(digest(other)).second);
-  other = state, std::swap(other.x, other.v);
+  other = state;
+  std::swap(other.x, other.v);
   EXPECT_TRUE(digests.insert(digest(other)).second);
   EXPECT_EQ(digest(State{{Vec3::Zero()}, {}}) == digest(State{{}, {Vec3::Zero()}}), false);
   EXPECT_EQ(sha256("").substr(0, 16), "e3b0c44298fc1c14");
@@ -128,16 +130,25 @@ TEST(Status, HasANameAndIsAResultOrAFailure) {
 
 Record small_record() {
   Record r;
-  r.key.assign(63, '0'), r.key.push_back('f');
-  r.id = "an id", r.spec = {"file", {"a=1", "b=2"}, "text"};
-  r.scene = "hang", r.solver = "xpbd", r.params = {{"p", "q"}};
-  r.dt = 0.25, r.steps = 6, r.vertices = 4, r.links = 5;
+  r.key.assign(63, '0');
+  r.key.push_back('f');
+  r.id = "an id";
+  r.spec = {"file", {"a=1", "b=2"}, "text"};
+  r.scene = "hang";
+  r.solver = "xpbd";
+  r.params = {{"p", "q"}};
+  r.dt = 0.25;
+  r.steps = 6;
+  r.vertices = 4;
+  r.links = 5;
   r.status = {Status::Kind::exploded, "energy", 17, 3};
   r.values = {{"a", 0.5}, {"b", std::nan("")}};
   r.projections = 60;
   r.step_cost = {{"links", 7, 8, 9, true}, {"wind", 1, 2, 3, false}};
   r.resolved_settings = {{"time step", "1/4 s"}, {"order", "of a mesh", "mesh", 0.25}};
-  r.substeps = 2, r.sweeps = 8, r.work_parameters = {"p"};
+  r.substeps = 2;
+  r.sweeps = 8;
+  r.work_parameters = {"p"};
   r.digest = "beef";
   return r;
 }
@@ -215,7 +226,8 @@ TEST(CsvText, OfSeriesAndStatesAreTheseLines) {
 TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   const Scratch scratch;
   Scene scene = hanging_sheet(2, 2);
-  scene.name = "small", scene.damping = 0.5;
+  scene.name = "small";
+  scene.damping = 0.5;
   const auto reference = [&](const std::string& kind, double t) {
     return Reference{"small",      reference_digest(scene, kind), kind, t, "by hand", 1e-9,
                      scene.start.x};
@@ -236,13 +248,17 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   scene.start.v[3].x() = 1;
   EXPECT_TRUE(found().rest && found().motion.empty())
       << "rest does not depend on where it came from";
-  scene.start.v[3].x() = 0, scene.damping = 1;
+  scene.start.v[3].x() = 0;
+  scene.damping = 1;
   EXPECT_TRUE(found().rest && found().motion.empty());
-  scene.damping = 0.5, scene.dt /= 2, scene.steps *= 3;
+  scene.damping = 0.5;
+  scene.dt /= 2;
+  scene.steps *= 3;
   EXPECT_TRUE(found().rest && !found().motion.empty());
   scene.gravity.x() = 1;
   EXPECT_FALSE(found().rest || !found().motion.empty());
-  scene.gravity.x() = 0, scene.mesh.mass[1] *= 2;  // another scene of that name
+  scene.gravity.x() = 0;
+  scene.mesh.mass[1] *= 2;  // another scene of that name
   write_reference(reference("static", 0), scratch.path() / "small");
   EXPECT_TRUE(found().rest);
   scene.mesh.mass[1] /= 2;
@@ -255,7 +271,9 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
 TEST(Questions, AreTheSameInAnyOrderOfTheirSettings) {
   const auto asked = [](std::vector<std::string> overrides, double dt = 0.01) {
     Record record;
-    record.scene = "hang", record.spec.overrides = std::move(overrides), record.dt = dt;
+    record.scene = "hang";
+    record.spec.overrides = std::move(overrides);
+    record.dt = dt;
     return question_of(record);
   };
   const Question one = asked({"wind.strength=2", "time.dt=0.01", "cloth.grid=[4, 4]"});

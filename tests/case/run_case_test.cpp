@@ -47,9 +47,11 @@ TEST(DivergenceDetector, TheSameMotionHasTheSameStatusInAnySteps) {
   scene.start = {{Vec3::Zero(), Vec3(1.1, 0, 0)}, {Vec3::Zero(), Vec3::Zero()}};
   scene.links = {{0, 1, 1, Family::structural}};
   scene.gravity.setZero();
-  scene.dt = 1.0 / 64, scene.steps = 16;
+  scene.dt = 1.0 / 64;
+  scene.steps = 16;
   Scene cut = scene;
-  cut.dt /= 32, cut.steps *= 32;
+  cut.dt /= 32;
+  cut.steps *= 32;
   const std::string spring = "mass-spring:precision=double,structural=1e6,substeps=";
   EXPECT_EQ(verdict_on(cut, spring + "1").kind, Status::Kind::ok);
   EXPECT_EQ(verdict_on(scene, spring + "32").kind, Status::Kind::ok)
@@ -277,7 +279,8 @@ TEST(RunCase, WhoWatchesSeesEveryStableBoundary) {
   std::vector<double> heights;
   const RunOptions options{.measure = false, .watch = [&](const Snapshot& m) {
                              EXPECT_EQ(m.t, m.step / 64.0);
-                             steps.push_back(m.step), heights.push_back(m.state.x[2].z());
+                             steps.push_back(m.step);
+                             heights.push_back(m.state.x[2].z());
                            }};
   const CaseRun run = run_scripted(
       scene, [](int step, State& s) { s.x[2].z() = step == 5 ? std::nan("") : 1e-3 * step; },

@@ -34,7 +34,11 @@ class MadeUp {
     cloth();
     links();
     if (fabric_ || coin()) bending();
-    if (coin()) section("forces"), maybe("gravity", vec(10)), maybe("damping", number(0, 2));
+    if (coin()) {
+      section("forces");
+      maybe("gravity", vec(10));
+      maybe("damping", number(0, 2));
+    }
     if (coin()) wind();
     for (const char* type : {"plane", "ball", "box", "capsule"})
       if (coin()) collider(type);
@@ -142,11 +146,17 @@ class MadeUp {
     section("[collider]");
     line("type", "\"" + type + "\"");
     const std::string x = number(-1, 1), center = "[" + x + ", -50, 0]";
-    if (type == "plane") line("normal", "[0, 1, " + number(-0.1, 0.1) + "]"), line("offset", "-30");
+    if (type == "plane") {
+      line("normal", "[0, 1, " + number(-0.1, 0.1) + "]");
+      line("offset", "-30");
+    }
     if (type == "ball" || type == "box") line("center", center);
     if (type == "box") line("half_extents", "[1, 2, " + number(1, 3) + "]");
     if (type == "box") maybe("rotation", rotation());
-    if (type == "capsule") line("from", center), line("to", "[3, -55, 0]");
+    if (type == "capsule") {
+      line("from", center);
+      line("to", "[3, -55, 0]");
+    }
     if (type == "ball" || type == "capsule") line("radius", number(0.5, 3));
     maybe("friction", number(0, 1));
     motion();

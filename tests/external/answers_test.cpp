@@ -47,7 +47,8 @@ std::string refused_param(const Json& spec, const std::string& name = "n") {
 
 TEST(Hello, HasParametersOfEveryType) {
   Json answer = hello_with("n", integer(-3, 2, 7));
-  answer["params"]["n"]["unit"] = "m", answer["params"]["n"]["doc"] = "help";
+  answer["params"]["n"]["unit"] = "m";
+  answer["params"]["n"]["doc"] = "help";
   answer["params"]["r"] = {{"type", "real"}, {"min", 0}, {"max", 1}, {"default", 0.25}};
   answer["params"]["c"] = {{"type", "choice"}, {"choices", {"a", "b"}}, {"default", "b"}};
   answer["params"]["t"] = {{"type", "text"}, {"default", "x y"}};
@@ -72,7 +73,9 @@ TEST(Hello, HasParametersOfEveryType) {
   EXPECT_EQ(specs["t"].default_value, "x y");
   EXPECT_EQ(own_params(*hello, Params("x", hello->params, "")),
             (Json{{"n", 2}, {"r", 0.25}, {"c", "b"}, {"t", "x y"}}));
-  answer["summary"] = "s", answer["source"] = "o", answer["unmeasurable"] = "u";
+  answer["summary"] = "s";
+  answer["source"] = "o";
+  answer["unmeasurable"] = "u";
   const auto told = read_hello(answer);
   EXPECT_EQ(told->summary + told->source + told->unmeasurable, "sou");
 }
@@ -199,15 +202,19 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   scene.start.x[5] = Vec3(7, 8, 9);
   scene.pins = {1, 3};
   scene.links = {{0, 2, 1.5, Family::bend}, {4, 3, 0.25, Family::shear}};
-  scene.dt = 0.125, scene.steps = 12;
-  scene.gravity = Vec3(1, -2, 3), scene.damping = 0.75, scene.thickness = 0.01;
+  scene.dt = 0.125;
+  scene.steps = 12;
+  scene.gravity = Vec3(1, -2, 3);
+  scene.damping = 0.75;
+  scene.thickness = 0.01;
   const Motion moving{.velocity = Vec3(1, 2, 3),
                       .spin = Vec3(4, 5, 6),
                       .pivot = Vec3(7, 8, 9),
                       .path = {{0.5, Vec3(1, 0, 2)}}};
   scene.pin_motions = {{{3}, moving}};
   Box box;
-  box.center = Vec3(1, 2, 3), box.half_extents = Vec3(4, 5, 6);
+  box.center = Vec3(1, 2, 3);
+  box.half_extents = Vec3(4, 5, 6);
   box.rotation = Eigen::Quaterniond(2.0 / 9, 4.0 / 9, -5.0 / 9, 6.0 / 9);
   scene.colliders = {{Plane{Vec3(0, 0.6, 0.8), -2}, {}, 0.5},
                      {Ball{Vec3(1, 2, 3), 4}, moving, 0.25},
@@ -280,7 +287,10 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   expect("damping", 0.75);
   expect("thickness", 0.01);
   Json x = Json::array(), v = Json::array(), mass = Json::array(), inverse = Json::array();
-  for (const Vec3& p : scene.mesh.rest) x.push_back({p.x(), p.y(), p.z()}), v.push_back({1, 2, 3});
+  for (const Vec3& p : scene.mesh.rest) {
+    x.push_back({p.x(), p.y(), p.z()});
+    v.push_back({1, 2, 3});
+  }
   expect("rest", x);
   x[5] = {7, 8, 9};
   expect("x", x);
@@ -314,7 +324,9 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   expect("wind", {{"velocity", {3, 2, 1}}, {"strength", 0.5}, {"law", "literal"}});
   expect("self_collision", {{"radius", 0.125}});
   EXPECT_EQ(file, Json::object()) << "and nothing else";
-  scene.wind->law = Wind::Law::relative, scene.self_collision.reset(), scene.mesh.grid.reset();
+  scene.wind->law = Wind::Law::relative;
+  scene.self_collision.reset();
+  scene.mesh.grid.reset();
   file = parse_json(scene_file(scene));
   EXPECT_EQ(file["wind"]["law"], "relative");
   EXPECT_TRUE(file["self_collision"].is_null() && file["grid"].is_null());

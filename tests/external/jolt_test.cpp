@@ -70,7 +70,8 @@ std::vector<Point> listing(const Scene& scene, int substeps, int steps) {
       const float too_long = length - static_cast<float>(link.rest), share = length * (w[a] + w[b]);
       for (std::size_t k = 0; k < 3 && share > 0; ++k) {
         const float move = d[k] * too_long / share;
-        x[a][k] += w[a] * move, x[b][k] -= w[b] * move;
+        x[a][k] += w[a] * move;
+        x[b][k] -= w[b] * move;
       }
     }
     for (std::size_t i = 0; i < x.size(); ++i)

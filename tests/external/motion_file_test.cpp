@@ -74,7 +74,8 @@ TEST_F(MotionFiles, UnitAndAxisAreSaidAndTheOrderIsFound) {
           y.push_back((z_up ? Vec3(x[i].x(), -x[i].z(), x[i].y()) : x[i]) / unit);
         return y;
       });
-      file.scale = unit, file.z_up = z_up;
+      file.scale = unit;
+      file.z_up = z_up;
       ComputedMotion motion(scene, opened(file));
       ASSERT_TRUE(motion.misfits().empty()) << motion.misfits().front();
       for (int k = 0; k < 4; ++k) {
@@ -151,7 +152,8 @@ TEST_F(MotionFiles, WhatIsNotFiniteExplodesWhereItStands) {
     for (const std::size_t vertex : {std::size_t{8}, std::size_t{20}}) {
       int k = 0;
       const MotionOptions file = write("pins.npy", scene, [&](std::vector<Vec3> x) {
-        x[0] = scene.start.x[0], x[8] = scene.start.x[8];
+        x[0] = scene.start.x[0];
+        x[8] = scene.start.x[8];
         if (k >= 2) x[vertex].y() = value;
         ++k;
         return x;
@@ -220,7 +222,8 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
   // Six decimals, as Blender writes them.
   for (int k = 0; k < 4; ++k) {
     std::ofstream out(folder_ / ("six" + std::to_string(k) + ".obj"));
-    out.setf(std::ios::fixed), out.precision(6);
+    out.setf(std::ios::fixed);
+    out.precision(6);
     for (const Vec3& v : rigid({})) out << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
   }
   ComputedMotion six(turned, opened({.file = folder_ / "six0.obj"}));
@@ -257,7 +260,8 @@ TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {
   });
   EXPECT_EQ(misfit(scene, turned).substr(folder_.string().size(), 54),
             "/b.npy does not begin as sheet does, at 1 unit is 1 m,");
-  turned.scale = 0.01, turned.z_up = true;
+  turned.scale = 0.01;
+  turned.z_up = true;
   EXPECT_EQ(setting(scene, turned, "unit"), "1 unit is 0.01 m, z up");
   EXPECT_TRUE(
       setting(scene, turned, "vertex order").starts_with("matched by position, at the start"));

@@ -55,7 +55,9 @@ TEST_F(Histories, AStepIsBeyondTheToleranceOfTheBuildBefore) {
 }
 
 TEST_F(Histories, ABuildWithoutAResultIsAGap) {
-  build("one", 0.02), build("two", std::nan("")), build("three", 0.03);
+  build("one", 0.02);
+  build("two", std::nan(""));
+  build("three", 0.03);
   const History found = history();
   EXPECT_EQ(found.missing(1), 1U);
   ASSERT_EQ(found.steps.size(), 1U);
@@ -66,7 +68,8 @@ TEST_F(Histories, ABuildWithoutAResultIsAGap) {
 }
 
 TEST_F(Histories, ACaseThatFailsStepsInItsStatusAlone) {
-  build("one", 0.02), build("two", 0.5, {Status::Kind::exploded, "energy", 3});
+  build("one", 0.02);
+  build("two", 0.5, {Status::Kind::exploded, "energy", 3});
   const History found = history();
   ASSERT_EQ(found.steps.size(), 1U);
   EXPECT_EQ(found.steps[0].value, "status");
@@ -74,7 +77,9 @@ TEST_F(Histories, ACaseThatFailsStepsInItsStatusAlone) {
 }
 
 TEST_F(Histories, OnlyTheBuildsThatAreAskedForAreLookedAt) {
-  build("one", 0.02), build("two", 0.03), build("three", 0.04);
+  build("one", 0.02);
+  build("two", 0.03);
+  build("three", 0.04);
   const auto builds = builds_of(store_, "s");
   const History found = history_of(store_, "s", {}, {builds[0], builds[2]});
   ASSERT_EQ(found.steps.size(), 1U);
@@ -82,13 +87,17 @@ TEST_F(Histories, OnlyTheBuildsThatAreAskedForAreLookedAt) {
 }
 
 TEST_F(Histories, ACostStepsBeyondIntervalAndControl) {
-  build("one", 0.02), build("two", 0.02), build("three", 0.02);
+  build("one", 0.02);
+  build("two", 0.02);
+  build("three", 0.02);
   const auto timed = [&](const char* before, const char* now, double ratio, double noise) {
     note_ratio(store_, "s",
                {"hang a", before, now, "here", "cpu", ratio * 0.99, ratio, ratio * 1.01, 1 - noise,
                 1, 1 + noise});
   };
-  timed("one", "two", 2.1, 0.01), timed("two", "three", 1.2, 0.4), timed("two", "gone", 3, 0.01);
+  timed("one", "two", 2.1, 0.01);
+  timed("two", "three", 1.2, 0.4);
+  timed("two", "gone", 3, 0.01);
   timed("one", "three", 2.1, 0.01);  // of a bisection: two is in between
   const History found = history();
   ASSERT_EQ(found.steps.size(), 1U);

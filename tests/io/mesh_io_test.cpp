@@ -163,7 +163,8 @@ std::vector<Polygons> every_way_round(const std::vector<Vec3>& outline) {
       for (std::size_t k = 0; k < n; ++k) {
         const std::size_t at = back ? (first + n - k) % n : (first + k) % n;
         turned.push_back(outline[at]);
-        in_order += ' ' + std::to_string(k + 1), of_outline += ' ' + std::to_string(at + 1);
+        in_order += ' ' + std::to_string(k + 1);
+        of_outline += ' ' + std::to_string(at + 1);
       }
       all.push_back(parse_obj("x.obj", vertices_of(turned) + in_order + '\n'));
       all.push_back(parse_obj("x.obj", vertices_of(outline) + of_outline + '\n'));

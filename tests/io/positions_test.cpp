@@ -224,7 +224,8 @@ TEST_F(Positions, AreWrittenAsTheFormatsSay) {
       two{{2, 4, 6}, {0, 0, 0}, {0, 0, -8}};
   const auto text_of = [&](const std::string& name, const std::string& first) {
     const auto writer = create_positions(folder_ / name, mesh);
-    writer->append(0, one), writer->append(0.5, two);
+    writer->append(0, one);
+    writer->append(0.5, two);
     return read_text(folder_ / first);
   };
   const std::string none4(8, '0'), none8(16, '0'), little_1 = "0000803f", little_2 = "00000040",
@@ -257,7 +258,8 @@ TEST_F(Positions, ASequenceIsReadByTheNameThatItWasWrittenBy) {
       const auto writer = create_positions(folder_ / name, mesh);
       for (int k = 0; k < frames; ++k) writer->append(k, {Vec3(k, frames, 0), Vec3(1, 0, 0)});
     }
-  file("run20.obj", "v 0 0 0\n"), file("run3_00000.obj", "v 0 0 0\n");
+  file("run20.obj", "v 0 0 0\n");
+  file("run3_00000.obj", "v 0 0 0\n");
   for (const char* name : {"run2.obj", "7.obj", "run_2.obj"}) {
     const auto all = all_of(folder_ / name);
     ASSERT_EQ(all.size(), 2u) << name;
@@ -330,7 +332,9 @@ TEST_F(Positions, FramesMayCountInStepsAndBeSetApartByASign) {
         (folder_ / (name + "0105.obj")).string() + ": no such file, and no frames of that name");
     for (const char* number : {"0100", "0110"}) fs::remove(folder_ / (name + number + ".obj"));
   }
-  file("7.obj", "v 7 0 0\n"), file("8.obj", "v 8 0 0\n"), file("one.obj", "v 1 0 0\n");
+  file("7.obj", "v 7 0 0\n");
+  file("8.obj", "v 8 0 0\n");
+  file("one.obj", "v 1 0 0\n");
   EXPECT_EQ(all_of(folder_ / "8.obj").at(0).at(0).x(), 7) << "a number is name enough";
   EXPECT_EQ(all_of(folder_ / "one.obj").size(), 1u);
 }

@@ -33,7 +33,8 @@ TEST(Penetration, OfTwoVerticesHasAMeanAShareAndAPeak) {
     State state = scene.start;
     const double scale = step == 20 ? 2 : step % 2 ? 1 : 0.5;
     for (Vec3& x : state.x) x.y() = 0.1;
-    state.x[3].y() = -0.002 * scale, state.x[5].y() = -0.006 * scale;
+    state.x[3].y() = -0.002 * scale;
+    state.x[5].y() = -0.006 * scale;
     return state;
   });
   for (const std::string of : {"penetration.", "penetration.plane."}) {
@@ -226,7 +227,9 @@ TEST(Slip, SeesThePlaneMoveAndDampingAndNeedsAPlaneAlone) {
 TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
   Draw draw(5);
   Scene scene = sheet(3);
-  scene.gravity = {1, -9, 2}, scene.damping = 0.9, scene.steps = 140;
+  scene.gravity = {1, -9, 2};
+  scene.damping = 0.9;
+  scene.steps = 140;
   for (double& mass : scene.mesh.mass) mass *= draw.number(0.5, 2);
   for (Vec3& v : scene.start.v) v = draw.vector(1);
   const Vec3 normal = Vec3(0.3, 1, -0.2).normalized(), carried(0.3, -0.1, 0.2);
@@ -240,8 +243,10 @@ TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
   const auto center = [&](const std::vector<Vec3>& all) {
     Vec3 sum = Vec3::Zero();
     double mass = 0;
-    for (std::size_t i = 0; i < 9; ++i)
-      sum += scene.mesh.mass[i] * all[i], mass += scene.mesh.mass[i];
+    for (std::size_t i = 0; i < 9; ++i) {
+      sum += scene.mesh.mass[i] * all[i];
+      mass += scene.mesh.mass[i];
+    }
     return Vec3(sum / mass);
   };
   const Vec3 u = normal.unitOrthogonal(), w = normal.cross(u);
@@ -263,7 +268,8 @@ TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
     const double press = std::max(0.0, normal.dot(next - freely(velocity)));
     pressed += press > 0;
     const double error = 64 * (along(next) - rubbed(freely(velocity), press)).norm();
-    peak = std::max(peak, error), mean += step >= 77 ? error / 64 : 0;
+    peak = std::max(peak, error);
+    mean += step >= 77 ? error / 64 : 0;
     const Eigen::Vector2d slid = rubbed(freely(block), press);
     block = slid.x() * u + slid.y() * w;  // how fast it goes up or down does not matter
     apart += (along(next) - slid) / 64;

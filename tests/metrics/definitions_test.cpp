@@ -194,7 +194,10 @@ TEST(Definitions, Area) {
   };
   const auto total = [&](const State& s, double) {
     double now = 0, rest = 0;
-    for (const Triangle& t : faces) now += area(t, s.x), rest += area(t, r.scene.mesh.rest);
+    for (const Triangle& t : faces) {
+      now += area(t, s.x);
+      rest += area(t, r.scene.mesh.rest);
+    }
     return now / rest - 1;
   };
   r.expect("area.rms", r.rms(square));
@@ -410,7 +413,8 @@ TEST(Definitions, DistanceFromTheReferences) {
   const References known = known_references(scene);
   ASSERT_TRUE(known.rest && !known.motion.empty());
   Draw draw(23);
-  scene.dt = 0.02, scene.steps = 60;  // neither matters
+  scene.dt = 0.02;
+  scene.steps = 60;  // neither matters
   std::vector<State> states(61, scene.start);
   for (State& state : states)
     for (Vec3& x : state.x) x += draw.vector(0.1);
@@ -420,7 +424,9 @@ TEST(Definitions, DistanceFromTheReferences) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       if (std::ranges::count(scene.pins, static_cast<int>(i))) continue;
       const double distance = (states[to_index(step)].x[i] - from[i]).norm();
-      sum += distance * distance, ++count, most = std::max(most, distance);
+      sum += distance * distance;
+      ++count;
+      most = std::max(most, distance);
     }
     return sum / count;
   };

@@ -90,7 +90,8 @@ TEST(Drape, IsOfScenesWithALevelSupportAlone) {
   EXPECT_FALSE(has(s));
   for (const int corner : {2 * 9 + 2, 6 * 9 + 6}) {  // of the first faces and of the last
     s = table();
-    s.mesh.rest[to_index(corner)].y() += 0.1, s.start.x = s.mesh.rest;
+    s.mesh.rest[to_index(corner)].y() += 0.1;
+    s.start.x = s.mesh.rest;
     EXPECT_FALSE(has(s)) << "one corner of the support is higher";
   }
   EXPECT_FALSE(has(hanging_sheet(5, 5))) << "no face is pinned";
@@ -156,9 +157,11 @@ TEST(Cantilever, IsOfLevelStripsHeldByTwoRowsAlone) {
   EXPECT_TRUE(has(s));
   s.pins.pop_back();
   EXPECT_FALSE(has(s)) << "a row and a half";
-  s = strip(), s.gravity = Vec3(0, 0, -9.81);
+  s = strip();
+  s.gravity = Vec3(0, 0, -9.81);
   EXPECT_FALSE(has(s)) << "it hangs";
-  s = strip(), s.mesh.grid.reset();
+  s = strip();
+  s.mesh.grid.reset();
   EXPECT_FALSE(has(s));
 }
 

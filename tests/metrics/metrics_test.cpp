@@ -110,7 +110,10 @@ TEST(Stretch, ThePercentileIsWhat95PercentDoNotExceed) {
 TEST(Stretch, KeepsFamiliesAndSignsApart) {
   const Scene scene = sheet(3);  // 12 structural, 8 shear and 6 bend links
   State state = scene.start;
-  for (Vec3& x : state.x) x.z() *= 1.5, x.x() *= 0.5;
+  for (Vec3& x : state.x) {
+    x.z() *= 1.5;
+    x.x() *= 0.5;
+  }
   const Values v = measure_at_rest(scene, state);
   EXPECT_NEAR(v.at("structural.max"), 0.5, 1e-12);
   EXPECT_NEAR(v.at("structural.compression"), 0.5, 1e-12);
@@ -352,13 +355,18 @@ struct Rigid {
       c.motion.velocity = turn * c.motion.velocity;
       if (auto* plane = std::get_if<Plane>(&c.shape)) {
         const Vec3 on = point(plane->offset * plane->normal);
-        plane->normal = turn * plane->normal, plane->offset = plane->normal.dot(on);
+        plane->normal = turn * plane->normal;
+        plane->offset = plane->normal.dot(on);
       }
       if (auto* ball = std::get_if<Ball>(&c.shape)) ball->center = point(ball->center);
-      if (auto* box = std::get_if<Box>(&c.shape))
-        box->center = point(box->center), box->rotation = turn * box->rotation;
-      if (auto* capsule = std::get_if<Capsule>(&c.shape))
-        capsule->from = point(capsule->from), capsule->to = point(capsule->to);
+      if (auto* box = std::get_if<Box>(&c.shape)) {
+        box->center = point(box->center);
+        box->rotation = turn * box->rotation;
+      }
+      if (auto* capsule = std::get_if<Capsule>(&c.shape)) {
+        capsule->from = point(capsule->from);
+        capsule->to = point(capsule->to);
+      }
     }
     return s;
   }
@@ -411,7 +419,8 @@ TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
       load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/drape.toml");
   const References known = known_references(scene);
   ASSERT_TRUE(known.rest && !known.motion.empty());
-  scene.dt = 0.1, scene.steps = 10;  // neither matters
+  scene.dt = 0.1;
+  scene.steps = 10;  // neither matters
   const auto pins = [&](std::size_t i) {
     return std::ranges::count(scene.pins, static_cast<int>(i));
   };
@@ -428,7 +437,8 @@ TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
   EXPECT_GT(v.at("reference.max"), 0.05);  // at step 5, where it should not rest yet
   EXPECT_EQ(v.at("reference.floor"), known.rest->floor);
   EXPECT_EQ(v.at("reference.motion_floor"), known.motion[0].floor);
-  scene.steps = 4, scene.dt = 0.25;
+  scene.steps = 4;
+  scene.dt = 0.25;
   const Values end = measure(scene, [&](int) { return motion(1); });
   EXPECT_NEAR(end.at("reference.rms"), 0.05, 1e-15);
   EXPECT_NEAR(end.at("reference.max"), 0.05, 1e-15);
@@ -485,7 +495,8 @@ TEST(Metrics, DoNotCareHowVerticesAreNumbered) {
   };
   const auto permuted_state = [&](const State& s) { return State{permuted(s.x), permuted(s.v)}; };
   Scene other = scene;
-  other.mesh.rest = permuted(scene.mesh.rest), other.mesh.mass = permuted(scene.mesh.mass);
+  other.mesh.rest = permuted(scene.mesh.rest);
+  other.mesh.mass = permuted(scene.mesh.mass);
   other.start = permuted_state(scene.start);
   for (Triangle& t : other.mesh.triangles) t = {to(t[1]), to(t[2]), to(t[0])};
   for (Link& l : other.links) l = {to(l.b), to(l.a), l.rest, l.family};

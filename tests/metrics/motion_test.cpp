@@ -218,7 +218,9 @@ TEST(SelfIntersection, HasTheLengthOfTheLinesAlongWhichFacesCross) {
   Scene scene = sheet(2);
   scene.mesh.rest = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {1, 0.5, -1}, {1, 0.5, 1}, {1, 5, 1}};
   scene.mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-  scene.mesh.mass.assign(6, 1.0), scene.mesh.grid.reset(), scene.links.clear();
+  scene.mesh.mass.assign(6, 1.0);
+  scene.mesh.grid.reset();
+  scene.links.clear();
   scene.start = {scene.mesh.rest, std::vector<Vec3>(6, Vec3::Zero())};
   scene.self_collision = SelfCollision{.radius = 0.01};
   // In the plane z = 0 the second face is the line x = 1 from y = 0.5 to 2.75; the first one's hem
@@ -333,7 +335,8 @@ Values in_mode(double ratio, double slower, double scale = 0.05) {
   scene.mesh =
       make_sheet({.nu = 1, .nv = n + 1, .height = 1, .mass = 1, .lumping = Lumping::equal});
   scene.links = grid_links(scene.mesh, {});
-  scene.pins = {0}, scene.steps = 64 * 20;
+  scene.pins = {0};
+  scene.steps = 64 * 20;
   const std::vector<double> shape = reference::hanging_chain_mode(n, 1);
   const double w = reference::hanging_chain_frequencies(n, 1, 9.81)[0] / slower;
   const auto at = [&](double t) {
@@ -367,7 +370,8 @@ TEST(Mode, SeesNothingOfHigherModes) {
     for (int i = 0; i < 3; ++i)
       scene.mesh.mass[static_cast<std::size_t>(3 * j + i)] = 0.1 + 0.1 * i;
   scene.links = grid_links(scene.mesh, {.shear = true});
-  scene.pins = {0, 1, 2}, scene.steps = 64 * 10;
+  scene.pins = {0, 1, 2};
+  scene.steps = 64 * 10;
   const auto w = reference::hanging_chain_frequencies(n, 1, 9.81);
   const auto at = [&](double t) {
     State state{scene.mesh.rest, std::vector<Vec3>(scene.mesh.rest.size(), Vec3::Zero())};

@@ -76,7 +76,10 @@ TEST(Definitions, Tunnelling) {
           if (inside(p) == in) continue;
           in = !in;
           if (in) entry = side(p);
-          if (!in && entry.dot(side(p)) < 0) through = !through, ++events;
+          if (!in && entry.dot(side(p)) < 0) {
+            through = !through;
+            ++events;
+          }
         }
       }
       if (through) beyond[i] = true;

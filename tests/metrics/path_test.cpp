@@ -60,7 +60,8 @@ Vec3 way(double t) { return t * Vec3(0.3, -0.9, 0.4); }
 
 ReferencePath followed(double dt, const std::function<Vec3(double)>& way_at) {
   Scene scene = sheet(3);
-  scene.dt = dt, scene.steps = static_cast<int>(std::ceil(2.6 / dt));
+  scene.dt = dt;
+  scene.steps = static_cast<int>(std::ceil(2.6 / dt));
   const auto moved = [&](const Vec3& by) {
     std::vector<Vec3> x = scene.start.x;
     for (Vec3& one : x) one += by;

@@ -11,7 +11,8 @@ namespace {
 
 Scene run_of(int steps, double dt) {
   Scene scene;
-  scene.steps = steps, scene.dt = dt;
+  scene.steps = steps;
+  scene.dt = dt;
   return scene;
 }
 
@@ -52,10 +53,12 @@ TEST(Summary, LeavesTheStartOut) {
   EXPECT_TRUE(std::isnan(s.mean()) && std::isnan(s.max()) && std::isnan(s.peak()));
   s.add(0, true, 100);
   EXPECT_TRUE(std::isnan(s.mean()) && std::isnan(s.peak()));
-  s.add(1, false, -7), s.add(2, false, -9);
+  s.add(1, false, -7);
+  s.add(2, false, -9);
   EXPECT_EQ(s.peak(), -7);
   EXPECT_TRUE(std::isnan(s.max()));
-  s.add(3, true, -8), s.add(4, true, -10);
+  s.add(3, true, -8);
+  s.add(4, true, -10);
   EXPECT_EQ(s.mean(), -9);
   EXPECT_EQ(s.max(), -8);
   EXPECT_EQ(s.peak(), -7);

@@ -47,7 +47,9 @@ void move(Enumeration& value) { value = static_cast<Enumeration>(value == Enumer
 /// One with everything that a key may be a member of.
 Scene scene_of_all() {
   Scene scene;
-  scene.wind.emplace(), scene.self_collision.emplace(), scene.bending.emplace();
+  scene.wind.emplace();
+  scene.self_collision.emplace();
+  scene.bending.emplace();
   const auto triangle = std::make_shared<const TriangleMesh>(
       std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()},
       std::vector<Triangle>{{0, 1, 2}});
@@ -58,10 +60,14 @@ Scene scene_of_all() {
 /// The parts of a scene that have keys, with the section of each.
 template <class Visit>
 void each_part(Scene& scene, const Visit& visit) {
-  visit("forces", scene), visit("cloth", scene), visit("wind", *scene.wind);
-  visit("bending", *scene.bending), visit("self_collision", *scene.self_collision);
+  visit("forces", scene);
+  visit("cloth", scene);
+  visit("wind", *scene.wind);
+  visit("bending", *scene.bending);
+  visit("self_collision", *scene.self_collision);
   for (Collider& collider : scene.colliders) {
-    visit("collider", collider), visit("collider", collider.motion);
+    visit("collider", collider);
+    visit("collider", collider.motion);
     std::visit([&](auto& shape) { visit("collider", shape); }, collider.shape);
   }
 }
@@ -80,7 +86,10 @@ TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
       each_part(scene, [&](const char* section, auto& part) {
         if (at++ != p) return;
         each_key(section, part, [&](const SceneKey& key, auto& value, const auto&) {
-          if (&key == &chosen) move(value), moved = true;
+          if (&key == &chosen) {
+            move(value);
+            moved = true;
+          }
         });
       });
       if (!moved) continue;
@@ -109,7 +118,10 @@ TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
     bool moved = false;
     each_part(scene, [&](const char* section, auto& part) {
       const auto visit = [&](const SceneKey& key, auto& value, const auto&) {
-        if (&key == &now[k] && !moved) move(value), moved = true;
+        if (&key == &now[k] && !moved) {
+          move(value);
+          moved = true;
+        }
       };
       each_key(section, part, visit, now);
     });
@@ -132,7 +144,8 @@ TEST(SceneKeys, OneThatCameLaterCountsWithItsPlace) {
     Scene scene = scene_of_all();
     scene.colliders[c].friction = 0.5;
     contents.insert(content(scene, keys));
-    scene.colliders[c].friction = 0, scene.damping = 0.5 + static_cast<double>(c);
+    scene.colliders[c].friction = 0;
+    scene.damping = 0.5 + static_cast<double>(c);
     contents.insert(content(scene, keys));
   }
   EXPECT_EQ(contents.size(), 8u);

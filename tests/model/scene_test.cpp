@@ -193,7 +193,10 @@ Scene everything() {
   s.wind = Wind{.velocity = {1, 2, 3}, .strength = 0.5};
   s.self_collision = SelfCollision{0.25};
   s.bending = Bending{2, 1};
-  s.damping = 0.5, s.thickness = 0.125, s.dt = 0.25, s.steps = 7;
+  s.damping = 0.5;
+  s.thickness = 0.125;
+  s.dt = 0.25;
+  s.steps = 7;
   return s;
 }
 
@@ -254,7 +257,9 @@ TEST(Content, DiffersWithEveryMemberButTheLabels) {
     EXPECT_NE(content(other), content(scene)) << "change " << k;
   }
   Scene same = scene;
-  same.name = "another", same.summary = "words", same.gravity = {-0.0, -9.81, 0};
+  same.name = "another";
+  same.summary = "words";
+  same.gravity = {-0.0, -9.81, 0};
   EXPECT_EQ(content(same), content(scene)) << "-0 is 0";
 }
 

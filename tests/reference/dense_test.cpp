@@ -130,7 +130,8 @@ TEST(ReferenceRefusals, OfTheDynamicReferenceNameTheirReason) {
   near.start.x[8].y() -= 2e-7;
   EXPECT_TRUE(refuse_dynamic(near).empty()) << "within a millionth";
   Scene pinned = hung();
-  pinned.pins = {0, 1, 2}, pinned.links[0].rest *= 2;  // between pins: nobody can mend it
+  pinned.pins = {0, 1, 2};
+  pinned.links[0].rest *= 2;  // between pins: nobody can mend it
   EXPECT_TRUE(refuse_dynamic(pinned).empty());
   // A chain that is far too heavy below for its step: the projection cannot converge.
   EXPECT_EQ(converged_motion(hung(), {4}, 4).reason,
@@ -144,7 +145,8 @@ TEST(DenseSteps, EachConstraintIsProjectedByItsMasses) {
   scene.start = {{{0, 0, 0}, {2.5, 0, 0}, {2.5, 3, 0}}, std::vector<Vec3>(3, Vec3::Zero())};
   scene.pins = {2};
   scene.links = {{0, 1, 2}, {1, 2, 3}};
-  scene.gravity.setZero(), scene.dt = 0.5;
+  scene.gravity.setZero();
+  scene.dt = 0.5;
   Textbook<double> exact(scene, 1);
   EXPECT_EQ(exact.constraints(), 2u);
   exact.step();
@@ -158,7 +160,9 @@ TEST(DenseSteps, EachConstraintIsProjectedByItsMasses) {
   without_root.sweep();
   EXPECT_NEAR(without_root.x()[0].x(), 2.5 * (2.5 * 2.5 - 4) / (2.5 * 2.5 + 4) * 0.75, 1e-15);
   Scene falls = scene;
-  falls.links.clear(), falls.gravity = {1, -2, 4}, falls.damping = 2;
+  falls.links.clear();
+  falls.gravity = {1, -2, 4};
+  falls.damping = 2;
   falls.start.v[0] = {8, 0, 0};
   Textbook<double> free(falls, 3);
   free.step();

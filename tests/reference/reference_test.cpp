@@ -190,7 +190,8 @@ void expect_balance(const Scene& s, const Equilibrium& e) {
     const Vec3 along = e.x[b] - e.x[a];
     EXPECT_NEAR(along.norm(), s.links[j].rest, 1e-12) << j;
     EXPECT_GE(e.tension[j], 0) << j;
-    force[a] += e.tension[j] * along.normalized(), force[b] -= e.tension[j] * along.normalized();
+    force[a] += e.tension[j] * along.normalized();
+    force[b] -= e.tension[j] * along.normalized();
   }
   for (std::size_t i = 0; i < force.size(); ++i)
     if (std::ranges::count(s.pins, static_cast<int>(i)))
@@ -404,7 +405,8 @@ TEST(Shake, AnElasticChainLetGoVibratesInItsModes) {
 // Without links bending is linear: free modes of M^-1 K, K of the bending energy's elements.
 TEST(Shake, BendingVibratesInTheModesOfItsEnergy) {
   Scene s = two_corners(5, 1);
-  s.links.clear(), s.pins.clear();
+  s.links.clear();
+  s.pins.clear();
   s.gravity.setZero();
   s.bending = Bending{.warp = 2e-3, .weft = 1e-3};
   for (std::size_t i = 0; i < s.start.x.size(); ++i)
@@ -441,7 +443,8 @@ TEST(Shake, RodsBetweenSpringsKeepLengthsAndEnergy) {
   Scene s = elastic_chain(4, 500);
   s.stiffness[static_cast<std::size_t>(Family::shear)] = kRigid[0];
   s.links[1].family = s.links[3].family = Family::shear;
-  s.start.v.assign(5, Vec3::Zero()), s.start.v[4] = {1, 0, 2};
+  s.start.v.assign(5, Vec3::Zero());
+  s.start.v[4] = {1, 0, 2};
   EXPECT_FALSE(converged_motion(s, {0.5}, 1e-3).unique) << "rigid shear";
   s.stiffness = {kRigid[0], 500, 500};
   s.links[1].family = s.links[3].family = Family::structural;

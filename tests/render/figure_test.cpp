@@ -48,9 +48,12 @@ struct Ink {
     for (int y1 = 0; y1 < image.height(); ++y1)
       for (int x1 = 0; x1 < image.width(); ++x1) {
         const double dark = (255 - image.at(x1, y1).g) / 255.0;
-        area += dark, x += dark * (x1 + 0.5), y += dark * (y1 + 0.5);
+        area += dark;
+        x += dark * (x1 + 0.5);
+        y += dark * (y1 + 0.5);
       }
-    x /= area, y /= area;
+    x /= area;
+    y /= area;
   }
 };
 
@@ -125,7 +128,9 @@ TEST(Figure, PanelsStandUpToThreeSideBySideFourInTwoRows) {
 
 TEST(Figure, WhatIsWrittenBelowIsInUnitsOfPeople) {
   LiveFigures live;
-  live.max_strain = 0.0412, live.mean_strain = -0.0072, live.max_depth = 0.00152,
+  live.max_strain = 0.0412;
+  live.mean_strain = -0.0072;
+  live.max_depth = 0.00152;
   live.max_speed = 2.5;
   using Lines = std::vector<std::string>;
   EXPECT_EQ(caption_of(ColourBy::strain, live),
@@ -155,8 +160,10 @@ TEST(Figure, EveryRunStandsInItsPanel) {
     runs.resize(count);
     const auto layout = PageLayout::page(640, 480, static_cast<int>(count));
     SceneRendererOptions options = small();
-    options.width = layout.panel_width, options.height = layout.panel_height;
-    options.view = parse_view("top"), options.range = 0.05;
+    options.width = layout.panel_width;
+    options.height = layout.panel_height;
+    options.view = parse_view("top");
+    options.range = 0.05;
     const SceneRenderer renderer(scene, runs, options);
     const Image page = compose(renderer, layout, {0.5});
     EXPECT_EQ(std::pair(page.width(), page.height()), std::pair(640, 480));
@@ -178,7 +185,8 @@ TEST(Figure, ASheetHasAColumnForEachRun) {
   const Scene scene = test::sheet_over_ball(9);
   const std::vector<RecordedRun> runs{test::draped(scene, 5), test::stretched(scene, 0.02)};
   SceneRendererOptions options = small();
-  options.width = 200, options.height = 160;
+  options.width = 200;
+  options.height = 160;
   const SceneRenderer renderer(scene, runs, options);
   const std::vector<double> times{0.25, 0.5, 1};
   const auto layout = PageLayout::sheet(200, 160, 2, 3);
@@ -204,7 +212,8 @@ TEST(Figure, TheSheetLaidFlatHidesNoCloth) {
   const auto layout = PageLayout::bare(400, 160, 2);
   for (const bool hides : {false, true}) {
     SceneRendererOptions options = small();
-    options.width = layout.panel_width, options.height = layout.panel_height;
+    options.width = layout.panel_width;
+    options.height = layout.panel_height;
     options.view = parse_view("top");
     const double edge = hides ? 1 : 0.4;
     options.frame = {.left = -edge, .right = edge, .bottom = -edge, .top = edge};

@@ -27,9 +27,12 @@ Ink ink(const Draw& draw) {
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 60; ++x) {
       const double share = 1 - image.at(x, y).g / 255.0;
-      all.area += share, all.x += share * (x + 0.5), all.y += share * (y + 0.5);
+      all.area += share;
+      all.x += share * (x + 0.5);
+      all.y += share * (y + 0.5);
     }
-  all.x /= all.area, all.y /= all.area;
+  all.x /= all.area;
+  all.y /= all.area;
   return all;
 }
 
@@ -262,13 +265,14 @@ TEST(Camera, IsTheNearestFromWhichThePointsFitTheFrame) {
           EXPECT_NEAR(drawn.x() / drawn.w(), at.x(), 1e-4);
           EXPECT_NEAR(drawn.y() / drawn.w(), at.y(), 1e-4);
           EXPECT_LT(std::abs(drawn.z() / drawn.w()), 1);
-          least = std::min(least, at.z()), most = std::max(most, at.z());
+          least = std::min(least, at.z());
+          most = std::max(most, at.z());
           // in metres at the point's distance
           const double tan = static_cast<double>(camera.tan_half_height),
                        across = at.z() * tan * aspect, along = at.z() * tan;
-          slack[0] = std::min(slack[0], (frame.right - at.x()) * across),
+          slack[0] = std::min(slack[0], (frame.right - at.x()) * across);
           slack[1] = std::min(slack[1], (at.x() - frame.left) * across);
-          slack[2] = std::min(slack[2], (frame.top - at.y()) * along),
+          slack[2] = std::min(slack[2], (frame.top - at.y()) * along);
           slack[3] = std::min(slack[3], (at.y() - frame.bottom) * along);
         }
         EXPECT_NEAR(slack[0], slack[1], 1e-4) << "centred";
@@ -297,7 +301,9 @@ TEST(Camera, GoesBesideOrBelowTheInset) {
     FitRegion whole = frame;
     whole.inset_left = whole.inset_bottom = 2;  // hides nothing
     FitRegion below = whole, beside = whole;
-    below.top = frame.inset_bottom, below.right = -frame.left, beside.right = frame.inset_left;
+    below.top = frame.inset_bottom;
+    below.right = -frame.left;
+    beside.right = frame.inset_left;
     const auto camera = [&](const FitRegion& region) {
       return fit_camera(corners, Vec3::UnitY(), {0, 0, false}, 1, region);
     };
@@ -307,7 +313,8 @@ TEST(Camera, GoesBesideOrBelowTheInset) {
     });
     const float one = camera(below).eye.z(), other = camera(beside).eye.z();
     EXPECT_FLOAT_EQ(camera(frame).eye.z(), hides ? std::min(one, other) : camera(whole).eye.z());
-    hidden += hides, below_it += hides && one < other;
+    hidden += hides;
+    below_it += hides && one < other;
   }
   EXPECT_GT(hidden, below_it);
   EXPECT_GT(below_it, 0);
@@ -335,14 +342,17 @@ TEST(VertexValues, AreMeansOfLinksDepthsInCollidersAndSpeeds) {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     double sum = 0, count = 0, depth = 0;
     for (const Link& l : scene.links)
-      if (l.family != Family::bend && (to_index(l.a) == i || to_index(l.b) == i))
-        sum += (state.x[to_index(l.a)] - state.x[to_index(l.b)]).norm() / l.rest - 1, ++count;
+      if (l.family != Family::bend && (to_index(l.a) == i || to_index(l.b) == i)) {
+        sum += (state.x[to_index(l.a)] - state.x[to_index(l.b)]).norm() / l.rest - 1;
+        ++count;
+      }
     for (const Collider& c : scene.colliders)
       depth = std::max(depth, -surface(shape_at(c, t), state.x[i]).distance);
     EXPECT_NEAR(strains[i], sum / count, 1e-12);
     EXPECT_NEAR(depths[i], depth, 1e-15);
     EXPECT_NEAR(speeds[i], std::sqrt(state.v[i].dot(state.v[i])), 1e-14);
-    deepest = std::max(deepest, depth), fastest = std::max(fastest, speeds[i]);
+    deepest = std::max(deepest, depth);
+    fastest = std::max(fastest, speeds[i]);
   }
   EXPECT_GT(deepest, 0.05);
   double sum = 0, squares = 0, most = 0, count = 0;
@@ -350,7 +360,10 @@ TEST(VertexValues, AreMeansOfLinksDepthsInCollidersAndSpeeds) {
     const bool pins = std::ranges::count(scene.pins, l.a) && std::ranges::count(scene.pins, l.b);
     if (l.family == Family::bend || pins) continue;
     const double e = (state.x[to_index(l.a)] - state.x[to_index(l.b)]).norm() / l.rest - 1;
-    sum += e, squares += e * e, most = std::max(most, std::abs(e)), ++count;
+    sum += e;
+    squares += e * e;
+    most = std::max(most, std::abs(e));
+    ++count;
   }
   const LiveFigures live = live_figures(scene, state, t);
   EXPECT_NEAR(live.max_strain, most, 1e-12);

@@ -44,7 +44,9 @@ inline RecordedRun stretched(const Scene& scene, double strain) {
   for (Vec3& x : state.x) x *= 1 + strain;
   for (int k = 0; k <= scene.steps; ++k) trajectory.frames.push_back({k * scene.dt, state});
   RecordedRun run = recorded_run(scene, trajectory);
-  run.title = "Analytic", run.settings = "strain", run.colour = rgb(0x0B6BCB);
+  run.title = "Analytic";
+  run.settings = "strain";
+  run.colour = rgb(0x0B6BCB);
   return run;
 }
 
@@ -68,14 +70,17 @@ inline RecordedRun draped(const Scene& scene, double folds) {
     trajectory.frames.push_back({k * scene.dt, state});
   }
   RecordedRun run = recorded_run(scene, trajectory);
-  run.title = "Analytic", run.settings = "drape", run.colour = rgb(0xC4501B);
+  run.title = "Analytic";
+  run.settings = "drape";
+  run.colour = rgb(0xC4501B);
   return run;
 }
 
 /// Quickly drawn, small panels.
 inline SceneRendererOptions small(ColourBy colour_by = ColourBy::strain) {
   SceneRendererOptions options;
-  options.width = 240, options.height = 180;
+  options.width = 240;
+  options.height = 180;
   options.quality = RenderQuality::draft();
   options.colour_by = colour_by;
   return options;

@@ -144,7 +144,8 @@ TEST(SceneRenderer, TheBarEndsWhere98Of100ValuesLie) {
                         double to = 1e9) {
     const std::vector<RecordedRun> runs{with_speeds(scene, speed)};
     SceneRendererOptions options = small(ColourBy::speed);
-    options.from = from, options.to = to;
+    options.from = from;
+    options.to = to;
     return SceneRenderer(scene, runs, options).scale().high;
   };
   const auto first = [](std::size_t n, double then) {  // of 100 vertices n have 1 m/s
@@ -219,7 +220,8 @@ TEST(SceneRenderer, PinsAreDarkBallsOnTheirVerticesAndNowhereElse) {
     scene.pins = pins;
     const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
     SceneRendererOptions options = small();
-    options.view = parse_view("top"), options.range = 0.05;
+    options.view = parse_view("top");
+    options.range = 0.05;
     const SceneRenderer renderer(scene, runs, options);
     const Image panel = renderer.panel(0, 0.5);
     std::vector<int> found;
@@ -262,7 +264,8 @@ TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
   const std::vector<RecordedRun> runs{test::draped(scene, 7), gone};
   const auto layout = PageLayout::page(640, 360, 2);
   SceneRendererOptions options = small();
-  options.width = layout.panel_width, options.height = layout.panel_height;
+  options.width = layout.panel_width;
+  options.height = layout.panel_height;
   const SceneRenderer renderer(scene, runs, options);
   EXPECT_TRUE(renderer.in_sight(0, 1));
   EXPECT_TRUE(renderer.in_sight(1, 0.25));
@@ -416,11 +419,13 @@ TEST(RecordedRun, AnExplodedPanelIsMarked) {
   RecordedRun run = test::stretched(scene, 0);
   run.trajectory.frames.resize(30);
   run = recorded_run(scene, run.trajectory);
-  run.title = "Analytic", run.stop->why = "exploded";
+  run.title = "Analytic";
+  run.stop->why = "exploded";
   const std::vector<RecordedRun> runs{run};
   const auto layout = PageLayout::page(480, 360, 1);
   SceneRendererOptions options = small();
-  options.width = layout.panel_width, options.height = layout.panel_height;
+  options.width = layout.panel_width;
+  options.height = layout.panel_height;
   const SceneRenderer renderer(scene, runs, options);
   const Image before = compose(renderer, layout, {0.2}), after = compose(renderer, layout, {0.9});
   const Rgb8 alarm = rgb(0xB3261E);
@@ -443,7 +448,8 @@ TEST(Golden, FigureOfTwoRuns) {
   const std::vector<RecordedRun> runs{test::draped(scene, 5), test::draped(scene, 8)};
   const auto layout = PageLayout::page(640, 360, 2);
   SceneRendererOptions options = small();
-  options.width = layout.panel_width, options.height = layout.panel_height;
+  options.width = layout.panel_width;
+  options.height = layout.panel_height;
   const SceneRenderer renderer(scene, runs, options);
   expect_golden("figure", compose(renderer, layout, {1}));
 }

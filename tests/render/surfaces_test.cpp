@@ -36,7 +36,8 @@ TEST(DrawnSheet, PassesThroughItsParticles) {
   std::vector<double> values, depths;
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i].y() = x[i].x() * x[i].x();
-    values.push_back(2 * x[i].x() + 3 * x[i].z()), depths.push_back(x[i].z());
+    values.push_back(2 * x[i].x() + 3 * x[i].z());
+    depths.push_back(x[i].z());
   }
   const RenderMesh mesh = mesher.mesh(x, values, depths);
   ASSERT_EQ(mesh.position.size(), 17u * 17u);
@@ -155,7 +156,8 @@ TEST(DrawnColliders, HaveTheirSizesLessTheInset) {
   }
   EXPECT_NEAR(area(capsule), 4 * pi * 0.16 + 2 * pi * 0.4 * 2, 0.02);
   Box box;
-  box.center = Vec3(1, 0, 0), box.half_extents = Vec3(0.5, 0.4, 0.3);
+  box.center = Vec3(1, 0, 0);
+  box.half_extents = Vec3(0.5, 0.4, 0.3);
   RenderMesh sharp = collider_mesh({box, {}, 0}, 0, {.inset = 0.1});
   for (Vec3f& p : sharp.position) p -= Vec3f(1, 0, 0);
   EXPECT_NEAR(volume(sharp), 8 * 0.4 * 0.3 * 0.2, 1e-5);
@@ -168,7 +170,8 @@ TEST(DrawnColliders, HaveTheirSizesLessTheInset) {
                   4 * pi / 3 * r * r * r,
               1e-3);
   Plane plane;
-  plane.normal = Vec3(0.6, 0.8, 0), plane.offset = 2;
+  plane.normal = Vec3(0.6, 0.8, 0);
+  plane.offset = 2;
   const Vec3 above(3, 4, 5);
   const RenderMesh ground =
       collider_mesh({plane, {}, 0}, 0, {.inset = 0.1, .centre = above, .reach = 1.5});
@@ -208,7 +211,8 @@ TEST(Lights, AreAKeyFromTheLeftAFillFromTheRightAndTheSky) {
     Light sum{Vec3f::Zero(), 0};
     for (std::size_t i = from; i < to; ++i) {
       EXPECT_NEAR(lights[i].direction.norm(), 1, 1e-5);
-      sum.direction += lights[i].direction * lights[i].weight, sum.weight += lights[i].weight;
+      sum.direction += lights[i].direction * lights[i].weight;
+      sum.weight += lights[i].weight;
     }
     sum.direction.normalize();
     return sum;
@@ -248,7 +252,8 @@ TEST(Lights, OpenGroundIsBrightAndBelowACanopyDark) {
   const std::vector<Vec3> seen{Vec3(-2, 0, -2), Vec3(2, 0, 2)};
   panel.camera = fit_camera(seen, Vec3::UnitY(), View{0, 60}, 1, FitRegion{});
   panel.theme = Theme::paper();
-  panel.theme.line = 0, panel.theme.shadow = 1;
+  panel.theme.line = 0;
+  panel.theme.shadow = 1;
   panel.lights = light_set(24, Vec3f::UnitY(), panel.camera);
   panel.ground.half_side = 2;
   panel.casters = {Vec3f::Zero(), 1};
@@ -312,7 +317,8 @@ TEST(Places, FollowClothThatNothingHolds) {
   scene.pins = {0};
   EXPECT_FALSE(place(scene, runs, {0}, View{}, FitRegion{}, 1, 0.01).follows);
   Plane plane;
-  plane.normal = Vec3::UnitY(), plane.offset = -0.7;
+  plane.normal = Vec3::UnitY();
+  plane.offset = -0.7;
   scene.colliders.push_back({plane, {}, 0});
   const Placing floored = place(scene, runs, {0}, View{}, FitRegion{}, 1, 0.01);
   EXPECT_NE(floored.floor, nullptr);

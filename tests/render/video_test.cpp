@@ -46,7 +46,9 @@ class VideoTest : public testing::Test {
 
 MediaOptions quick() {
   MediaOptions options;
-  options.width = 480, options.height = 200, options.duration = 0.25;
+  options.width = 480;
+  options.height = 200;
+  options.duration = 0.25;
   options.fps = 22;
   options.quality = RenderQuality::draft();
   return options;
@@ -65,7 +67,8 @@ TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
   const std::vector<RecordedRun> runs{test::draped(scene, 5), test::draped(scene, 8)};
   const auto layout = PageLayout::page(640, 360, 2);
   SceneRendererOptions look;
-  look.width = layout.panel_width, look.height = layout.panel_height;
+  look.width = layout.panel_width;
+  look.height = layout.panel_height;
   look.quality = RenderQuality::draft();
   const SceneRenderer renderer(scene, runs, look);
   const Image still = compose(renderer, layout, {1});
@@ -140,7 +143,10 @@ class Posters : public testing::Test {
   static Media media_of(const Scene& scene, const std::vector<RecordedRun>& runs, double duration,
                         double speed = 1) {
     MediaOptions options = quick();
-    options.duration = duration, options.speed = speed, options.width = 240, options.height = 100;
+    options.duration = duration;
+    options.speed = speed;
+    options.width = 240;
+    options.height = 100;
     return render_media(scene, runs, options);
   }
   const std::string path_ = std::getenv("PATH");
@@ -357,7 +363,8 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
       break;
     }
   std::vector<std::string> mended;
-  again.media.clear(), again.series.clear();
+  again.media.clear();
+  again.series.clear();
   film_scenes(again, others, scratch.path() / "films",
               [&](const std::string& said) { mended.push_back(said); });
   EXPECT_EQ(mended.size(), 1u);

@@ -35,11 +35,14 @@ TEST(PageAnswers, HaveAValueOrAReasonAndMarkNobody) {
   const auto stretch = [&](const std::string& scene, const char* solver, double value) -> Record& {
     return made.add(scene, solver, {{"stretch.rms", value}});
   };
-  stretch("hang", "jakobsen", 0.04), stretch("hang", "bullet", 0.01);
-  stretch("ball", "jakobsen", 0.0100), stretch("ball", "bullet", 0.0104);
+  stretch("hang", "jakobsen", 0.04);
+  stretch("hang", "bullet", 0.01);
+  stretch("ball", "jakobsen", 0.0100);
+  stretch("ball", "bullet", 0.0104);
   stretch("box", "jakobsen", 0.02);
   stretch("box", "bullet", 1e-9).status = {Status::Kind::exploded, "energy", 3, 1};
-  stretch("drape", "jakobsen", 1e-12), stretch("drape", "bullet", 1e-5);
+  stretch("drape", "jakobsen", 1e-12);
+  stretch("drape", "bullet", 1e-5);
   stretch("swing", "jakobsen", 0.03);
   const Answer answer = made.answer();
   const Table& table = answer.table("stretch.rms");
@@ -135,7 +138,8 @@ StudyBench bench_of(const std::vector<Timed>& all) {
     Record r = synthetic::record(scene, solver, sweeps, 1.0 / 64);
     r.substeps = substeps;
     r.spec.solver += ",substeps=" + std::to_string(substeps);
-    r.id += r.spec.solver, r.key += std::to_string(substeps) + "x" + std::to_string(sweeps);
+    r.id += r.spec.solver;
+    r.key += std::to_string(substeps) + "x" + std::to_string(sweeps);
     r.values = {{"stretch.rms", error}};
     const std::vector<double> samples(12, cpu);
     bench.scenes.back().cases.push_back({r, {samples, samples, 0, "", ""}});
@@ -191,10 +195,12 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   const auto add = [&](const char* scene, const char* solver, double stretch, double share) {
     made.add(scene, solver, {{"stretch.rms", stretch}, {"motion.share", share}});
   };
-  add("swing", "jakobsen", 0.03, 0.9), add("swing", "bullet", 0.02, 0.51),
-      add("swing", "vbd", 0.001, 0.49);
-  add("hang", "jakobsen", 0.05, std::nan("")), add("hang", "bullet", 0.04, std::nan("")),
-      add("hang", "vbd", 0.03, std::nan(""));
+  add("swing", "jakobsen", 0.03, 0.9);
+  add("swing", "bullet", 0.02, 0.51);
+  add("swing", "vbd", 0.001, 0.49);
+  add("hang", "jakobsen", 0.05, std::nan(""));
+  add("hang", "bullet", 0.04, std::nan(""));
+  add("hang", "vbd", 0.03, std::nan(""));
   Answer answer = made.answer();
   const Table& table = answer.table("stretch.rms");
   EXPECT_EQ(table.rows[0][3].note, "hardly moves: 49\u00A0% of the way");
@@ -274,8 +280,11 @@ TEST(PageAnswers, CountFailuresOfWhatAllSolversRanAlone) {
     if (fails) synthetic::fail(r, Status::Kind::exploded, "energy");
     made.input.studies.front().records.push_back(r);
   };
-  add("jakobsen", 1, true), add("jakobsen", 2, true), add("jakobsen", 16, false);
-  add("bullet", 1, true), add("bullet", 16, false);
+  add("jakobsen", 1, true);
+  add("jakobsen", 2, true);
+  add("jakobsen", 16, false);
+  add("bullet", 1, true);
+  add("bullet", 16, false);
   const Answer answer = made.answer();
   const auto& row = answer.table("failures").rows[0];
   EXPECT_EQ(row[1].number(), 1) << "not those that Bullet was not asked";
@@ -317,7 +326,8 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   EXPECT_EQ(link_order(r), "as its program says");
 
   Reported made;
-  made.add("hang", "jakobsen", {{"stretch.rms", 0.1}}), made.add("hang", "bullet", {});
+  made.add("hang", "jakobsen", {{"stretch.rms", 0.1}});
+  made.add("hang", "bullet", {});
   made.input.bench =
       bench_of({{"hang", "jakobsen", 20, 1, 0.005, 1e-3}, {"hang", "bullet", 1, 1, 0.005, 1e-3}});
   auto& cases = made.input.bench->scenes[0].cases;

@@ -46,7 +46,8 @@ ReportInput chosen() {
   add(1, "ball", "jakobsen", 16, 0.005);
   add(1, "ball", "bullet", 16, 0.02).status = {Status::Kind::unsettled, "speed", -1, -1};
   Record& refused = add(1, "ball", "xpbd", 16, 0);
-  refused.status = {Status::Kind::unsupported, "no balls", -1, -1}, refused.values.clear();
+  refused.status = {Status::Kind::unsupported, "no balls", -1, -1};
+  refused.values.clear();
   return input;
 }
 
@@ -75,7 +76,8 @@ TEST(Chosen, ASceneHasItsFactsItsStatusesAndWhoRefusesIt) {
   ReportInput more = chosen();
   for (const int sweeps : {2, 1024}) {
     Record& one = more.studies[0].records.emplace_back(more.studies[0].records[0]);
-    one.sweeps = sweeps, one.key = std::to_string(sweeps);
+    one.sweeps = sweeps;
+    one.key = std::to_string(sweeps);
   }
   EXPECT_EQ(fact(by_id(model_of(more)["scenes"], "hang"), "sweeps per substep"),
             "2 to 1024 (5 values)");
@@ -178,17 +180,28 @@ TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
   input.required = {{"hang", "Jakobsen", "no", "shape", "wind", "pins", "34 %"},
                     {"ball", "Bullet", "after 0.4 s", "depth", "none", "all", "–"}};
   ParameterFrontier f;
-  f.solver = "bullet", f.parameter = "time step", f.unit = "s", f.from = 0.01, f.to = 1;
-  f.good = 0.0612, f.bad = 0.0623, f.symptom = "explodes", f.theory = 0.07;
+  f.solver = "bullet";
+  f.parameter = "time step";
+  f.unit = "s";
+  f.from = 0.01;
+  f.to = 1;
+  f.good = 0.0612;
+  f.bad = 0.0623;
+  f.symptom = "explodes";
+  f.theory = 0.07;
   input.frontiers = {f, f, f, f};
-  input.frontiers[1].solver = "jakobsen", input.frontiers[1].bad = std::nan("");
-  input.frontiers[2].parameter = "drag", input.frontiers[2].lacks = "it has none";
-  input.frontiers[3].parameter = "mass", input.frontiers[3].unit = "",
+  input.frontiers[1].solver = "jakobsen";
+  input.frontiers[1].bad = std::nan("");
+  input.frontiers[2].parameter = "drag";
+  input.frontiers[2].lacks = "it has none";
+  input.frontiers[3].parameter = "mass";
+  input.frontiers[3].unit = "";
   input.frontiers[3].solver = "jakobsen";
   input.frontiers[3].good = input.frontiers[3].theory = std::nan("");
   const Record& a = input.studies[0].records[0];
   Record worse = a, better = input.studies[0].records[2], other = a, same = a;
-  worse.values = {{"stretch.rms", 0.1}, {"kinetic", 3}}, better.values["stretch.rms"] = 0.03;
+  worse.values = {{"stretch.rms", 0.1}, {"kinetic", 3}};
+  better.values["stretch.rms"] = 0.03;
   other.status.kind = Status::Kind::crash;
   Record before = a;
   before.values["kinetic"] = 2;
@@ -365,7 +378,8 @@ TEST(Chosen, OfManyChangesTheLargestAreListed) {
   Differences two{"x", "y", {}, {}, 0, 0, 0};
   for (int i = 1; i <= 250; ++i) {
     Record a = input.studies[0].records[0], b = a;
-    a.values = {{"stretch.rms", 1}}, b.values = {{"stretch.rms", 1 + i * 1e-3}};
+    a.values = {{"stretch.rms", 1}};
+    b.values = {{"stretch.rms", 1 + i * 1e-3}};
     two.pairs.emplace_back(a, b);
   }
   input.differences = two;

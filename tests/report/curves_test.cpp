@@ -41,7 +41,8 @@ TEST(Slices, KeepWhatHasNoSuchSetting) {
   for (const int sweeps : {1, 4, 4, 16, 64})
     all.push_back(synthetic::record("hang", "jakobsen", sweeps, 0.01));
   all.push_back(synthetic::record("hang", "mass-spring", 1, 0.01));
-  all.back().params.erase("iterations"), all.back().sweeps = -1;
+  all.back().params.erase("iterations");
+  all.back().sweeps = -1;
   const Slice slice = hold(all, "iterations", 16);
   EXPECT_EQ(slice.value, 4);
   ASSERT_EQ(slice.records.size(), 3u);
@@ -54,14 +55,16 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
   StudyResult study{"iterations", "?", synthetic::iterations("hang"), 0, {}};
   for (const double dt : {1.0 / 64, 1.0 / 32}) {
     Record file = synthetic::record("hang", "file", 1, dt);
-    file.params.erase("iterations"), file.sweeps = -1;
+    file.params.erase("iterations");
+    file.sweeps = -1;
     file.values = {{"stretch.rms", dt}};
     file.resolved_settings = {{kFloorOfStrain, "1e-7", "", 1e-7}};
     study.records.push_back(file);
   }
   Record failed =
       synthetic::record("hang", "jakobsen", 512, 1.0 / 64);  // drawn as a mark, at its sweeps
-  failed.status = {Status::Kind::exploded, "energy", 3, 0}, failed.values.clear();
+  failed.status = {Status::Kind::exploded, "energy", 3, 0};
+  failed.values.clear();
   study.records.push_back(failed);
   const auto of_file = [](const Chart& chart) {
     std::vector<std::pair<double, double>> points;
@@ -85,7 +88,9 @@ TEST(Curves, NameASettingWhereItsValueAloneSaysNothing) {
   std::vector<Record> all;
   const auto add = [&](const char* name, const char* value, const char* override_) {
     Record r = at_step(0.01);
-    r.params["omega"] = "1", r.params["tethers"] = "off", r.params["order"] = "mesh";
+    r.params["omega"] = "1";
+    r.params["tethers"] = "off";
+    r.params["order"] = "mesh";
     r.params[name] = value;
     if (*override_) r.spec.overrides = {"time.dt=0.01", override_};
     r.values["stretch.rms"] = 1;
@@ -134,7 +139,10 @@ TEST(Curves, AreOrderedAlongTheirSettingWhatHasNoneLast) {
 
 TEST(Quantities, ReadARecordsSettingsSizesAndValues) {
   Record r = at_step(0.01);
-  r.steps = 7, r.vertices = 5, r.links = 6, r.projections = 9;
+  r.steps = 7;
+  r.vertices = 5;
+  r.links = 6;
+  r.projections = 9;
   r.values["stretch.rms"] = 0.5;
   r.spec.overrides = {"wind.strength=2", "wind.strength=3", "wind.strengths=4", "a=1x"};
   r.resolved_settings = {{"time step", "1"}, {kFloorOfStrain, "of binary32", "", 1.5e-7}};
@@ -188,7 +196,9 @@ TEST(Settings, ArePutIntoFewWords) {
 
 TEST(Settings, AcceleratorsThatTheOtherLacksAreExtras) {
   Record r = at_step(0.01);
-  r.params["tethers"] = "on", r.params["omega"] = "1", r.params["levels"] = "3";
+  r.params["tethers"] = "on";
+  r.params["omega"] = "1";
+  r.params["levels"] = "3";
   EXPECT_EQ(extras(r, {}), (Names{"tethers", "levels"})) << "omega is at its default";
   EXPECT_EQ(extras(r, {{"tethers", "off"}}), Names{"levels"});
   r.solver = "bullet";
@@ -219,9 +229,13 @@ TEST(Settings, WorkIsUnequalIfNoneIsCommonToAll) {
 
 TEST(Settings, LabelsHaveWhatVariesAndNoMore) {
   std::vector<Record> all = at_work({{"jakobsen", {{1, 4}, {1, 8}, {1, 8}}}, {"bullet", {{1, 8}}}});
-  for (Record& r : all) r.params["tethers"] = "off", r.params["order"] = "mesh";
+  for (Record& r : all) {
+    r.params["tethers"] = "off";
+    r.params["order"] = "mesh";
+  }
   all[1].params["tethers"] = "on";
-  all[0].params["omega"] = "1.5", all[1].params["omega"] = all[2].params["omega"] = "1";
+  all[0].params["omega"] = "1.5";
+  all[1].params["omega"] = all[2].params["omega"] = "1";
   all[2].params["order"] = "coloured";
   const SettingLabels labels(all);
   EXPECT_EQ(labels.of(all[0]), "1 × 4, omega=1.5, mesh") << "a number does not speak for itself";
@@ -238,7 +252,8 @@ TEST(Charts, ACurveThatLiesOnAnotherIsSaid) {
     for (Record r : records) {
       if (r.solver == "bullet") continue;
       all.push_back(r);
-      r.solver = "xpbd", r.values["stretch.rms"] *= factor;
+      r.solver = "xpbd";
+      r.values["stretch.rms"] *= factor;
       all.push_back(r);
     }
     return coincident_curves(make_chart("convergence", all, kSweeps, "stretch.rms", kSweeps));
@@ -328,7 +343,8 @@ TEST(Maps, ThatWereAskedForNeedTwoOfEach) {
 TEST(Keys, AreAsShortAsTellsThemApartInStepsOfFour) {
   const auto length = [](const std::string& a, const std::string& b) {
     ReportInput input{.studies = {{"one", "?", {at_step(0.01), at_step(0.02)}, 0, {}}}};
-    input.studies[0].records[0].key = a, input.studies[0].records[1].key = b;
+    input.studies[0].records[0].key = a;
+    input.studies[0].records[1].key = b;
     CaseList refs(input);
     const std::string key = refs.key(a);
     EXPECT_EQ(key, a.substr(0, key.size()));

@@ -230,7 +230,10 @@ TEST(Drawn, AChartNamesTheWindowOfItsValue) {
 TEST(Drawn, OfTwoCasesInOneCellTheWorseIsShown) {
   std::vector<Record> two(2);
   for (Record& r : two) {
-    r.scene = "hang", r.solver = "jakobsen", r.dt = 0.01, r.sweeps = 4;
+    r.scene = "hang";
+    r.solver = "jakobsen";
+    r.dt = 0.01;
+    r.sweeps = 4;
     for (const Status::Kind kind : {Status::Kind::ok, Status::Kind::crash}) {
       r.status.kind = kind;
       const auto maps = make_maps(two, "hang", "dt", "iterations");
@@ -248,8 +251,9 @@ TEST(Drawn, AMapIsOfTheCasesThatHaveBothOfItsSettings) {
     records.push_back(synthetic::record("hang", "jakobsen", sweeps, 0.01));
   records.push_back(synthetic::record("ball", "jakobsen", 4, 0.01));
   Record without = synthetic::record("hang", "jakobsen", 4, 0.01);
-  without.params.erase("iterations"), without.sweeps = -1,
-                                      without.status.kind = Status::Kind::crash;
+  without.params.erase("iterations");
+  without.sweeps = -1;
+  without.status.kind = Status::Kind::crash;
   records.push_back(without);
   for (const auto& [x, y] : {std::pair{"dt", "iterations"}, {"iterations", "dt"}}) {
     const auto maps = make_maps(records, "hang", x, y);
@@ -283,8 +287,10 @@ TEST(Drawn, NoPointBeatsTheFront) {
 TEST(Drawn, TheReferencesOwnErrorIsTheFloorOfItsChart) {
   ReportInput input = made_up::Maker(0).input();
   for (StudyResult& study : input.studies)
-    for (Record& r : study.records)
-      r.values["reference.rms"] = 0.01, r.values["reference.floor"] = 1e-4;
+    for (Record& r : study.records) {
+      r.values["reference.rms"] = 0.01;
+      r.values["reference.floor"] = 1e-4;
+    }
   int seen = 0;
   const Json model = parse_json(make_model(input));
   for (const Json& chart : model["charts"])

@@ -35,7 +35,9 @@ Truths truths_of(const std::vector<std::vector<Finding>>& findings) {
   for (const std::vector<Finding>& own : findings) {
     CheckedTruth& truth = all.truths.emplace_back();
     truth.name = "truth" + std::to_string(all.truths.size());
-    truth.section_title = "S", truth.statement = "T^2", truth.source = "Q x 2";
+    truth.section_title = "S";
+    truth.statement = "T^2";
+    truth.source = "Q x 2";
     truth.findings = own;
   }
   Store store(scratch.path());
@@ -297,10 +299,15 @@ TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
     if (r.solver == "xpbd") r.params["new"] = "1";
     put(r, "0" + std::to_string(i));
     if (i == 7)  // two under one name: neither is compared
-      r.params["new"] = "2", r.spec.solver += ",new=2", put(r, "19");
+    {
+      r.params["new"] = "2";
+      r.spec.solver += ",new=2";
+      put(r, "19");
+    }
   }
   Record alone = all[1];
-  alone.spec.overrides.push_back("cloth.mass=2"), put(alone, "20");
+  alone.spec.overrides.push_back("cloth.mass=2");
+  put(alone, "20");
   const Differences found = stored_differences(store_, other);
   EXPECT_EQ(found.a, store_.root().string());
   EXPECT_EQ(found.b, other.root().string());

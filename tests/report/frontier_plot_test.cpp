@@ -19,9 +19,14 @@ const double kNone = std::numeric_limits<double>::quiet_NaN();
 ParameterFrontier frontier(const std::string& solver, const std::string& name, double from,
                            double good, double theory, bool downwards) {
   ParameterFrontier k;
-  k.solver = solver, k.parameter = name, k.from = from, k.good = good, k.theory = theory,
+  k.solver = solver;
+  k.parameter = name;
+  k.from = from;
+  k.good = good;
+  k.theory = theory;
   k.downwards = downwards;
-  k.bad = downwards ? good / 2 : good * 2, k.symptom = "explodes";
+  k.bad = downwards ? good / 2 : good * 2;
+  k.symptom = "explodes";
   return k;
 }
 

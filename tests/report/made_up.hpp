@@ -77,10 +77,15 @@ class Maker {
   Record record(const std::string& scene, const std::string& solver, double dt, int substeps,
                 int sweeps, const std::string& more = "") {
     Record r;
-    r.scene = scene, r.solver = solver, r.dt = dt;
+    r.scene = scene;
+    r.solver = solver;
+    r.dt = dt;
     r.params = {{"substeps", std::to_string(substeps)}};
     if (sweeps > 0) r.params["iterations"] = std::to_string(sweeps);
-    r.steps = 256, r.vertices = 100, r.links = 300, r.projections = 300;
+    r.steps = 256;
+    r.vertices = 100;
+    r.links = 300;
+    r.projections = 300;
     r.spec = {scene,
               {"time.dt=" + std::to_string(dt)},
               solver + ":substeps=" + std::to_string(substeps) +

@@ -17,7 +17,8 @@ namespace {
 /// Springs that come down to 1e-5 m from the exact step, in two orders, and rigid links on a floor.
 Answer found() {
   Answer answer{"converge", "one step of hang, cloth.span=0.7"};
-  answer.add({"scene"}, "hang"), answer.add({"settings"}, "cloth.span=0.7");
+  answer.add({"scene"}, "hang");
+  answer.add({"settings"}, "cloth.span=0.7");
   answer.add({"dt"}, 0.01);
   Table& solvers = answer.add(Table{
       "solvers", "", {{"solver"}, {"structural"}, {"contraction"}, {"floor"}, {"moved"}}, {}});

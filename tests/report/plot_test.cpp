@@ -38,7 +38,10 @@ class Plots : public ::testing::Test {
   static std::size_t fields(const std::string& line) {  // of CSV
     bool quoted = false;
     std::size_t n = 1;
-    for (const char c : line) quoted = quoted != (c == '"'), n += !quoted && c == ',';
+    for (const char c : line) {
+      quoted = quoted != (c == '"');
+      n += !quoted && c == ',';
+    }
     return n;
   }
   std::ptrdiff_t files() const {
@@ -85,7 +88,11 @@ TEST_F(Plots, PanelsShareTheirAxesAndOneKey) {
     std::vector<Record>& records = all.emplace_back();
     for (const char* solver : {"a", "b", "c", "d", "e", "f", "g", "h", "i"})
       for (Record r : synthetic::iterations("hang"))
-        if (r.solver == "jakobsen") r.scene = scene, r.solver = solver, records.push_back(r);
+        if (r.solver == "jakobsen") {
+          r.scene = scene;
+          r.solver = solver;
+          records.push_back(r);
+        }
   }
   for (Record& r : all[1])
     if (r.status.kind == Status::Kind::ok) r.values["stretch.rms"] *= 100;
@@ -153,7 +160,8 @@ std::string look(const std::string& solver) {
 /// The record of a case called so, with or without a value of stretch.
 Record made(const std::string& id, const std::string& solver, int sweeps, double stretch) {
   Record r = synthetic::record("hang", solver, sweeps, 1.0 / 64);
-  r.id = r.key = id, r.values = {{"stretch.rms", stretch}};
+  r.id = r.key = id;
+  r.values = {{"stretch.rms", stretch}};
   return r;
 }
 
@@ -294,7 +302,8 @@ TEST_F(Plots, AMapHasTicksColoursAndGlyphsInEachPanel) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i].id = "c" + std::to_string(i);
   synthetic::fail(all[1], Status::Kind::exploded, "energy");
   for (Record& r : all) r.values.erase("stretch.rms");
-  all[4].values["stretch.rms"] = 0.005, all[3].values["stretch.rms"] = 0.2;
+  all[4].values["stretch.rms"] = 0.005;
+  all[3].values["stretch.rms"] = 0.2;
   const PlotFiles plot = draw({.kind = "stability", .title = "Maps", .file = "map"}, all);
   const std::string csv = read_text(plot.csv), gp = read_text(plot.gp);
   EXPECT_TRUE(
@@ -378,7 +387,8 @@ TEST_F(Plots, SeriesAreDrawnAsTheyAre) {
   StudyBench bench{"trade", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
   for (const auto& [solver, seconds] : {std::pair{"jakobsen", 0.002}, {"bullet", 0.005}}) {
     BenchedCase c{made(solver, solver, 4, 0.005), {}};
-    c.timing.samples.assign(4, seconds), c.timing.wall = c.timing.samples;
+    c.timing.samples.assign(4, seconds);
+    c.timing.wall = c.timing.samples;
     bench.scenes[0].cases.push_back(c);
   }
   const PlotFiles profile =

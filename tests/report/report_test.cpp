@@ -72,15 +72,18 @@ TEST(Report, TablesAndChartsAreOfValuesWithARole) {
     for (ReportInput* input : {&whole, &roles})
       for (StudyResult& study : input->studies)
         for (Record& r : study.records) {
-          r.values["energy.peak"] = 1, r.values["stretch.p95"] = 0.01;
+          r.values["energy.peak"] = 1;
+          r.values["stretch.p95"] = 0.01;
           if (input != &roles) continue;
           const std::size_t before = r.values.size();
           keep_roles(r);
           dropped += before - r.values.size();
         }
     Json model = model_of(whole), of_roles = model_of(roles);
-    for (const char* read_alone : {"cases", "metrics"})
-      model.erase(read_alone), of_roles.erase(read_alone);
+    for (const char* read_alone : {"cases", "metrics"}) {
+      model.erase(read_alone);
+      of_roles.erase(read_alone);
+    }
     EXPECT_EQ(model, of_roles) << "seed " << seed;
   }
   EXPECT_GT(dropped, 0u);
@@ -101,8 +104,13 @@ TEST(Report, NamesFromOutsideStayText) {
   ReportInput input = example();
   const std::size_t scripts = count(make_report(input), "</script");
   const std::string evil = "</script><img src=x onerror=alert(1)><!--{{page.js}}";
-  input.title = evil, input.command = evil, input.scenes[0].summary = evil;
-  for (Record& r : input.studies[0].records) r.status.reason = evil, r.params["x"] = evil;
+  input.title = evil;
+  input.command = evil;
+  input.scenes[0].summary = evil;
+  for (Record& r : input.studies[0].records) {
+    r.status.reason = evil;
+    r.params["x"] = evil;
+  }
   const std::string html = make_report(input);
   EXPECT_EQ(count(html, "</script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);
@@ -186,7 +194,9 @@ TEST(Model, EveryReferenceLeadsSomewhere) {
   ReportInput several = example();  // of one solver three ways to set it, each with a map
   for (const char* omega : {"1.3", "1.6"})
     for (Record r : synthetic::time_steps("hang")) {
-      r.params["omega"] = omega, r.id += omega, r.key += omega;
+      r.params["omega"] = omega;
+      r.id += omega;
+      r.key += omega;
       several.studies[1].records.push_back(r);
     }
   check_references(model_of(several));
@@ -232,7 +242,8 @@ TEST(Model, WhatIsMissingNamesTheCommandThatMakesIt) {
                                                 {"regressions", "taut check --record"}}));
   input.studies.pop_back();
   EXPECT_EQ(commands()["cost"], "taut bench iterations");
-  input.truths.emplace(), input.regressions.emplace();
+  input.truths.emplace();
+  input.regressions.emplace();
   input.media = {{.scene = "hang"}};
   EXPECT_EQ(commands().size(), 1u);
   input.bench = StudyBench{"trade", "a machine", {}};

@@ -152,7 +152,9 @@ TEST(Drafts, AreTheCaseAsItWasGivenUntilTheSceneChanges) {
   EXPECT_EQ(make_case(other).scene->mesh.size(), 16);
   draft.set("time", "duration", "3");
   draft.set("forces", "damping", "0.5");
-  draft.remove("cloth", "pins"), draft.remove("cloth", "nothing"), draft.remove("nothing");
+  draft.remove("cloth", "pins");
+  draft.remove("cloth", "nothing");
+  draft.remove("nothing");
   EXPECT_TRUE(draft.has("forces"));
   EXPECT_EQ(draft.find("time", "duration")->number, 3);
   EXPECT_EQ(draft.find("cloth", "pins"), nullptr);

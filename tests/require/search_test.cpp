@@ -17,7 +17,8 @@ class Requirements : public testing::Test {
  protected:
   Requirement find(const std::string& scene, RequireOptions options) {
     write_file(scratch_.path() / "s.toml", scene);
-    options.full.scene = (scratch_.path() / "s.toml").string(), options.jobs = 2;
+    options.full.scene = (scratch_.path() / "s.toml").string();
+    options.jobs = 2;
     store_.prepare();
     return find_requirement(options, store_, scratch_.path() / "made");
   }

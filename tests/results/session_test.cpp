@@ -28,15 +28,17 @@ TEST(Shards, AreWhatIsAskedForOrWhatSlurmSays) {
   for (const char* wrong : {"0/4", "5/4", "1/0", "-1/4", "1", "1/", "/4", "1-4", "1/4x", "one/4"})
     EXPECT_THROW(Shard::parse(wrong), InputError) << wrong;
   EXPECT_EQ(both(""), std::pair(1, 1));
-  setenv("SLURM_ARRAY_TASK_ID", "7", 1), setenv("SLURM_ARRAY_TASK_MIN", "5", 1),
-      setenv("SLURM_ARRAY_TASK_COUNT", "4", 1);
+  setenv("SLURM_ARRAY_TASK_ID", "7", 1);
+  setenv("SLURM_ARRAY_TASK_MIN", "5", 1);
+  setenv("SLURM_ARRAY_TASK_COUNT", "4", 1);
   EXPECT_EQ(both(""), std::pair(3, 4));
   EXPECT_EQ(both("1/2"), std::pair(1, 2)) << "said otherwise";
   unsetenv("SLURM_ARRAY_TASK_MIN");
   EXPECT_THROW(Shard::parse(""), InputError) << "the seventh of four";
   setenv("SLURM_ARRAY_TASK_ID", "2", 1);
   EXPECT_EQ(both(""), std::pair(2, 4)) << "from 1 on";
-  unsetenv("SLURM_ARRAY_TASK_ID"), unsetenv("SLURM_ARRAY_TASK_COUNT");
+  unsetenv("SLURM_ARRAY_TASK_ID");
+  unsetenv("SLURM_ARRAY_TASK_COUNT");
 }
 
 TEST(Shards, OfACaseFollowFromTheFirstEightDigitsOfItsKey) {
@@ -54,7 +56,8 @@ StudyCases planned(const std::string& study, std::initializer_list<const char*> 
   const Case one = make_case({"hang", {"cloth.grid=[2, 2]"}, "jakobsen"});
   for (const char* begin : keys) {
     all.cases.push_back(one);
-    all.cases.back().key = key(begin), all.cases.back().id = "case " + std::string(begin);
+    all.cases.back().key = key(begin);
+    all.cases.back().id = "case " + std::string(begin);
   }
   return all;
 }
@@ -120,8 +123,10 @@ TEST(MissingCases, AreCountedStudyByStudyUntilTheyCome) {
   EXPECT_EQ(marks[1].cases, 3u);
   EXPECT_EQ(marks[1].ids, (std::vector<std::string>{"case 1", "case 2", "case 3"}));
   Record record = unfinished(make_case({"hang", {"cloth.grid=[2, 2]"}, "jakobsen"}), {});
-  record.key = key("4"), store.commit(record);
-  record.key = key("2"), store.commit(record);
+  record.key = key("4");
+  store.commit(record);
+  record.key = key("2");
+  store.commit(record);
   marks = store.still_missing();
   ASSERT_EQ(marks.size(), 1u);
   EXPECT_EQ(marks[0].ids, (std::vector<std::string>{"case 1", "case 3"}));

@@ -34,7 +34,8 @@ Record some_record() {
   r.scene = "a sheet";  // no text is another one's
   r.solver = "jakobsen";
   r.params = {{"iterations", "8"}};
-  r.sweeps = 8, r.work_parameters = {"iterations"};
+  r.sweeps = 8;
+  r.work_parameters = {"iterations"};
   r.log = "what it said";
   r.dt = 1.0 / 60;
   r.steps = 600;
@@ -99,7 +100,9 @@ TEST(RecordText, SeriesKeepGapsAndBits) {
 
 TEST(RecordText, TheResultIsNotHowItWasCalled) {
   Record a = some_record(), b = a;
-  b.id = "another", b.spec.scene = "./copy.toml", b.scene = "copy";
+  b.id = "another";
+  b.spec.scene = "./copy.toml";
+  b.scene = "copy";
   EXPECT_EQ(result_digest(a), result_digest(b));
   b.values["a"] = std::nextafter(b.values["a"], 1);
   EXPECT_NE(result_digest(a), result_digest(b));
@@ -310,7 +313,8 @@ TEST_F(StoreTest, WhereNoFileCanBeMadeIsSaidBeforeACaseRuns) {
 
 TEST_F(StoreTest, OfAProcessKilledWhileWritingNothingStays) {
   Record failure = some_record(), other = some_record();
-  failure.key[0] = 'b', failure.status = {Status::Kind::timeout, "wall time", 5, -1};
+  failure.key[0] = 'b';
+  failure.status = {Status::Kind::timeout, "wall time", 5, -1};
   other.key = failure.key;
   put(failure);
   const std::string digest = store_.digest();
@@ -365,10 +369,12 @@ TEST_F(StoreTest, OfResultsAtOnceOneStaysAndOthersConflict) {
 TEST_F(StoreTest, ManyCommitsTogetherAreAllOrNone) {
   store_.prepare();
   Record a = some_record(), b = some_record();
-  b.key[0] = 'b', b.values["only here"] = 1;
+  b.key[0] = 'b';
+  b.values["only here"] = 1;
   for (int again = 0; again < 2; ++again) {
     EXPECT_THROW(store_.together([&] {
-      store_.commit(a), store_.commit(b);
+      store_.commit(a);
+      store_.commit(b);
       throw InputError("no");
     }),
                  InputError);
@@ -383,13 +389,19 @@ TEST_F(StoreTest, TakesOverWhatAnotherHas) {
   const fs::path place = root_ / "other";
   Store other(place);
   Record failed = some_record(), better = some_record(), fresh = some_record();
-  failed.key[0] = better.key[0] = 'b', fresh.key[0] = 'c', fresh.values["new"] = -0.0;
+  failed.key[0] = better.key[0] = 'b';
+  fresh.key[0] = 'c';
+  fresh.values["new"] = -0.0;
   failed.status = {Status::Kind::timeout, "wall time", 5, -1};
-  put(some_record()), put(failed);
-  other.commit(better, {.series = "{\"t\":[1]}"}), other.commit(fresh, {.motion = "m"});
+  put(some_record());
+  put(failed);
+  other.commit(better, {.series = "{\"t\":[1]}"});
+  other.commit(fresh, {.motion = "m"});
   Record late = some_record();
-  late.key[0] = 'd', late.status = failed.status;
-  other.commit(late), put([&] {
+  late.key[0] = 'd';
+  late.status = failed.status;
+  other.commit(late);
+  put([&] {
     Record sound = some_record();
     sound.key = late.key;
     return sound;

@@ -21,9 +21,11 @@ Scene irregular_sheet(int nu, int nv, double off) {
   for (int j = 1; j + 1 < nv; ++j)
     for (int i = 1; i + 1 < nu; ++i) {
       const std::size_t v = to_index(s.mesh.grid->index(i, j));
-      s.mesh.rest[v] = moved.start.x[v], s.mesh.rest[v].z() = 0;
+      s.mesh.rest[v] = moved.start.x[v];
+      s.mesh.rest[v].z() = 0;
     }
-  s.mesh.grid.reset(), s.pins.clear();
+  s.mesh.grid.reset();
+  s.pins.clear();
   s.start.x = s.mesh.rest;
   return s;
 }
@@ -149,8 +151,10 @@ TEST(Bending, AShellIsUnfoldedAndFixedPinsCostNothing) {
 Scene clamped(double stiffness) {
   Scene s = crumpled(hanging_sheet(5, 8, {true, true, false}), 0.03);
   s.pins.clear();
-  for (int v = 0; v < 10; ++v)
-    s.pins.push_back(v), s.start.x[to_index(v)] = s.mesh.rest[to_index(v)];
+  for (int v = 0; v < 10; ++v) {
+    s.pins.push_back(v);
+    s.start.x[to_index(v)] = s.mesh.rest[to_index(v)];
+  }
   for (std::size_t v = 10; v < s.start.v.size(); ++v)
     s.start.v[v] = Vec3(0.1, 0.2, std::sin(static_cast<double>(v)));
   s.stiffness = {800, 300, kRigid[2]};
@@ -194,7 +198,8 @@ TEST(Bending, EverySolverOfEnergiesTakesTheSameStep) {
 // Without links the step is one linear system, which projections solve exactly, too.
 TEST(Bending, AloneItIsTheSameStepForEverySolver) {
   Scene s = clamped(1e-3);
-  s.links.clear(), s.stiffness = kRigid;
+  s.links.clear();
+  s.stiffness = kRigid;
   const State exact = after_one_step(s, "implicit");
   for (const char* solver : {"jakobsen:substeps=1,iterations=3000,precision=double",
                              "jakobsen:substeps=1,iterations=3000,precision=double,method=jacobi",

@@ -109,7 +109,10 @@ class ElasticStep {
                                            (Eigen::Matrix3d::Identity() - u * u.transpose()));
       if (w_[a] > 0) block(hessian, a, a) += part;
       if (w_[b] > 0) block(hessian, b, b) += part;
-      if (w_[a] > 0 && w_[b] > 0) block(hessian, a, b) -= part, block(hessian, b, a) -= part;
+      if (w_[a] > 0 && w_[b] > 0) {
+        block(hessian, a, b) -= part;
+        block(hessian, b, a) -= part;
+      }
     }
     return reference::solve(hessian, gradient(x));
   }

@@ -50,8 +50,10 @@ bool is_finite(const State& state) {
 Vec3 mean(const Scene& scene, const std::vector<Vec3>& of) {
   Vec3 sum = Vec3::Zero();
   double mass = 0;
-  for (std::size_t i = 0; i < of.size(); ++i)
-    sum += scene.mesh.mass[i] * of[i], mass += scene.mesh.mass[i];
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    sum += scene.mesh.mass[i] * of[i];
+    mass += scene.mesh.mass[i];
+  }
   return sum / mass;
 }
 
@@ -215,7 +217,8 @@ TEST(EndsOfRanges, AFactorThatBreaksDownIsNoStepWithoutLinks) {
 std::optional<Scene> with_everything(const std::string& solver, bool elastic) {
   Scene scene = crumpled(hanging_sheet(9, 9), 0.05);
   scene.name = "everything";
-  scene.damping = 0.5, scene.thickness = 0.01;
+  scene.damping = 0.5;
+  scene.thickness = 0.01;
   scene.wind = Wind{.velocity = {1, 0.5, 4}, .strength = 0.5};
   scene.pin_motions = {{{0}, {.velocity = {0, 0.1, 0.3}}}};
   Vec3 middle = Vec3::Zero();
@@ -236,7 +239,8 @@ std::optional<Scene> with_everything(const std::string& solver, bool elastic) {
   scene.bending = Bending{.warp = 1e-4, .weft = 2e-4, .direction = Vec3::UnitX()};
   scene.self_collision = SelfCollision{.radius = 0.05};
   if (takes(solver, scene)) return scene;
-  scene.bending.reset(), scene.self_collision.reset();  // Bullet
+  scene.bending.reset();
+  scene.self_collision.reset();  // Bullet
   if (takes(solver, scene)) return scene;
   return {};
 }

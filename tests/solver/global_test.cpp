@@ -104,7 +104,9 @@ TEST(ProjectiveDynamics, ContractsAcrossAStretchedChainAsItShould) {
   for (const double stiffness : {10.0, 1e3, 1e5})
     for (const int mode : {1, 4}) {
       Scene scene;
-      scene.dt = 1.0 / 64, scene.steps = 1, scene.gravity = Vec3::Zero();
+      scene.dt = 1.0 / 64;
+      scene.steps = 1;
+      scene.gravity = Vec3::Zero();
       for (int i = 0; i <= kLinks; ++i) {
         const double shape = std::sin(std::numbers::pi * mode * i / kLinks);
         scene.start.x.emplace_back(0.1 * (1 + kStrain) * i, 0, 0);
@@ -180,7 +182,10 @@ TEST(Admm, AgreesWithADenseProgramOnAnIrregularMesh) {
   const Eigen::VectorXd inertia = matrix.diagonal();
   for (const Link& l : scene.links)
     for (const auto& [i, other] : {std::pair(l.a, l.b), std::pair(l.b, l.a)})
-      if (w[to_index(i)] > 0) matrix(i, i) += k, matrix(i, other) -= k;
+      if (w[to_index(i)] > 0) {
+        matrix(i, i) += k;
+        matrix(i, other) -= k;
+      }
   std::vector<Vec3> x = step.y(), u(scene.links.size(), Vec3::Zero());
   for (int iteration = 0; iteration < 7; ++iteration) {
     Eigen::MatrixXd right(n, 3);
@@ -247,8 +252,10 @@ TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMass) {
   const auto fall = [&](const std::string& solver) {
     const State end = simulate(scene, solver, 64);
     double way = 0, mass = 0;
-    for (std::size_t i = 0; i < end.x.size(); ++i)
-      way += scene.mesh.mass[i] * (scene.start.x[i] - end.x[i]).y(), mass += scene.mesh.mass[i];
+    for (std::size_t i = 0; i < end.x.size(); ++i) {
+      way += scene.mesh.mass[i] * (scene.start.x[i] - end.x[i]).y();
+      mass += scene.mesh.mass[i];
+    }
     return way / mass / (9.81 / 2 * (1 + 1.0 / 64));  // of the steps' sum
   };
   for (const char* solver : {"implicit:iterations=3", "pd:iterations=2", "admm:iterations=2"})

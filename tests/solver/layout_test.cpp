@@ -25,7 +25,10 @@ class Jolt {
  public:
   explicit Jolt(const Scene& scene) : scene_(scene), batch_(scene.start.x.size(), -1) {
     for (const Vec3& x : scene.start.x) x_.push_back(x.cast<float>());
-    for (const Link& l : scene.links) near_[l.a].push_back(l.b), near_[l.b].push_back(l.a);
+    for (const Link& l : scene.links) {
+      near_[l.a].push_back(l.b);
+      near_[l.b].push_back(l.a);
+    }
     gather();
     find_ways();
   }
@@ -75,7 +78,8 @@ class Jolt {
     for (int start = first_free(); start >= 0; start = first_free()) {
       int next = start;
       while (next >= 0 && own.size() < 256) {
-        own.push_back(next), batch_[to_index(next)] = last_;
+        own.push_back(next);
+        batch_[to_index(next)] = last_;
         next = -1;
         std::pair<int, float> best;
         for (const int from : own)
@@ -84,10 +88,16 @@ class Jolt {
             int shared = 0;
             for (const int other : near_[v]) shared += batch_[to_index(other)] == last_;
             const std::pair rank(-shared, (x_[to_index(v)] - x_[to_index(own[0])]).squaredNorm());
-            if (next < 0 || rank < best) next = v, best = rank;
+            if (next < 0 || rank < best) {
+              next = v;
+              best = rank;
+            }
           }
       }
-      if (own.size() > 128) own.clear(), ++last_;
+      if (own.size() > 128) {
+        own.clear();
+        ++last_;
+      }
     }
   }
 
@@ -100,7 +110,10 @@ class Jolt {
       for (const Link& l : scene_.links)
         for (const auto& [a, b] : {std::pair(l.a, l.b), {l.b, l.a}}) {
           const float way = way_[to_index(a)] + (x_[to_index(a)] - x_[to_index(b)]).norm();
-          if (way < way_[to_index(b)]) way_[to_index(b)] = way, changed = true;
+          if (way < way_[to_index(b)]) {
+            way_[to_index(b)] = way;
+            changed = true;
+          }
         }
     }
   }
@@ -179,7 +192,9 @@ TEST(InterleavedLayout, HasTheLanesThatItsColumnsFill) {
 TEST(InterleavedLayout, BlocksAreOfEightRowsAndTheLastHasTheRest) {
   const auto layout_of = [](int rows) {
     SheetRows sheet;
-    sheet.rows = rows, sheet.lanes = 8, sheet.stride = 48;
+    sheet.rows = rows;
+    sheet.lanes = 8;
+    sheet.stride = 48;
     std::vector<std::uint32_t> slots;
     for (int j = 0; j < rows; ++j) slots.push_back(static_cast<std::uint32_t>(j) * 48);
     return Layout::interleaved(slots, sheet);

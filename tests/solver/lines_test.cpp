@@ -15,7 +15,8 @@ namespace {
 template <class Strain>
 Scene free_chain(int links, const Strain& strain) {
   Scene s = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
-  s.pins.clear(), s.gravity.setZero();
+  s.pins.clear();
+  s.gravity.setZero();
   double x = 0;
   for (int i = 0; i <= links; ++i) {
     s.start.x[static_cast<std::size_t>(i)] = {x, 0, 0};
@@ -54,7 +55,8 @@ TEST(Chebyshev, OfJacobiFollowsItsRecurrenceAndItsRate) {
   for (int k = 2; k <= 60; ++k) {
     omega = k < 3 ? 1 : k == 3 ? 2 / (2 - rho * rho) : 4 / (4 - rho * rho * omega);
     const double next = k < 3 ? rho * now : omega * (rho * now - before) + before;
-    before = now, now = next;
+    before = now;
+    now = next;
   }
   EXPECT_NEAR(left(s, with_sweeps(fast, 60)) / start, now, 1e-3 * now);
   const double rate = rho / (1 + std::sqrt(1 - rho * rho));
@@ -85,7 +87,8 @@ TEST(Lines, AStraightChainOfAnyMassesIsRightAfterOneSweep) {
 TEST(Lines, AStraightChainBetweenPinsSharesItsStretch) {
   for (const auto& [precision, near] : {std::pair("float", 1e-4), std::pair("double", 1e-6)}) {
     Scene s = hanging_sheet(1, 13, {true, false, false});
-    s.pins = {0, 12}, s.gravity.setZero();
+    s.pins = {0, 12};
+    s.gravity.setZero();
     for (Vec3& x : s.start.x) x *= 1.01;
     s.start.x[5].y() += 2e-3;
     const State end = simulate(s, std::string("jakobsen:method=lines,precision=") + precision, 20);

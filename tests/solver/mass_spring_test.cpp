@@ -19,7 +19,8 @@ TEST(MassSpring, SymplecticEulerAndVerletAreTheSameMotion) {
   const Scene s = hanging_sheet();
   Simulation euler(s, mass_spring("symplectic-euler", 0.5, 1e-3));
   Simulation verlet(s, mass_spring("verlet", 0.5, 1e-3));
-  euler.step(64), verlet.step(64);
+  euler.step(64);
+  verlet.step(64);
   EXPECT_LT(max_distance(euler.state().x, verlet.state().x), 1e-12);
 }
 
@@ -28,14 +29,16 @@ TEST(MassSpring, SubstepsAreShorterSteps) {
   fine.dt = s.dt / 4;
   Simulation a(s, with("mass-spring:precision=double", "substeps=4"));
   Simulation b(fine, with("mass-spring:precision=double", "substeps=1"));
-  a.step(16), b.step(64);
+  a.step(16);
+  b.step(64);
   EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-12);
 }
 
 TEST(MassSpring, FloatFollowsDouble) {
   const Scene s = hanging_sheet();
   Simulation a(s, "mass-spring:precision=double"), b(s, "mass-spring:precision=float");
-  a.step(32), b.step(32);
+  a.step(32);
+  b.step(32);
   EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-4);
 }
 
@@ -53,9 +56,11 @@ TEST(Xpbd, WithoutComplianceItIsJakobsensExactProjection) {
   for (const int substeps : {1, 4}) {
     Simulation a(s, xpbd(substeps));
     Simulation b(s, jakobsen(1, "exact", "substeps=" + std::to_string(substeps)));
-    a.step(), b.step();
+    a.step();
+    b.step();
     EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-15);
-    a.step(63), b.step(63);
+    a.step(63);
+    b.step(63);
     EXPECT_LT(max_distance(a.state().x, b.state().x), 1e-10);
     EXPECT_LT(max_distance(a.state().v, b.state().v), 1e-7);
   }
@@ -82,7 +87,8 @@ TEST(Xpbd, WithoutMultipliersTheComplianceIsLostBySweeps) {
     const std::string sweeps =
         "xpbd:substeps=1,precision=double,structural=0.01,iterations=" + std::to_string(n);
     Simulation kept(s, sweeps), reset(s, sweeps + ",multipliers=reset");
-    kept.step(), reset.step();
+    kept.step();
+    reset.step();
     EXPECT_NEAR(-kept.x(1).y() - 1, stretch * at / (w + at), 1e-12) << "exact in one sweep";
     EXPECT_NEAR(-reset.x(1).y() - 1, stretch * std::pow(at / (w + at), n), 1e-12) << n;
   }

@@ -32,10 +32,12 @@ TEST(Plan, SubstepsEndAtEvenTimesWhereShorterStepsEnd) {
       times.push_back(t);
       coarse->store(states.emplace_back());
     });
-    coarse->load(scene.start), steps->load(fine.start);
+    coarse->load(scene.start);
+    steps->load(fine.start);
     State state;
     for (int n = 0; n < 3; ++n) {
-      times.clear(), states.clear();
+      times.clear();
+      states.clear();
       coarse->step(n * scene.dt, scene.dt);
       coarse->store(states.emplace_back());
       ASSERT_EQ(times.size(), 3u) << solver << ": of each substep but the last";
@@ -115,7 +117,10 @@ TEST(Plan, EveryPassVisitsItemsAsOftenAsAsked) {
   expect(lines, "structural springs", links[Family::structural], 3);
   expect(lines, "bend springs", links[Family::bend], 3);
   EXPECT_FALSE(lines.contains("shear springs"));
-  scene.links.clear(), scene.wind.reset(), scene.pins.clear(), scene.colliders.clear();
+  scene.links.clear();
+  scene.wind.reset();
+  scene.pins.clear();
+  scene.colliders.clear();
   for (const char* solver : {"jakobsen", "xpbd", "mass-spring", "bullet:faces=off"})
     EXPECT_EQ(plan(scene, solver).size(), 1u) << solver << ": there is nothing but motion";
 }

@@ -58,7 +58,8 @@ TEST(Relaxation, KeepsTheCentreOfMassWhereverAHeavyVertexLies) {
   for (const int columns : {9, 20, 33})
     for (int heavy = 0; heavy < 3 * columns; ++heavy) {
       Scene scene = crumpled(hanging_sheet(columns, 3), 0.01);
-      scene.pins.clear(), scene.gravity.setZero();
+      scene.pins.clear();
+      scene.gravity.setZero();
       scene.mesh.mass[to_index(heavy)] *= 50;
       Vec3 moved = Vec3::Zero();
       const State state = simulate(scene, "jakobsen:precision=double,substeps=1", 1);

@@ -111,7 +111,9 @@ std::vector<Collider> obstacles(const Scene& scene) {
   Box box{middle + Vec3(0.3, -0.1, 0), {0.2, 0.1, 0.15}};
   box.rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized());
   Motion motion;
-  motion.velocity = {0, 2, 0}, motion.spin = {0, 3, 1}, motion.pivot = box.center;
+  motion.velocity = {0, 2, 0};
+  motion.spin = {0, 3, 1};
+  motion.pivot = box.center;
   return {Collider{Plane{Vec3(1, 2, 2) / 3, Vec3(1, 2, 2).dot(middle) / 3 - 0.3}, {}, 0.5},
           Collider{Ball{middle + Vec3(-0.2, 0.1, 0), 0.2}, {}, 0.3},
           Collider{box, motion, 0.8},
@@ -332,10 +334,14 @@ Scene shuffled_mesh() {
   const Scene plain = scene;
   for (int v = 0; v < n; ++v) {
     const auto from = static_cast<std::size_t>(v), to = static_cast<std::size_t>(renamed(v));
-    scene.mesh.rest[to] = plain.mesh.rest[from], scene.mesh.mass[to] = plain.mesh.mass[from];
+    scene.mesh.rest[to] = plain.mesh.rest[from];
+    scene.mesh.mass[to] = plain.mesh.mass[from];
   }
   scene.start.x = scene.mesh.rest;
-  for (Link& link : scene.links) link.a = renamed(link.a), link.b = renamed(link.b);
+  for (Link& link : scene.links) {
+    link.a = renamed(link.a);
+    link.b = renamed(link.b);
+  }
   for (Triangle& face : scene.mesh.triangles)
     for (int& v : face) v = renamed(v);
   scene.pins = {renamed(0), renamed(side - 1)};
@@ -432,7 +438,8 @@ TEST(SameBits, OfCompliantLinksEverywhere) {
     for (const char* precision : {"float", "double"})
       for (const char* more : {"", ",layout=batches", ",multipliers=reset"}) {
         std::string method = "xpbd:structural=1e-4,bend=0.01,substeps=2,iterations=3,precision=";
-        method += precision, method += more;
+        method += precision;
+        method += more;
         const State want = simulate(scene, method + ",simd=scalar", 4);
         for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
           if (available(simd)) {
@@ -504,7 +511,8 @@ void expect_both_ends_stored(Simd simd) {
   }
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Real>(i);
   BatchRun<Real> run{};
-  run.near = &batch, run.count = 1;
+  run.near = &batch;
+  run.count = 1;
   kernels<Real>(simd).load_and_store(run, x.data());
   for (std::size_t i = 0; i < x.size(); ++i)
     if (i % 4 != 3) {

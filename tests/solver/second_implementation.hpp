@@ -54,28 +54,34 @@ inline Hit surface_at(const Collider& c, const Vec3& p, double t) {
   Vec3 normal;
   double distance;
   if (const auto* plane = std::get_if<Plane>(&c.shape)) {
-    normal = plane->normal, distance = normal.dot(q) - plane->offset;
+    normal = plane->normal;
+    distance = normal.dot(q) - plane->offset;
   } else if (const auto* ball = std::get_if<Ball>(&c.shape)) {
-    normal = (q - ball->center).normalized(), distance = (q - ball->center).norm() - ball->radius;
+    normal = (q - ball->center).normalized();
+    distance = (q - ball->center).norm() - ball->radius;
   } else if (const auto* capsule = std::get_if<Capsule>(&c.shape)) {
     const Vec3 axis = (capsule->to - capsule->from).normalized();
     const double along = axis.dot(q - capsule->from);
     Vec3 out = q - capsule->from - along * axis;  // from the line
     if (along < 0) out = q - capsule->from;
     if (along > (capsule->to - capsule->from).norm()) out = q - capsule->to;
-    normal = out.normalized(), distance = out.norm() - capsule->radius;
+    normal = out.normalized();
+    distance = out.norm() - capsule->radius;
   } else {
     const Box& box = std::get<Box>(c.shape);
     const Eigen::Matrix3d axes = box.rotation.toRotationMatrix();
     const Vec3 local = axes.transpose() * (q - box.center);
     const Vec3 nearest = local.cwiseMin(box.half_extents).cwiseMax(-box.half_extents);
     if ((local - nearest).norm() > 0) {
-      normal = (local - nearest).normalized(), distance = (local - nearest).norm();
+      normal = (local - nearest).normalized();
+      distance = (local - nearest).norm();
     } else {
       distance = -1e300;
       for (int axis = 0; axis < 3; ++axis)
-        if (const double d = std::abs(local[axis]) - box.half_extents[axis]; d > distance)
-          distance = d, normal = Vec3::Unit(axis) * std::copysign(1.0, local[axis]);
+        if (const double d = std::abs(local[axis]) - box.half_extents[axis]; d > distance) {
+          distance = d;
+          normal = Vec3::Unit(axis) * std::copysign(1.0, local[axis]);
+        }
     }
     normal = axes * normal;
   }
@@ -185,7 +191,8 @@ class Relaxing : public Cloth {
     const double excess = (x[b] - x[a]).norm() - l.rest,
                  change = -set_.omega * (excess + soft * lambda) / (w[a] + w[b] + soft);
     lambda += change;
-    x[a] -= w[a] * change * n, x[b] += w[b] * change * n;
+    x[a] -= w[a] * change * n;
+    x[b] += w[b] * change * n;
   }
 
   void collide(double end) {
@@ -315,7 +322,10 @@ class Relaxing : public Cloth {
         for (const auto& [a, to_a] : parents)
           for (const auto& [b, to_b] : parents) offer(a, b, to_a + to_b);
         double sum = 0;
-        for (auto& [parent, length] : parents) sum += 1 / length, length = 1 / length;
+        for (auto& [parent, length] : parents) {
+          sum += 1 / length;
+          length = 1 / length;
+        }
         for (auto& [parent, weight] : parents) weight /= sum;
         if (!parents.empty()) level.children.emplace_back(i, parents);
       }

@@ -42,7 +42,8 @@ void expect_same_path(const Scene& scene, const std::string& solver, Relaxing se
   first->load(scene.start);
   State state;
   for (int n = 0; n < steps; ++n) {
-    first->step(n * scene.dt, scene.dt), second.step(n * scene.dt);
+    first->step(n * scene.dt, scene.dt);
+    second.step(n * scene.dt);
     first->store(state);
     ASSERT_LT(largest_distance(state.x, second.state().x), 1e-10) << solver << " step " << n;
     ASSERT_LT(largest_distance(state.v, second.state().v), 1e-7) << solver << " step " << n;
@@ -217,7 +218,8 @@ void expect_springs(const std::string& integrator, double heavier) {
         for (const int pin : group.vertices)
           second.v[to_index(pin)] = (second.x[to_index(pin)] - before[to_index(pin)]) / h;
     }
-    first->step(n * scene.dt, scene.dt), first->store(state);
+    first->step(n * scene.dt, scene.dt);
+    first->store(state);
     ASSERT_LT(largest_distance(state.x, second.x), 1e-10) << integrator << " step " << n;
     ASSERT_LT(largest_distance(state.v, second.v), 1e-7) << integrator << " step " << n;
   }

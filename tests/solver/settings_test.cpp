@@ -61,7 +61,8 @@ TEST(SolverSettings, SayHowFarGravityIsOffInFloatAndItIs) {
   scene.pins.clear();
   for (Vec3& x : scene.mesh.rest) x.y() += 1000;
   scene.start.x = scene.mesh.rest;
-  scene.dt = 1.0 / 64, scene.steps = 6;
+  scene.dt = 1.0 / 64;
+  scene.steps = 6;
   const double fall = scene.gravity.norm() * scene.duration();
   double worst = 0;
   for (const int substeps : {1, 2, 4, 8}) {
@@ -192,7 +193,8 @@ TEST(LinearTheory, HoldsForSweepsInTheScenesOrder) {
   EXPECT_GT(std::abs(relaxed - growth(scene, listing("iterations=2"))), 1e-3);
   EXPECT_NEAR(growth(scene, "bullet:iterations=2,stiffness=1.2"), relaxed, 1e-12);
   Scene damped = scene, fine = scene;
-  damped.damping = fine.damping = 3, fine.dt = scene.dt / 4;
+  damped.damping = fine.damping = 3;
+  fine.dt = scene.dt / 4;
   for (const std::string solver :
        {"jakobsen:order=mesh,iterations=2", "xpbd:order=mesh,iterations=2"}) {
     EXPECT_NEAR(growth(damped, solver + ",substeps=4"), growth(fine, solver + ",substeps=1"),

@@ -63,13 +63,21 @@ Scene changed(Scene s, const Change& c) {
   const auto vector = [&](Vec3& v, double by) { v = Vec3(c.turn * (by * v)); };
   const auto place = [&](Vec3& x) { vector(x, c.metre), x += c.away; };
   const auto motion = [&](Motion& m) {
-    vector(m.velocity, speed), m.velocity += c.speed;
-    vector(m.spin, c.turn.determinant() / c.second), place(m.pivot);
-    for (Motion::Key& key : m.path) key.t *= c.second, vector(key.displacement, c.metre);
+    vector(m.velocity, speed);
+    m.velocity += c.speed;
+    vector(m.spin, c.turn.determinant() / c.second);
+    place(m.pivot);
+    for (Motion::Key& key : m.path) {
+      key.t *= c.second;
+      vector(key.displacement, c.metre);
+    }
   };
   for (Vec3& x : s.mesh.rest) place(x);
   for (Vec3& x : s.start.x) place(x);
-  for (Vec3& v : s.start.v) vector(v, speed), v += c.speed;
+  for (Vec3& v : s.start.v) {
+    vector(v, speed);
+    v += c.speed;
+  }
   for (double& m : s.mesh.mass) m *= c.kilogram;
   for (Link& l : s.links) l.rest *= c.metre;
   for (double& k : s.stiffness) k *= stiffness;
@@ -85,29 +93,38 @@ Scene changed(Scene s, const Change& c) {
   for (Collider& collider : s.colliders) {
     motion(collider.motion);
     if (Plane* p = std::get_if<Plane>(&collider.shape)) {
-      vector(p->normal, 1), p->offset = c.metre * p->offset + p->normal.dot(c.away);
+      vector(p->normal, 1);
+      p->offset = c.metre * p->offset + p->normal.dot(c.away);
     } else if (Ball* b = std::get_if<Ball>(&collider.shape)) {
-      place(b->center), b->radius *= c.metre;
+      place(b->center);
+      b->radius *= c.metre;
     } else if (Capsule* d = std::get_if<Capsule>(&collider.shape)) {
-      place(d->from), place(d->to), d->radius *= c.metre;
+      place(d->from);
+      place(d->to);
+      d->radius *= c.metre;
     } else if (Box* q = std::get_if<Box>(&collider.shape)) {
-      place(q->center), q->half_extents *= c.metre;
+      place(q->center);
+      q->half_extents *= c.metre;
       // a box is its own mirror image
       if (const Eigen::Matrix3d turn = c.turn * c.turn.determinant(); !turn.isIdentity(0))
         q->rotation = Eigen::Quaterniond(turn * q->rotation.toRotationMatrix());
     }
   }
   if (s.wind) {
-    vector(s.wind->velocity, speed), s.wind->velocity += c.speed;
+    vector(s.wind->velocity, speed);
+    s.wind->velocity += c.speed;
     s.wind->strength *= factor(c, "N s/m^3");
   }
   if (s.bending) {
-    s.bending->warp *= factor(c, "N m"), s.bending->weft *= factor(c, "N m");
+    s.bending->warp *= factor(c, "N m");
+    s.bending->weft *= factor(c, "N m");
     vector(s.bending->direction, 1);
   }
   if (s.self_collision) s.self_collision->radius *= c.metre;
   vector(s.gravity, factor(c, "m/s^2"));
-  s.damping /= c.second, s.thickness *= c.metre, s.dt *= c.second;
+  s.damping /= c.second;
+  s.thickness *= c.metre;
+  s.dt *= c.second;
   return s;
 }
 
@@ -120,7 +137,8 @@ void add_cloth(Scene& s, const SheetShape& shape) {
   Mesh mesh = make_sheet(shape);
   const int first = s.mesh.size();
   for (Link link : grid_links(mesh, {true, true, true})) {
-    link.a += first, link.b += first;
+    link.a += first;
+    link.b += first;
     s.links.push_back(link);
   }
   std::ranges::stable_sort(s.links, {}, &Link::family);
@@ -129,7 +147,8 @@ void add_cloth(Scene& s, const SheetShape& shape) {
   s.mesh.rest.insert(s.mesh.rest.end(), mesh.rest.begin(), mesh.rest.end());
   s.mesh.mass.insert(s.mesh.mass.end(), mesh.mass.begin(), mesh.mass.end());
   s.mesh.grid = first == 0 ? mesh.grid : std::nullopt;
-  s.start.x = s.mesh.rest, s.start.v.assign(s.start.x.size(), Vec3::Zero());
+  s.start.x = s.mesh.rest;
+  s.start.v.assign(s.start.x.size(), Vec3::Zero());
 }
 
 /// On the rest shape or on the whole scene; in this order.
@@ -206,7 +225,9 @@ const Feature kFeatures[] = {
        Box box{Vec3(0.7, -0.2, 0.7), Vec3(0.15, 0.12, 0.1)};
        box.rotation = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized());
        Motion motion;
-       motion.velocity = {0, 0.3, 0.1}, motion.spin = {0, 2, 0.5}, motion.pivot = box.center;
+       motion.velocity = {0, 0.3, 0.1};
+       motion.spin = {0, 2, 0.5};
+       motion.pivot = box.center;
        s.colliders.push_back({box, motion, 0.5});
      }},
     {"capsule",
@@ -232,7 +253,8 @@ Scene scene_of(unsigned n) {
     }
   std::ranges::sort(s.pins);
   s.name = "scene " + std::to_string(n);
-  s.dt = 1.0 / 64, s.steps = 12;
+  s.dt = 1.0 / 64;
+  s.steps = 12;
   return s;
 }
 

@@ -29,7 +29,10 @@ TEST(ThreadPool, DoesEveryItemOfEveryRoundOnce) {
   for (std::size_t round = 0; round < 4000; ++round) {
     const std::size_t count = round % 51;
     pool.run(count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) ++visits[i], dawdle();
+      for (std::size_t i = begin; i < end; ++i) {
+        ++visits[i];
+        dawdle();
+      }
     });
     for (std::size_t i = 0; i < count; ++i) ++expected[i];
     ASSERT_EQ(visits, expected) << "round " << round;
@@ -43,7 +46,10 @@ TEST(ThreadPool, RoundsDoNotOverlap) {
   std::vector<std::size_t> next(value.size());
   for (int round = 0; round < 2000; ++round) {  // each item reads what another one wrote before
     pool.run(value.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) dawdle(), next[i] = value[(i + 1) % value.size()];
+      for (std::size_t i = begin; i < end; ++i) {
+        dawdle();
+        next[i] = value[(i + 1) % value.size()];
+      }
     });
     pool.run(value.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) value[i] = next[i];
@@ -68,7 +74,10 @@ TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeIt) {
         };
         const auto two = [&mix, n](std::vector<std::uint32_t>& v, std::size_t block) {
           mix(v[block], n);
-          if (block + 1 < v.size()) mix(v[block + 1], v[block]), mix(v[block], v[block + 1]);
+          if (block + 1 < v.size()) {
+            mix(v[block + 1], v[block]);
+            mix(v[block], v[block + 1]);
+          }
         };
         if (stage % 7 % 3 == 0) {
           pool.queue_pairs(blocks, [&value, two](std::size_t block) { two(value, block); });
@@ -93,7 +102,10 @@ TEST(ThreadPool, PairsStayTogetherAfterManyStages) {
   std::vector<std::uint32_t> value(kBlocks, 0), want(kBlocks, kBefore);
   for (std::uint32_t n = 0; n < kBefore; ++n)
     pool.queue(kBlocks, [&value](std::size_t begin, std::size_t end) {
-      for (std::size_t block = begin; block < end; ++block) dawdle(), ++value[block];
+      for (std::size_t block = begin; block < end; ++block) {
+        dawdle();
+        ++value[block];
+      }
     });
   const auto mix = [](std::vector<std::uint32_t>& v, std::size_t block) {
     if (block + 1 < v.size()) v[block + 1] = 31 * v[block + 1] + v[block];
@@ -148,7 +160,10 @@ TEST(ThreadPool, FinishesWhatIsQueuedBeforeOtherWork) {
   ThreadPool pool(3);
   std::vector<int> value(64, 0);
   const auto add = [&value](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) dawdle(), ++value[i];
+    for (std::size_t i = begin; i < end; ++i) {
+      dawdle();
+      ++value[i];
+    }
   };
   for (int n = 0; n < 300; ++n) {
     const int before = value[0];

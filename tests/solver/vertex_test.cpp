@@ -23,7 +23,8 @@ struct Textbook {
   std::vector<double> k, l;
 
   explicit Textbook(const Scene& s) : scene(s), x(s.start.x), v(s.start.v) {
-    k.assign(s.links.size(), 0), l.assign(s.links.size(), 0);
+    k.assign(s.links.size(), 0);
+    l.assign(s.links.size(), 0);
   }
 
   void step(int sweeps) {
@@ -133,7 +134,10 @@ TEST(AugmentedVertexBlockDescent, AgreesWithThePaperInPlainLoops) {
   const Scene scene = irregular_net(6);
   Textbook textbook(scene);
   textbook.augmented = true;
-  textbook.alpha = 0.95, textbook.beta = 2000, textbook.gamma = 0.99, textbook.k_min = 50;
+  textbook.alpha = 0.95;
+  textbook.beta = 2000;
+  textbook.gamma = 0.99;
+  textbook.k_min = 50;
   for (int n = 0; n < 6; ++n) textbook.step(4);
   const State mine =
       simulate(scene, "avbd:iterations=4,order=mesh,beta=2000,k-min=50,alpha=0.95,gamma=0.99", 6);

@@ -209,7 +209,9 @@ TEST(Convergence, GaussSeidelAndJacobiContractAsPrinted) {
 TEST(Convergence, ProjectiveDynamicsContractsAsItsFormulaSays) {
   constexpr int kLinks = 9;
   Scene scene;
-  scene.dt = 1.0 / 64, scene.steps = 1, scene.gravity = Vec3::Zero();
+  scene.dt = 1.0 / 64;
+  scene.steps = 1;
+  scene.gravity = Vec3::Zero();
   for (int i = 0; i <= kLinks; ++i) {
     const double shape = i == kLinks ? 0 : std::sin(std::numbers::pi * i / kLinks);
     scene.start.x.emplace_back(0.105 * i, 0, 0);

@@ -113,9 +113,11 @@ TEST_F(Runs, OfEqualWorkTheLesserKeyGoesFirst) {
 
 TEST_F(Runs, OnlyFailuresAreRunAgainOnRequest) {
   const std::vector<Case> cases{scripted_case(1), scripted_case(2), scripted_case(3)};
-  give(cases[0]), give(cases[1], Kind::crash);
+  give(cases[0]);
+  give(cases[1], Kind::crash);
   run({cases[0], cases[1]});
-  give(cases[1]), give(cases[2]);
+  give(cases[1]);
+  give(cases[2]);
   EXPECT_EQ(run({cases[0], cases[1]}).ran, 0u) << "a stored failure is kept";
   const CampaignProgress again = run(cases, {.only_failed = true});
   EXPECT_EQ((std::tuple{again.cases, again.ran, again.reused}),
@@ -127,7 +129,8 @@ TEST_F(Runs, OnlyFailuresAreRunAgainOnRequest) {
 
 TEST_F(Runs, WhatIsStoredWithoutItsMotionIsRunAgain) {
   const std::vector<Case> cases{scripted_case(2), scripted_case(1)};
-  give(cases[0]), give(cases[1], Kind::oom);
+  give(cases[0]);
+  give(cases[1], Kind::oom);
   run(cases);
   scripted_.write(kCopy + "echo \"$*\" >>$folder/words; echo motion >$5/frames\n");
   const CampaignProgress with = run(cases, {.frames = true});
@@ -211,10 +214,12 @@ TEST_F(Runs, OneCaseIsTakenFromTheStoreOrRunAndKept) {
 
 TEST_F(Runs, OfAStudyResultsComeInThePlansOrder) {
   Study study;
-  study.scenes = {"hang"}, study.solvers = {"scripted"};
+  study.scenes = {"hang"};
+  study.solvers = {"scripted"};
   study.settings = {"cloth.grid=[4, 4]", "time.duration=0.25"};
   study.axes = {{"iterations", {"3", "1", "2"}}};
-  give(scripted_case(2)), give(scripted_case(3));
+  give(scripted_case(2));
+  give(scripted_case(3));
   run({scripted_case(2), scripted_case(3)});
   const StudyRecords found = collect(study, store_);
   ASSERT_EQ(found.cases.size(), 3u);

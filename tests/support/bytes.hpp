@@ -10,7 +10,10 @@ inline std::string bytes(const std::string& digits) {
   for (const char c : digits) {
     if (c == ' ') continue;
     pair += c;
-    if (pair.size() == 2) all += static_cast<char>(std::stoi(pair, nullptr, 16)), pair.clear();
+    if (pair.size() == 2) {
+      all += static_cast<char>(std::stoi(pair, nullptr, 16));
+      pair.clear();
+    }
   }
   return all;
 }

@@ -14,13 +14,15 @@ inline Record record(const std::string& scene, const std::string& solver, int sw
   r.scene = scene;
   r.solver = solver;
   r.params = {{"iterations", std::to_string(sweeps)}, {"precision", "double"}};
-  r.sweeps = sweeps, r.work_parameters = {"iterations"};
+  r.sweeps = sweeps;
+  r.work_parameters = {"iterations"};
   r.spec = {scene, {}, solver + ":iterations=" + std::to_string(sweeps) + ",precision=double"};
   r.id = scene + " dt=" + std::to_string(dt) + " " + r.spec.solver;
   r.key = "k" + std::to_string(std::hash<std::string>{}(r.id));
   r.dt = dt;
   r.steps = static_cast<int>(4 / dt);
-  r.vertices = 400, r.links = 1482;
+  r.vertices = 400;
+  r.links = 1482;
   r.projections = static_cast<std::size_t>(r.links * sweeps);
   r.step_cost = {{"verlet", 400, 1, 28800, false},
                  {"structural", 760, static_cast<std::size_t>(sweeps), 12160, true},

@@ -77,7 +77,8 @@ TEST(Fields, NullIsReadOnlyWhereANumberMayBeUnknown) {
   Json json = parse_json(unknown);
   json["size_m"] = nullptr;
   EXPECT_EQ(wrong(json, read), "x.json:7: size_m: expected a number");
-  json["size_m"] = 1, json["count"] = -1;
+  json["size_m"] = 1;
+  json["count"] = -1;
   EXPECT_EQ(wrong(json, read), "x.json:7: count: expected a count");
   json.erase("name");
   EXPECT_EQ(wrong(json, read), "x.json:7: has no 'name'");

@@ -265,8 +265,10 @@ TEST(Processes, AnInterruptionOfBeforeIsNone) {
   }
   Process polled(shell("exit 4"));
   std::optional<ProcessEnd> end;
-  for (const auto late = in_seconds(20); !end && seconds_until(late) > 0; usleep(1000))
-    errno = EINTR, end = polled.poll();
+  for (const auto late = in_seconds(20); !end && seconds_until(late) > 0; usleep(1000)) {
+    errno = EINTR;
+    end = polled.poll();
+  }
   EXPECT_TRUE(end && end->exit_code == 4);
 }
 

@@ -15,9 +15,12 @@ namespace {
 BenchedCase timed(const std::string& solver, std::vector<double> samples, double dt = 0.5) {
   BenchedCase c;
   c.record.key = std::string(64, 'a');
-  c.record.solver = solver, c.record.spec = {"sheet", {}, solver}, c.record.scene = "sheet";
+  c.record.solver = solver;
+  c.record.spec = {"sheet", {}, solver};
+  c.record.scene = "sheet";
   c.record.dt = dt;
-  c.timing.samples = samples, c.timing.wall = samples;
+  c.timing.samples = samples;
+  c.timing.wall = samples;
   for (double& t : c.timing.wall) t *= 3;
   c.timing.peak_bytes = 4096;
   return c;
@@ -78,7 +81,9 @@ TEST(BenchedCases, ASearchEndedIfEveryParameterDid) {
   const auto set = [&](std::size_t at, const char* substeps, const char* sweeps) {
     bench.cases[at].record.params = {{"substeps", substeps}, {"iterations", sweeps}};
   };
-  set(0, "1024", "1"), set(1, "1", "127"), set(2, "1024", "128");
+  set(0, "1024", "1");
+  set(1, "1", "127");
+  set(2, "1024", "128");
   EXPECT_FALSE(bench.searched_to_the_end("xpbd"));
   EXPECT_TRUE(bench.searched_to_the_end("bullet"));
   set(1, "1", "128");
@@ -166,13 +171,17 @@ TEST(StoredBenches, TakeThePlaceOfThoseOfTheirHostAndBuildAlone) {
   Kept kept(session);
   session.scenes[0].cases[0].timing.samples = {5, 5};
   keep(kept.store, session);
-  session.host = "ares", keep(kept.store, session);
+  session.host = "ares";
+  keep(kept.store, session);
   StudyBench here = StudyBench::here("trade");
   EXPECT_EQ(here.machine, machine_name());
   EXPECT_EQ(here.host, host_name());
   EXPECT_EQ(here.build.size(), 64u);
-  here.scenes = session.scenes, here.build = "old", keep(kept.store, here);
-  here.build = StudyBench::here("").build, keep(kept.store, here);
+  here.scenes = session.scenes;
+  here.build = "old";
+  keep(kept.store, here);
+  here.build = StudyBench::here("").build;
+  keep(kept.store, here);
   std::string order;
   for (const StudyBench& one : stored_benches(kept.store, "trade")) {
     EXPECT_EQ(one.scenes[0].cases[0].timing.samples[0], 5) << "the last that was kept";

@@ -150,7 +150,8 @@ TEST(Statistics, TheIntervalHoldsTheTrueMedianAsOftenAsItSays) {
       std::vector<double> samples;
       for (int i = 0; i < 25; ++i) samples.push_back(std::exp(0.5 * normal(random)));  // median 1
       const Interval interval = bootstrap_median(samples, confidence);
-      low += interval.high<1, high += interval.low> 1;
+      low += interval.high < 1;
+      high += interval.low > 1;
     }
     EXPECT_LT(std::abs(low - high), 40);
     return (low + high) / 400.0;
@@ -232,7 +233,10 @@ TEST(Statistics, ALinearDriftCancelsInsideABlock) {
   std::vector<double> a, b;
   for (int i = 0; i < 80; i += 4) {
     const auto speed = [&](int k) { return 1 + 0.01 * (i + k); };
-    a.push_back(speed(0)), b.push_back(speed(1)), b.push_back(speed(2)), a.push_back(speed(3));
+    a.push_back(speed(0));
+    b.push_back(speed(1));
+    b.push_back(speed(2));
+    a.push_back(speed(3));
   }
   EXPECT_NEAR(interleaved_ratio(a, b).mid, 1, 1e-12);
 }

@@ -27,7 +27,8 @@ class Counting final : public Solver {
   }
   void step(double t, double dt) override {
     log << std::lround(t / dt) << " ";
-    steps_ += 1, ++all_;
+    steps_ += 1;
+    ++all_;
   }
   void store(State& state) const override { state = {{Vec3(steps_, 0, 0)}, {Vec3::Zero()}}; }
   std::vector<PassCost> step_cost() const override { return {}; }
@@ -231,7 +232,8 @@ TEST(Benches, AFailureCostsItsOwnCaseAlone) {
 
 TEST(Benches, TheOrderOfCasesDecidesNothing) {
   CaseSpec other = kSpec, third = kSpec;
-  other.solver = "scripted:iterations=9", third.solver = "scripted:iterations=7";
+  other.solver = "scripted:iterations=9";
+  third.solver = "scripted:iterations=7";
   // iterations=2 is refused from the start; iterations=7 from its third sample on.
   const Scripted scripted(
       "case $4 in *iterations=2*) echo ready; read a; echo '! no clock'; cat "

@@ -232,7 +232,8 @@ TEST(Settle, TakesTenCalmLooksInARow) {
   Simulation rests(scene, jakobsen(1));
   EXPECT_TRUE(settle(rests, 1e-9, 3, 30));
   EXPECT_FALSE(settle(rests, 1e-9, 3, 27)) << "nine looks";
-  scene.start.v[0] = {1, 0, 0}, scene.damping = 64 * std::log(2.0);  // halved by every step
+  scene.start.v[0] = {1, 0, 0};
+  scene.damping = 64 * std::log(2.0);  // halved by every step
   Simulation slows(scene, jakobsen(1));
   EXPECT_FALSE(settle(slows, std::ldexp(1, -10), 1, 19));
   Simulation again(scene, jakobsen(1));

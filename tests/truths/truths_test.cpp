@@ -62,7 +62,10 @@ TEST(Findings, KeepsOnlyTheSolversAskedFor) {
 
 TEST(Fit, SlopesAndRecurrencesOfExactData) {
   std::vector<double> x, y, wave;
-  for (const double v : {1.0, 2.0, 4.0, 8.0}) x.push_back(v), y.push_back(3 * std::pow(v, -1.5));
+  for (const double v : {1.0, 2.0, 4.0, 8.0}) {
+    x.push_back(v);
+    y.push_back(3 * std::pow(v, -1.5));
+  }
   const PowerLaw law = fit_power_law(x, y);
   EXPECT_NEAR(law.factor, 3, 1e-12);
   EXPECT_NEAR(law.exponent, -1.5, 1e-12);
@@ -95,7 +98,8 @@ TEST(Textbook, TheSolverTakesTheStepsOfThePublishedListing) {
   Textbook<double> textbook(s, 3);
   Simulation sim(s, jakobsen(3));
   for (int n = 0; n < 64; ++n) {
-    textbook.step(), sim.step();
+    textbook.step();
+    sim.step();
     ASSERT_LT(max_distance(textbook.x(), sim.state().x), 1e-10) << n;
   }
 }
@@ -113,7 +117,9 @@ TEST(References, AreReadAsTheyWereWritten) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->x[1], reference.x[1]);
   EXPECT_EQ(found->floor, reference.floor);
-  named.dt /= 2, named.steps *= 2, named.damping = 3;  // where it comes to rest is the same
+  named.dt /= 2;
+  named.steps *= 2;
+  named.damping = 3;  // where it comes to rest is the same
   EXPECT_TRUE(find_references(named, folder).rest);
   named.mesh.mass[0] *= 2;
   EXPECT_FALSE(find_references(named, folder).rest);

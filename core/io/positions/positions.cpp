@@ -216,7 +216,9 @@ class Pc2Writer final : public PositionWriter {
     std::string header(kPc2Magic), frame;
     const auto put = [&](auto value) { append_number(header, value, endian::little); };
     put(std::int32_t{1}), put(static_cast<std::int32_t>(x.size()));  // version, vertices
-    put(0.f), put(1.f), put(++frames_);                              // first frame, rate, frames
+    put(0.f);
+    put(1.f);
+    put(++frames_);  // first frame, rate, frames
     append_vectors<float>(frame, x, endian::little);
     out_.write_at(kPc2Header + static_cast<std::uint64_t>(frames_ - 1) * frame.size(), frame);
     out_.write_at(0, header);  // last: it never promises what is not there

@@ -88,7 +88,9 @@ std::vector<Level> make_hierarchy(const Scene& scene, std::span<const double> w,
     if (level.vertices.size() == vertices.size()) break;
     links = coarse_links(scene, links, neighbours, coarse, vertices);
     level.links = make_distance_constraints<double>(links, w, 1);
-    level.vertices.shrink_to_fit(), level.parents.shrink_to_fit(), level.children.shrink_to_fit();
+    level.vertices.shrink_to_fit();
+    level.parents.shrink_to_fit();
+    level.children.shrink_to_fit();
     vertices = level.vertices;
     hierarchy.insert(hierarchy.begin(), std::move(level));
   }

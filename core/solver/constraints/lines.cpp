@@ -92,7 +92,8 @@ class LinesPass final : public Pass<Real> {
       const Row& before = rows_[i - 1];
       row.off = -link.wa * before.u.dot(row.u);
       const double share = row.off / before.pivot;
-      row.pivot -= share * row.off, row.right -= share * before.right;
+      row.pivot -= share * row.off;
+      row.right -= share * before.right;
     }
     double next = 0;  // off of the row after, times its multiplier
     for (std::size_t i = line.size(); i-- > 0;) {
@@ -124,8 +125,10 @@ template std::unique_ptr<Pass<double>> make_lines(const Scene&, std::span<const 
 
 double line_tension(const Scene& scene, double h) {
   double weight = 0, lightest = std::numeric_limits<double>::infinity(), shortest = lightest;
-  for (const double m : scene.mesh.mass)
-    weight += m * scene.gravity.norm(), lightest = std::min(lightest, m);
+  for (const double m : scene.mesh.mass) {
+    weight += m * scene.gravity.norm();
+    lightest = std::min(lightest, m);
+  }
   for (const Link& link : scene.links)
     if (link.family == Family::structural && !is_seam(link))
       shortest = std::min(shortest, link.rest);

@@ -19,7 +19,10 @@ std::vector<PassCost> family_costs(std::span<const Link> links, std::span<const 
   std::array<std::size_t, kFamilies.size()> items{};
   std::size_t all = 0;
   for (const Link& link : links)
-    if (moves(link, w)) ++items[static_cast<std::size_t>(link.family)], ++all;
+    if (moves(link, w)) {
+      ++items[static_cast<std::size_t>(link.family)];
+      ++all;
+    }
   std::vector<PassCost> costs;
   for (const Family family : kFamilies)
     if (const std::size_t n = items[static_cast<std::size_t>(family)]; n > 0)
@@ -44,8 +47,12 @@ class GaussSeidelPass final : public Pass<Real> {
       Real* const b = x + 4 * c.b;
       Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
       project_distance<kind>(x1, x2, c.rest, c.share_a, c.share_b);
-      a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
-      b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
+      a[0] = x1.x;
+      a[1] = x1.y;
+      a[2] = x1.z;
+      b[0] = x2.x;
+      b[1] = x2.y;
+      b[2] = x2.z;
     }
   }
 
@@ -79,8 +86,12 @@ class CompliantGaussSeidelPass final : public Pass<Real> {
       move_ends(x1, x2, c.share_a, c.share_b, [&](Real length2) {
         return compliant_excess(length2, c.rest, c.share, multipliers_[i]);
       });
-      a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
-      b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
+      a[0] = x1.x;
+      a[1] = x1.y;
+      a[2] = x1.z;
+      b[0] = x2.x;
+      b[1] = x2.y;
+      b[2] = x2.z;
     }
   }
 
@@ -103,8 +114,10 @@ class JacobiPass final : public Pass<Real> {
         correction_(std::make_shared<const Layout>(Layout::packed(particles))),
         factor_(particles, Real(1)) {
     std::vector<int> links(particles);
-    for (const DistanceConstraint<Real>& c : constraints_)
-      ++links[static_cast<std::size_t>(c.a)], ++links[static_cast<std::size_t>(c.b)];
+    for (const DistanceConstraint<Real>& c : constraints_) {
+      ++links[static_cast<std::size_t>(c.a)];
+      ++links[static_cast<std::size_t>(c.b)];
+    }
     const int most = links.empty() ? 0 : *std::max_element(links.begin(), links.end());
     for (std::size_t i = 0; i < links.size(); ++i)
       if (method != Jacobi::plain && links[i] > 0)

@@ -19,10 +19,14 @@ std::vector<std::vector<int>> pin_groups(const Scene& scene, const Adjacency& ne
   for (const int start : scene.pins) {
     if (!open[to_index(start)]) continue;
     std::vector<int>& group = groups.emplace_back();
-    group.push_back(start), open[to_index(start)] = false;
+    group.push_back(start);
+    open[to_index(start)] = false;
     for (std::size_t i = 0; i < group.size(); ++i)
       for (const auto& [v, link] : neighbours.of(group[i]))
-        if (open[to_index(v)]) open[to_index(v)] = false, group.push_back(v);
+        if (open[to_index(v)]) {
+          open[to_index(v)] = false;
+          group.push_back(v);
+        }
   }
   return groups;
 }

@@ -43,9 +43,11 @@ class TetherPass final : public Pass<Real> {
     int vertex = -1;
     std::size_t k = 0;
     for (const Tether& t : tethers_) {
-      k = t.vertex == vertex ? k + 1 : 0, vertex = t.vertex;
+      k = t.vertex == vertex ? k + 1 : 0;
+      vertex = t.vertex;
       if (k == pins_.size()) {
-        pins_.emplace_back(p.layout), lengths_.emplace_back(p.layout);
+        pins_.emplace_back(p.layout);
+        lengths_.emplace_back(p.layout);
         lengths_[k].fill(static_cast<Real>(kNoTether));
       }
       const auto length = static_cast<Real>(std::max(t.length, kTinyLength));

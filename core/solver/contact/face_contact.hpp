@@ -43,11 +43,13 @@ class FaceContactPass final : public Pass<Real> {
     motion_ = rigid_motion(collider_.motion, t, dt);
     if (Ball* ball = std::get_if<Ball>(&shape_)) {
       ball->radius += thickness_;
-      center_ = ball->center, reach_ = ball->radius;
+      center_ = ball->center;
+      reach_ = ball->radius;
     }
     if (Box* box = std::get_if<Box>(&shape_)) {
       box->half_extents.array() += thickness_;
-      center_ = box->center, reach_ = box->half_extents.norm();
+      center_ = box->center;
+      reach_ = box->half_extents.norm();
     }
     if (Capsule* capsule = std::get_if<Capsule>(&shape_)) {
       capsule->radius += thickness_;

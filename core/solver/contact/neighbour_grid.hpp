@@ -147,7 +147,9 @@ class NeighbourGrid {
                                  .within = within,
                                  .ignored = ignored_,
                                  .moving = previous != nullptr};
-    point_to(now_, search.now), point_to(moved_, search.moved), point_to(at_rest_, search.rest);
+    point_to(now_, search.now);
+    point_to(moved_, search.moved);
+    point_to(at_rest_, search.rest);
     return search;
   }
 
@@ -181,9 +183,11 @@ class NeighbourGrid {
   void find_part(NeighbourSearch<Real> search, std::size_t n, std::size_t begin, std::size_t end) {
     Part& part = parts_[n];
     const auto last = static_cast<std::uint32_t>(end);
-    part.count = 0, search.blocks = part.blocks.data();
+    part.count = 0;
+    search.blocks = part.blocks.data();
     for (auto next = static_cast<std::uint32_t>(begin); next < last;) {
-      search.found = part.found.data() + part.count, search.room = part.found.size() - part.count;
+      search.found = part.found.data() + part.count;
+      search.room = part.found.size() - part.count;
       const std::size_t count = find_pairs_(search, next, last);
       part.count += count;
       if (next < last)  // no room for what the next one might find
@@ -198,7 +202,9 @@ class NeighbourGrid {
   }
 
   [[gnu::always_inline]] static void set(Coordinates& to, std::size_t k, const Vec4T<Real>& p) {
-    to[0][k] = p.v[0], to[1][k] = p.v[1], to[2][k] = p.v[2];
+    to[0][k] = p.v[0];
+    to[1][k] = p.v[1];
+    to[2][k] = p.v[2];
   }
 
   /// Sets where the cells begin and how wide they are, and row_ and layer_: the grid that fits the
@@ -207,23 +213,30 @@ class NeighbourGrid {
   void fit_grid(const Points<Real>& x, Real reach, const At& at) {
     for_each_share([&](std::size_t n, std::size_t begin, std::size_t end) {
       Vec4T<Real> least = at(x, begin), most = least;
-      for (std::size_t i = begin; i < end; ++i)
-        least = lesser(least, at(x, i)), most = greater(most, at(x, i));
-      parts_[n].least = least, parts_[n].most = most;
+      for (std::size_t i = begin; i < end; ++i) {
+        least = lesser(least, at(x, i));
+        most = greater(most, at(x, i));
+      }
+      parts_[n].least = least;
+      parts_[n].most = most;
     });
     Vec4T<Real> least = parts_[0].least, most = parts_[0].most;
-    for (const Part& part : parts_)
-      least = lesser(least, part.least), most = greater(most, part.most);
+    for (const Part& part : parts_) {
+      least = lesser(least, part.least);
+      most = greater(most, part.most);
+    }
     const Vec4T<Real> extent = most - least;
     const Real widest = std::max({extent.v[0], extent.v[1], extent.v[2]});
-    origin_ = least, per_metre_ = 1 / std::max(reach, widest / kCells);
+    origin_ = least;
+    per_metre_ = 1 / std::max(reach, widest / kCells);
     std::uint32_t cells[3] = {8, 8, 8};
     for (std::uint32_t all = 8 * 8 * 8; all < bucket_count_; all *= 2) {
       const auto share = [&](int axis) { return extent.v[axis] / static_cast<Real>(cells[axis]); };
       const bool x_longest = share(0) >= share(1) && share(0) >= share(2);
       cells[x_longest ? 0 : share(1) >= share(2) ? 1 : 2] *= 2;
     }
-    row_ = cells[0], layer_ = cells[0] * cells[1];
+    row_ = cells[0];
+    layer_ = cells[0] * cells[1];
   }
 
   std::uint32_t bucket_of(const Vec4T<Real>& x) const {
@@ -259,9 +272,12 @@ class NeighbourGrid {
                       for (const Count& count : counts_) sum += count.before[share];
                       std::uint32_t* const starts = starts_.data();
                       for (std::size_t b = begin; b < end; ++b) {
-                        sum += starts[b], starts[b] = sum;
-                        for (std::size_t n = 1; n < threads; ++n)
-                          sum += ends(n)[b], ends(n)[b] = sum;
+                        sum += starts[b];
+                        starts[b] = sum;
+                        for (std::size_t n = 1; n < threads; ++n) {
+                          sum += ends(n)[b];
+                          ends(n)[b] = sum;
+                        }
                       }
                     });
     starts_[bucket_count_] = static_cast<std::uint32_t>(size());

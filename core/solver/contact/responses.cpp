@@ -111,7 +111,8 @@ class FreezePass final : public Pass<Real> {
   }
   void take_over(const Pass<Real>& before) override {
     const auto& old = static_cast<const FreezePass&>(before);
-    frozen_ = old.frozen_, held_ = old.held_;
+    frozen_ = old.frozen_;
+    held_ = old.held_;
   }
   void begin(Particles<Real>& p, double t, double dt) override {
     entering_.begin(t, dt);

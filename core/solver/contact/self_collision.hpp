@@ -366,9 +366,10 @@ class SelfCollidePass final : public Pass<Real> {
       to.most = {greater(to.most.x, most.x), greater(to.most.y, most.y),
                  greater(to.most.z, most.z)};
     };
-    for (const Motions& some : motions_)
-      add(all.since_previous, some.boxes.since_previous),
-          add(all.since_then, some.boxes.since_then);
+    for (const Motions& some : motions_) {
+      add(all.since_previous, some.boxes.since_previous);
+      add(all.since_then, some.boxes.since_then);
+    }
     return all;
   }
 

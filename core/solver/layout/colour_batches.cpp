@@ -23,7 +23,8 @@ template <class Real>
 ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<const double> w,
                                    double omega, const Layout& layout,
                                    const Compliances& compliances) {
-  phase_.push_back(0), tile_.push_back(0);
+  phase_.push_back(0);
+  tile_.push_back(0);
   for (const Phase& phase : phases) {
     for (const Tile& tile : phase) {
       add_tile(tile, w, omega, layout, compliances);
@@ -34,10 +35,13 @@ ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<c
   // Only now do the arrays stay where they are.
   std::size_t near = 0, far = 0, share = 0, multiplier = 0;
   for (BatchRun<Real>& run : runs_) {
-    if (run.near)
-      run.near = near_.data() + near, near += run.count;
-    else
-      run.far = far_.data() + far, far += run.count;
+    if (run.near) {
+      run.near = near_.data() + near;
+      near += run.count;
+    } else {
+      run.far = far_.data() + far;
+      far += run.count;
+    }
     if (run.shares) {
       run.shares = shares_.data() + share;
       share += (run.multipliers ? 3 : 2) * kLanes * run.count;
@@ -98,7 +102,8 @@ void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> con
                                   std::vector<Batch<Real, Number>>& to) {
   if (constraints.empty()) return;
   BatchRun<Real> run{};
-  run.first = first, run.equal_share = equal ? constraints.front().share_a : Real(0);
+  run.first = first;
+  run.equal_share = equal ? constraints.front().share_a : Real(0);
   run.multiplier_share = equal ? constraints.front().share : Real(0);
   const bool compliant = constraints.front().share > 0;  // a colour is of one family
   const std::size_t ends = compliant ? 3 : 2;
@@ -114,7 +119,10 @@ void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> con
       batch.a[l] = static_cast<Number>((real ? place(layout, c.a) : layout.size()) - first);
       batch.b[l] = static_cast<Number>((real ? place(layout, c.b) : layout.size() + 1) - first);
       batch.rest[l] = real ? c.rest : static_cast<Real>(kTinyLength);
-      if (!equal) shares_[base + l] = c.share_a, shares_[base + kLanes + l] = c.share_b;
+      if (!equal) {
+        shares_[base + l] = c.share_a;
+        shares_[base + kLanes + l] = c.share_b;
+      }
       if (!equal && compliant) shares_[base + 2 * kLanes + l] = c.share;
     }
   }
@@ -136,7 +144,8 @@ void ColourBatches<Real>::look_ahead() {
     const Extent& next = extents_[tile + 1];
     std::size_t ahead = 4 * next.first;
     for (std::size_t r = tile_[tile]; r < tile_[tile + 1] && ahead <= 4 * next.last; ++r) {
-      runs_[r].ahead = ahead, runs_[r].stride = line;
+      runs_[r].ahead = ahead;
+      runs_[r].stride = line;
       ahead += line * runs_[r].count;
     }
   }

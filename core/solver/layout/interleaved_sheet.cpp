@@ -177,7 +177,8 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
     : row_count_(links.grid.rows) {
   const SheetSides& grid = links.grid;
   const SheetRows in_memory = rows_of(grid);
-  sweep_.lanes = in_memory.lanes, sweep_.vectors = in_memory.vectors;
+  sweep_.lanes = in_memory.lanes;
+  sweep_.vectors = in_memory.vectors;
   sweep_.stride = in_memory.stride;
   sweep_.directions = static_cast<int>(links.directions.size());
   std::map<std::vector<Real>, std::size_t> known;
@@ -202,8 +203,10 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
     const auto most =
         std::max_element(votes.begin(), votes.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most != votes.end())
-      to.equal_share = most->first.first, to.multiplier_share = most->first.second;
+    if (most != votes.end()) {
+      to.equal_share = most->first.first;
+      to.multiplier_share = most->first.second;
+    }
   }
   std::size_t next = 0;
   for (std::size_t d = 0; d < links.directions.size(); ++d)

@@ -35,7 +35,10 @@ class Batches {
         own.push_back(next);
         batch_[to_index(next)] = count_;
       }
-      if (own.size() > kBatch / 2) own.clear(), ++count_;  // else the next start joins it
+      if (own.size() > kBatch / 2) {
+        own.clear();
+        ++count_;
+      }  // else the next start joins it
     }
   }
 
@@ -55,8 +58,10 @@ class Batches {
     for (std::size_t k = 0; k < 3; ++k) {
       float high = -kInfinity;
       for (std::size_t v = 0; v < x_.size(); ++v)
-        if (batch_[v] == kNoVertex)
-          low[k] = std::min(low[k], x_[v][k]), high = std::max(high, x_[v][k]);
+        if (batch_[v] == kNoVertex) {
+          low[k] = std::min(low[k], x_[v][k]);
+          high = std::max(high, x_[v][k]);
+        }
       size[k] = high - low[k];
     }
     const std::size_t longest =
@@ -87,7 +92,10 @@ class Batches {
                                                       return batch_[to_index(end.vertex)] == count_;
                                                     }),
                              distance2(x_[to_index(v)], x_[to_index(own.front())])};
-        if (best == kNoVertex || rank < least) best = v, least = rank;
+        if (best == kNoVertex || rank < least) {
+          best = v;
+          least = rank;
+        }
       }
     return best;
   }

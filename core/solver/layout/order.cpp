@@ -86,7 +86,8 @@ std::vector<Phase> phases(std::vector<Tile> tiles, std::size_t vertices) {
       if (touches([&](int p) { return p == now; })) continue;
       touches([&](int& p) { return p = now, false; });
       phase.push_back(std::move(tiles[t]));
-      taken[t] = true, --left;
+      taken[t] = true;
+      --left;
     }
   }
   return all;

@@ -110,7 +110,9 @@ class Points {
   [[gnu::always_inline]] void set(std::size_t i, const Point& p) {
     Real* r = values_.data() + layout_->slot(i);
     const std::size_t s = layout_->stride();
-    r[0] = p.x(), r[s] = p.y(), r[2 * s] = p.z();
+    r[0] = p.x();
+    r[s] = p.y();
+    r[2 * s] = p.z();
   }
   [[gnu::always_inline]] void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
 

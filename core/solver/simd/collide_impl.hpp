@@ -105,7 +105,8 @@ class NearParticles {
       Vec3T<T> p = numbers(0, i);
       const auto present = lanes_below<T>(0, static_cast<Real>(count_ - i));
       project_near<continuous>(contact, p, numbers(3, i), present);
-      store(numbers_ + i, p.x), store(numbers_ + kLength + i, p.y);
+      store(numbers_ + i, p.x);
+      store(numbers_ + kLength + i, p.y);
       store(numbers_ + 2 * kLength + i, p.z);
     }
     for (std::size_t v = 0; v < vectors_; ++v) {

@@ -60,8 +60,12 @@ template <class T, class Excess>
   const Vec3T<T> delta{x2.x - x1.x, x2.y - x1.y, x2.z - x1.z};
   const T f = excess_of(delta.x * delta.x + delta.y * delta.y + delta.z * delta.z);
   const T f1 = share1 * f, f2 = share2 * f;
-  x1.x += f1 * delta.x, x1.y += f1 * delta.y, x1.z += f1 * delta.z;
-  x2.x -= f2 * delta.x, x2.y -= f2 * delta.y, x2.z -= f2 * delta.z;
+  x1.x += f1 * delta.x;
+  x1.y += f1 * delta.y;
+  x1.z += f1 * delta.z;
+  x2.x -= f2 * delta.x;
+  x2.y -= f2 * delta.y;
+  x2.z -= f2 * delta.z;
 }
 
 /// Moves x1 and x2 to the distance rest.

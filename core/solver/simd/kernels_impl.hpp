@@ -247,8 +247,12 @@ template <class T, bool equal, class Real, class Number, class Shares, class Exc
     Real *a = particle(x, batch.a[g]), *b = particle(x, batch.b[g]);
     Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
     move_ends(x1, x2, shares(g), shares(kLanes + g), excess_of);
-    a[0] = x1.x, a[1] = x1.y, a[2] = x1.z;
-    b[0] = x2.x, b[1] = x2.y, b[2] = x2.z;
+    a[0] = x1.x;
+    a[1] = x1.y;
+    a[2] = x1.z;
+    b[0] = x2.x;
+    b[1] = x2.y;
+    b[2] = x2.z;
     return;
   } else {
     T x1[4], x2[4], delta[4], squared[4];
@@ -362,7 +366,10 @@ void load_and_store(const BatchRun<Real>& run, Real* x) {
         for (int g = 0; g < kLanes; g += kWidth<T>)
           if constexpr (kWidth<T> == 1) {
             Real *a = particle(first, batch.a[g]), *b = particle(first, batch.b[g]);
-            for (int axis = 0; axis < 3; ++axis) a[axis] += little, b[axis] -= little;
+            for (int axis = 0; axis < 3; ++axis) {
+              a[axis] += little;
+              b[axis] -= little;
+            }
           } else {
             T x1[4], x2[4];
             four_times([&](auto l) {
@@ -431,12 +438,15 @@ MotionBox<Real> packed_motion_box(const ParticleSpan<Real>& span, const Real* th
   for (std::size_t i = 4 * kLanes * begin; i < part_end && i < last + kWidth<T>; i += kWidth<T>) {
     const std::size_t at = i < last ? i : last;
     const T moved = load<T>(x + at) - load<T>(then + at);
-    least = lesser(least, moved), most = greater(most, moved);
+    least = lesser(least, moved);
+    most = greater(most, moved);
   }
   Real low[kWidth<T>], high[kWidth<T>];
   std::memcpy(low, &least, sizeof low), std::memcpy(high, &most, sizeof high);
-  for (int l = 4; l < kWidth<T>; ++l)
-    low[l % 4] = lesser(low[l % 4], low[l]), high[l % 4] = greater(high[l % 4], high[l]);
+  for (int l = 4; l < kWidth<T>; ++l) {
+    low[l % 4] = lesser(low[l % 4], low[l]);
+    high[l % 4] = greater(high[l % 4], high[l]);
+  }
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
@@ -465,7 +475,8 @@ MotionBoxes<Real> motion_boxes(const ParticleSpan<Real>& span, const Real* then,
             least[k] = {lesser(least[k].x, m.x), lesser(least[k].y, m.y), lesser(least[k].z, m.z)};
             most[k] = {greater(most[k].x, m.x), greater(most[k].y, m.y), greater(most[k].z, m.z)};
           };
-          add(0, span.previous), add(1, then);
+          add(0, span.previous);
+          add(1, then);
         };
         visit_particles<T, lanes>(span, begin, end, one);
         const auto low = [](const T& all) { return over_lanes<T, Real>(all, lesser<Real>); };
@@ -506,7 +517,8 @@ Real in_registers(Real rest, int rounds, int& projections) {
   Vec3T<T> a[pairs], b[pairs];
   four_times([&](auto i) {
     const T start(static_cast<Real>(i));
-    a[i] = {start, start, start}, b[i] = {start + r, start + r, start};
+    a[i] = {start, start, start};
+    b[i] = {start + r, start + r, start};
   });
   for (int n = 0; n < rounds; ++n)
     four_times([&](auto i) { project_distance<kind>(a[i], b[i], r, half, half); });

@@ -158,8 +158,10 @@ template <class T, class Real>
 /// Calls f with 0, 1, 2 and 3 as constants, so that arrays of four stay in registers.
 template <class F>
 [[gnu::always_inline]] inline void four_times(const F& f) {
-  f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{});
-  f(std::integral_constant<int, 2>{}), f(std::integral_constant<int, 3>{});
+  f(std::integral_constant<int, 0>{});
+  f(std::integral_constant<int, 1>{});
+  f(std::integral_constant<int, 2>{});
+  f(std::integral_constant<int, 3>{});
 }
 
 inline constexpr int kPackedLanes = 1;
@@ -188,8 +190,10 @@ template <class T, class Real, class Number>
 [[gnu::always_inline]] inline void store_particles(Real* x, const Number* place, T t) {
   if constexpr (kWidth<T> == 4)
     store(particle(x, place[0]), t);
-  else
-    store(particle(x, place[0]), t.lower()), store(particle(x, place[4]), t.upper());
+  else {
+    store(particle(x, place[0]), t.lower());
+    store(particle(x, place[4]), t.upper());
+  }
 }
 
 /// The x, y and z of 4 or 8 particles: lane l is that of p[l % 4], of its half l / 4.
@@ -254,7 +258,9 @@ template <class T, class Real, class Number>
                                                   const Vec3T<T>& to) {
   if constexpr (kWidth<T> == 1) {
     x = particle(x, *place);
-    x[0] = to.x, x[1] = to.y, x[2] = to.z;
+    x[0] = to.x;
+    x[1] = to.y;
+    x[2] = to.z;
   } else {
     T p[4];
     transpose(to, p);
@@ -272,9 +278,13 @@ template <class T, int lanes, class Real>
 template <class T, int lanes, class Real>
 [[gnu::always_inline]] inline void store_vec3(Real* x, const Vec3T<T>& p) {
   if constexpr (lanes != kPackedLanes) {
-    store(x, p.x), store(x + lanes, p.y), store(x + 2 * lanes, p.z);
+    store(x, p.x);
+    store(x + lanes, p.y);
+    store(x + 2 * lanes, p.z);
   } else if constexpr (kWidth<T> == 1) {
-    x[0] = p.x, x[1] = p.y, x[2] = p.z;
+    x[0] = p.x;
+    x[1] = p.y;
+    x[2] = p.z;
   } else {
     T q[4];
     transpose(p, q);

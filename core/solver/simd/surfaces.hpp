@@ -318,7 +318,9 @@ struct AnyBoxSurface {
       side = select(later, face(axis, T(0) - toward), side);
       out = lesser(out, leaves);
     };
-    cut(0, a.x, d.x, T(half.x)), cut(1, a.y, d.y, T(half.y)), cut(2, a.z, d.z, T(half.z));
+    cut(0, a.x, d.x, T(half.x));
+    cut(1, a.y, d.y, T(half.y));
+    cut(2, a.z, d.z, T(half.z));
     Tangent<T> tangent = side;
     if (any(inside)) tangent = select(inside, nearest(from), side);
     return {inside || (in >= T(0) && in < out), tangent};

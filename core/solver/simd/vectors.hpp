@@ -121,8 +121,11 @@ template <bool packed, class Real>
 [[gnu::always_inline]] inline void store_vec4(Real* x, std::size_t stride, const Vec4T<Real>& q) {
   if constexpr (packed)
     std::memcpy(x, &q, sizeof q);
-  else
-    x[0] = q.v[0], x[stride] = q.v[1], x[2 * stride] = q.v[2];
+  else {
+    x[0] = q.v[0];
+    x[stride] = q.v[1];
+    x[2 * stride] = q.v[2];
+  }
 }
 
 }  // namespace taut

@@ -22,8 +22,12 @@ struct VertexModel {
   /// Adds s u u^T.
   [[gnu::always_inline]] void add_along(T s, const Vec3T<T>& u) {
     const Vec3T<T> su = s * u;
-    xx += su.x * u.x, yy += su.y * u.y, zz += su.z * u.z;
-    xy += su.x * u.y, xz += su.x * u.z, yz += su.y * u.z;
+    xx += su.x * u.x;
+    yy += su.y * u.y;
+    zz += su.z * u.z;
+    xy += su.x * u.y;
+    xz += su.x * u.z;
+    yz += su.y * u.z;
   }
   /// Before what reads the whole Hessian: adds `isotropic` to its diagonal.
   [[gnu::always_inline]] void fold() {

@@ -42,7 +42,8 @@ Image panel(const CaseSpec& spec, const std::string& title, const Store& store) 
   run.colour = kInk;
   const auto layout = PageLayout::page(800, 720, 1);
   SceneRendererOptions look;
-  look.width = layout.panel_width, look.height = layout.panel_height;
+  look.width = layout.panel_width;
+  look.height = layout.panel_height;
   look.quality = RenderQuality::video();
   look.from = look.to = one.scene->duration();
   const std::vector<RecordedRun> runs{std::move(run)};

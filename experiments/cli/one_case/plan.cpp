@@ -38,7 +38,8 @@ Answer answer_of(const Case& one, const SetUp& made) {
   std::size_t bytes = 0, projections = 0;
   for (const PassCost& cost : made.solver->step_cost()) {
     const std::size_t work = cost.projections ? cost.items * cost.repeats : 0;
-    bytes += cost.bytes, projections += work;
+    bytes += cost.bytes;
+    projections += work;
     table.rows.push_back({cost.pass, cost.items, cost.repeats, cost.bytes, work});
   }
   answer.add({"key"}, Cell(one.key));

@@ -56,7 +56,8 @@ Film studied_film(const report::ComparedSolvers& compared, const report::QuotedS
       film.refused.emplace_back(one->solver, one->status.reason);
       continue;
     }
-    film.request.scene = one->spec.scene, film.request.overrides = one->spec.overrides;
+    film.request.scene = one->spec.scene;
+    film.request.overrides = one->spec.overrides;
     film.add(one->spec.solver, compared.all[i].label, one->key);
   }
   return film;
@@ -148,7 +149,8 @@ report::Clip clip_of(const RunSet& set, const Media& media) {
              "; cloth inside a collider is hatched, a run that ended early is framed in red";
   clip.type = media.mp4.empty() ? media.poster_type : "video/mp4";
   clip.bytes = media.mp4.empty() ? media.poster : media.mp4;
-  clip.poster = media.poster, clip.poster_type = media.poster_type;
+  clip.poster = media.poster;
+  clip.poster_type = media.poster_type;
   return clip;
 }
 
@@ -193,7 +195,9 @@ FilmResult kept_or_made(const Film& film, const std::filesystem::path& folder, b
   made = !kept;
   if (!kept) keep_film(file, kept.emplace(make_film(film)));
   report::SceneMedia& media = kept->media;
-  media.scene = film.scene, media.summary = film.summary, media.refused = film.refused;
+  media.scene = film.scene;
+  media.summary = film.summary;
+  media.refused = film.refused;
   media.clip.panels = film.panels;
   return std::move(*kept);
 }

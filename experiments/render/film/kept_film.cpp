@@ -47,18 +47,23 @@ FilmResult film_of(const JsonReader& json, const std::filesystem::path& file) {
   const auto number = [&](const char* name) { return json.at(name).number(); };
   FilmResult film;
   report::SceneMedia& media = film.media;
-  media.duration = number("duration"), media.speed = number("speed");
-  media.frame = number("frame"), media.poster = number("poster_t");
+  media.duration = number("duration");
+  media.speed = number("speed");
+  media.frame = number("frame");
+  media.poster = number("poster_t");
   report::Clip& clip = media.clip;
-  clip.type = json.at("type").text(), clip.poster_type = json.at("poster_type").text();
+  clip.type = json.at("type").text();
+  clip.poster_type = json.at("poster_type").text();
   clip.bytes = picture(picture_of(file, "", clip.type), json.at("bytes"));
   clip.poster = picture(picture_of(file, "-poster", clip.poster_type), json.at("poster_bytes"));
   clip.alt = json.at("alt").text();
   media.bar = parse_json(json.at("bar").text());
   for (const JsonReader& one : json.at("series").items()) {
     report::TimeSeries& series = film.series.emplace_back();
-    series.scene = one.at("scene").text(), series.solver = one.at("solver").text();
-    series.label = one.at("label").text(), series.value = one.at("value").text();
+    series.scene = one.at("scene").text();
+    series.solver = one.at("solver").text();
+    series.label = one.at("label").text();
+    series.value = one.at("value").text();
     series.t = one.at("t").numbers();
     for (const JsonReader& y : one.at("y").items()) series.y.push_back(y.number_or_null());
   }

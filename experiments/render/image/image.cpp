@@ -28,7 +28,9 @@ Image shrunk(const Image& image, int k) {
       for (int j = 0; j < k; ++j)
         for (int i = 0; i < k; ++i) {
           const Rgb8 pixel = image.at(x * k + i, y * k + j);
-          r += pixel.r, g += pixel.g, b += pixel.b;
+          r += pixel.r;
+          g += pixel.g;
+          b += pixel.b;
         }
       out.at(x, y) = {mean(r), mean(g), mean(b)};
     }

@@ -37,8 +37,10 @@ FrameRate frame_rate(double seconds) {
     const double numerator = std::round(denominator / seconds);
     if (numerator < 1 || numerator > 999999) continue;
     const double error = std::abs(numerator / denominator - 1 / seconds);
-    if (error < least * (1 - 1e-6) - 1e-12)
-      least = error, best = {static_cast<int>(numerator), denominator};
+    if (error < least * (1 - 1e-6) - 1e-12) {
+      least = error;
+      best = {static_cast<int>(numerator), denominator};
+    }
   }
   return best;
 }

@@ -140,7 +140,8 @@ Camera fit_camera(const std::vector<Vec3>& points, const Vec3& up, const View& v
   const Fit whole = fit(points, direction, aspect, frame);
   if (!hides_any(frame, whole.camera, static_cast<float>(aspect), points)) return whole.camera;
   FitRegion below = frame, beside = frame;
-  below.top = frame.inset_bottom, below.right = -frame.left;
+  below.top = frame.inset_bottom;
+  below.right = -frame.left;
   beside.right = frame.inset_left;
   const Fit one = fit(points, direction, aspect, below),
             other = fit(points, direction, aspect, beside);

@@ -121,7 +121,9 @@ void RenderMesh::compute_normals() {
   normal.assign(position.size(), Vec3f::Zero());
   for (const auto& [a, b, c] : triangles) {
     const Vec3f n = (position[b] - position[a]).cross(position[c] - position[a]);
-    normal[a] += n, normal[b] += n, normal[c] += n;
+    normal[a] += n;
+    normal[b] += n;
+    normal[c] += n;
   }
   for (Vec3f& n : normal) n = n.norm() > 0 ? n.normalized() : Vec3f::UnitY();
 }

@@ -69,7 +69,9 @@ void append(std::vector<Vertex>& vertices, const RenderMesh& mesh) {
     Vertex& v = vertices.emplace_back(
         Vertex{{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {}, {mesh.value[i], 0}});
     if (mesh.uv.empty()) continue;
-    v.uv[0] = mesh.uv[i].x(), v.uv[1] = mesh.uv[i].y(), v.data[1] = mesh.hidden[i];
+    v.uv[0] = mesh.uv[i].x();
+    v.uv[1] = mesh.uv[i].y();
+    v.data[1] = mesh.hidden[i];
   }
 }
 

@@ -154,7 +154,9 @@ PageLayout PageLayout::sheet(int panel_width, int panel_height, int runs, int mo
   PageLayout p{.columns = runs, .rows = moments, .unit = panel_height / 514.0};
   p.header = static_cast<int>(std::lround(66 * p.unit));
   p.footer = static_cast<int>(std::lround(126 * p.unit));
-  p.gap = 6, p.panel_width = panel_width, p.panel_height = panel_height;
+  p.gap = 6;
+  p.panel_width = panel_width;
+  p.panel_height = panel_height;
   p.width = runs * (panel_width + p.gap) - p.gap;
   p.height = p.header + moments * (panel_height + p.gap) + p.footer;
   return p;

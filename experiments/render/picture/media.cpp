@@ -48,11 +48,14 @@ std::size_t most_different(const Media& media, const Scene& scene,
   std::vector<double> strain, place;
   for (std::size_t k = 0; k < media.t.size(); ++k) {
     double low = runs.size() > 1 ? 1e300 : 0, high = 0, apart = 0;
-    for (const auto& series : media.rms_strain)
-      low = std::min(low, series[k]), high = std::max(high, series[k]);
+    for (const auto& series : media.rms_strain) {
+      low = std::min(low, series[k]);
+      high = std::max(high, series[k]);
+    }
     for (const RecordedRun& run : runs)
       apart = std::max(apart, distance(runs.front(), run, media.t[k]));
-    strain.push_back(high - low), place.push_back(apart);
+    strain.push_back(high - low);
+    place.push_back(apart);
   }
   if (const auto k = peak(strain, kStrain)) return *k;
   return peak(place, kPlace * extent(scene)).value_or(media.t.size() * 2 / 3);
@@ -73,7 +76,8 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   const PageLayout layout =
       PageLayout::bare(options.width, options.height, static_cast<int>(runs.size()));
   SceneRendererOptions look;
-  look.width = layout.panel_width, look.height = layout.panel_height;
+  look.width = layout.panel_width;
+  look.height = layout.panel_height;
   look.theme = Theme::dark();
   look.quality = options.quality;
   look.frame = {-0.94, 0.84, -0.64, 0.74};
@@ -86,7 +90,8 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   media.poster = jpeg_bytes(poster_image);
   media.poster_type = "image/jpeg";
   if (media.poster.empty()) {
-    media.poster = png_bytes(poster_image), media.poster_type = "image/png";
+    media.poster = png_bytes(poster_image);
+    media.poster_type = "image/png";
     return media;
   }
   const Scratch scratch;

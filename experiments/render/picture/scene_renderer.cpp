@@ -39,7 +39,10 @@ std::vector<double> vertex_strains(const Scene& scene, const State& state) {
   for (const Link& link : scene.links) {
     if (link.family == Family::bend) continue;
     const double e = strain(link, state);
-    for (const int end : {link.a, link.b}) sum[to_index(end)] += e, count[to_index(end)] += 1;
+    for (const int end : {link.a, link.b}) {
+      sum[to_index(end)] += e;
+      count[to_index(end)] += 1;
+    }
   }
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(count[i], 1.0);
   return sum;
@@ -145,7 +148,10 @@ View better_side(const View& view, const std::vector<Vec3>& cloth, const Vec3& u
   const auto spread = [&](const View& candidate) {
     const Vec3 right = fit_camera(cloth, up, candidate, 1, FitRegion{}).right.cast<double>();
     double sum = 0, squares = 0;
-    for (const Vec3& x : cloth) sum += x.dot(right), squares += x.dot(right) * x.dot(right);
+    for (const Vec3& x : cloth) {
+      sum += x.dot(right);
+      squares += x.dot(right) * x.dot(right);
+    }
     const auto count = static_cast<double>(cloth.size());
     return squares / count - (sum / count) * (sum / count);
   };
@@ -206,9 +212,14 @@ LiveFigures live_figures(const Scene& scene, const State& state, double t) {
       continue;
     const double e = strain(link, state);
     figures.max_strain = std::max(figures.max_strain, std::abs(e));
-    sum += e, squares += e * e, count += 1;
+    sum += e;
+    squares += e * e;
+    count += 1;
   }
-  if (count > 0) figures.mean_strain = sum / count, figures.rms_strain = std::sqrt(squares / count);
+  if (count > 0) {
+    figures.mean_strain = sum / count;
+    figures.rms_strain = std::sqrt(squares / count);
+  }
   for (const double depth : vertex_depths(scene, state, t))
     figures.max_depth = std::max(figures.max_depth, depth);
   for (const Vec3& v : state.v) figures.max_speed = std::max(figures.max_speed, v.norm());
@@ -219,7 +230,10 @@ Vec3 centroid(const std::vector<RecordedRun>& runs, double t) {
   Vec3 sum = Vec3::Zero();
   double count = 0;
   for (const RecordedRun& run : runs)
-    for (const Vec3& p : run.at(t).state.x) sum += p, count += 1;
+    for (const Vec3& p : run.at(t).state.x) {
+      sum += p;
+      count += 1;
+    }
   return sum / count;
 }
 

@@ -299,9 +299,10 @@ class Questions {
         if (value(r, c) > value(largest, c)) largest = r;
       }
       const auto n = static_cast<double>(common.rows.size());
-      if (over == Over::largest || common.rows.size() == 1)
-        last.push_back(table.rows[largest][c]), last.back().best = false;
-      else
+      if (over == Over::largest || common.rows.size() == 1) {
+        last.push_back(table.rows[largest][c]);
+        last.back().best = false;
+      } else
         last.emplace_back(over == Over::sum ? sum : positive ? std::exp(sum / n) : sum / n);
     }
     return last;
@@ -380,8 +381,10 @@ class Questions {
   static std::string works_text(const Tried& tried) {
     std::set<Work> works;
     bool one = true;
-    for (const auto& [at, record] : tried)
-      works.insert(at.first), one = one && at.first.substeps <= 1;
+    for (const auto& [at, record] : tried) {
+      works.insert(at.first);
+      one = one && at.first.substeps <= 1;
+    }
     std::vector<std::string> names;
     for (const Work& work : works) names.push_back(one ? std::to_string(work.sweeps) : work.text());
     return joined(names) + (one ? names == std::vector<std::string>{"1"} ? " sweep" : " sweeps"
@@ -400,7 +403,8 @@ class Questions {
         if (cell.key.empty()) cell.key = list_.key(*one);
         return cell.with("then " + why_none(one).text());
       }
-      cell = Cell(dt), cell.key = list_.key(*one);
+      cell = Cell(dt);
+      cell.key = list_.key(*one);
     }
     return cell.with("the largest tried");
   }
@@ -462,7 +466,10 @@ class Questions {
     table.rows.push_back(failure_row(
         "sum of " + std::to_string(summed) + (summed == 1 ? " scene" : " scenes"), all));
     int cases = 0, failed = 0;
-    for (const Record* r : list_.cases()) ++cases, failed += is_failure(r->status);
+    for (const Record* r : list_.cases()) {
+      ++cases;
+      failed += is_failure(r->status);
+    }
     table.caption += "; of all " + std::to_string(cases) + " cases of this page, " +
                      std::to_string(failed) + " failed";
     answer_.add(std::move(table));

@@ -22,7 +22,10 @@ CaseList::CaseList(const ReportInput& input) {
   for (const StudyResult& study : input.studies)
     for (const Record& r : study.records) add(r, study.name);
   for (const MapResult& map : input.maps)
-    for (const Record& r : map.records) add(r, map.study), maps_.insert(map.study);
+    for (const Record& r : map.records) {
+      add(r, map.study);
+      maps_.insert(map.study);
+    }
   if (input.bench)
     for (const SceneBench& scene : input.bench->scenes)
       for (const BenchedCase& c : scene.cases) add(c.record, input.bench->study);

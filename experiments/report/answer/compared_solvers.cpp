@@ -57,8 +57,10 @@ void choose_work(std::vector<ComparedSolver>& compared) {
     std::set<Work> works;
     std::set<int> sweeps;
     for (const Record* r : solver.cases)
-      if (const Work work = work_of(*r); work.sweeps > 0)
-        works.insert(work), sweeps.insert(work.sweeps);
+      if (const Work work = work_of(*r); work.sweeps > 0) {
+        works.insert(work);
+        sweeps.insert(work.sweeps);
+      }
     having += !works.empty();
     for (const Work& work : works) ++counts[work];
     for (const int n : sweeps) ++sweep_counts[n];
@@ -138,7 +140,8 @@ ComparedSolvers compared_solvers_of(const ReportInput& input) {
   for (const StudyResult& study : input.studies)
     for (const Record& r : study.records) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
-      push_unique(solvers, r.solver), push_unique(scenes, r.scene);
+      push_unique(solvers, r.solver);
+      push_unique(scenes, r.scene);
       compared.asked.insert(untimed(question_of(r)));
       by_solver[r.solver].push_back(&r);
     }

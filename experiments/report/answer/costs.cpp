@@ -127,7 +127,8 @@ class Costs {
       all_.push_back({bench, bench.candidates(kErrorMetric)});
       shared_.push_back({shared, shared.candidates(kErrorMetric)});
     }
-    list.use(kErrorMetric), list.use("cpu.per_second");
+    list.use(kErrorMetric);
+    list.use("cpu.per_second");
   }
 
   void add_to(Answer& answer) {
@@ -138,7 +139,8 @@ class Costs {
 
  private:
   Cell cell_of(const Timed& scene, std::size_t at, Cell cell) {
-    cell.note = setting_text(scene.bench, at), cell.key = list_.key(scene.bench.cases[at].record);
+    cell.note = setting_text(scene.bench, at);
+    cell.key = list_.key(scene.bench.cases[at].record);
     return cell;
   }
 

@@ -77,8 +77,10 @@ class SceneWinners {
                         is_difference(judge(*times, bench_.control));
       if (!told)
         cell.cheapest.push_back(contender(at));
-      else if (!cell.next)
-        cell.next = contender(at), cell.times = *times;
+      else if (!cell.next) {
+        cell.next = contender(at);
+        cell.times = *times;
+      }
     }
     return cell;
   }

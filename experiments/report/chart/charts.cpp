@@ -72,7 +72,8 @@ Records records_along(const ReportInput& input, const std::string& scene,
       here.push_back(&r);
     }
     if (!any || values.size() <= most) continue;
-    most = values.size(), best = std::move(here);
+    most = values.size();
+    best = std::move(here);
     best.insert(best.end(), levels.begin(), levels.end());
   }
   return best;
@@ -88,7 +89,10 @@ void draw_levels(Chart& chart) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points)
-      if (std::isfinite(p.x)) low = std::min(low, p.x), high = std::max(high, p.x);
+      if (std::isfinite(p.x)) {
+        low = std::min(low, p.x);
+        high = std::max(high, p.x);
+      }
   for (Curve& curve : chart.curves) {
     Point level = curve.points.front();
     if (!(low < high) || std::isfinite(level.x) || !plays_a_file(*level.record)) continue;
@@ -159,7 +163,10 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
       curves.push_back(std::move(curve));
     }
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};
-    if (along == "setting") point.along = point.x, point.name = labels.of(record);
+    if (along == "setting") {
+      point.along = point.x;
+      point.name = labels.of(record);
+    }
     curves[where->second].points.push_back(std::move(point));
   }
   for (Curve& curve : curves)
@@ -257,7 +264,8 @@ Chart make_chart(std::string kind, const Records& records, const std::string& x,
     // A line through settings that differ in two parameters would join what nobody tries in a row.
     std::set<int> substeps, sweeps;
     for (const Point& p : curve.points) {
-      substeps.insert(work_of(*p.record).substeps), sweeps.insert(work_of(*p.record).sweeps);
+      substeps.insert(work_of(*p.record).substeps);
+      sweeps.insert(work_of(*p.record).sweeps);
       if (p.name.find(',') != std::string::npos) chart.join = false;
     }
     if (along == "setting" && substeps.size() > 1 && sweeps.size() > 1) chart.join = false;
@@ -309,8 +317,12 @@ std::vector<StatusMap> make_maps(const Records& records, const std::string& scen
                   .x = quantity(x),
                   .y = quantity(y)};
     std::set<double> columns, rows;
-    for (const Point& p : curve.points) columns.insert(p.x), rows.insert(p.y);
-    map.columns.assign(columns.begin(), columns.end()), map.rows.assign(rows.begin(), rows.end());
+    for (const Point& p : curve.points) {
+      columns.insert(p.x);
+      rows.insert(p.y);
+    }
+    map.columns.assign(columns.begin(), columns.end());
+    map.rows.assign(rows.begin(), rows.end());
     const auto index = [](const std::vector<double>& values, double value) {
       return static_cast<std::size_t>(std::ranges::lower_bound(values, value) - values.begin());
     };
@@ -390,7 +402,10 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
   for (const StudyResult& study : input.studies) {
     std::set<double> sweeps, steps;
     for (const Record& r : study.records)
-      if (r.scene == scene) sweeps.insert(value_of(r, kSweeps)), steps.insert(r.dt);
+      if (r.scene == scene) {
+        sweeps.insert(value_of(r, kSweeps));
+        steps.insert(r.dt);
+      }
     if (steps.size() >= 3 && sweeps.size() >= 3) add(study.name, study.records, "dt", kSweeps);
   }
   for (const MapResult& map : input.maps) {

@@ -41,11 +41,14 @@ std::string typeset(std::string_view plain) {
     const std::size_t digits = end;
     while (digit(end)) ++end;
     if (found != std::end(kSigns)) {
-      out += found->second, i += found->first.size();
+      out += found->second;
+      i += found->first.size();
     } else if (at(i) == 'e' && digit(i - 1) && end > digits && !letter(end)) {
-      out += "×" + power_of_ten(plain.substr(i + 1, end - i - 1)), i = end;
+      out += "×" + power_of_ten(plain.substr(i + 1, end - i - 1));
+      i = end;
     } else {
-      out += minus ? "−" : std::string(1, plain[i]), ++i;
+      out += minus ? "−" : std::string(1, plain[i]);
+      ++i;
     }
   }
   return out;

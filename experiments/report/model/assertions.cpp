@@ -19,8 +19,10 @@ Table assertions_table(const std::optional<Truths>& truths) {
                           {}};
     if (truths)
       if (const auto now = truths->assertions.find(std::string(assertion.assertion));
-          now != truths->assertions.end())
-        row[2] = now->second.first, row[4] = typeset(now->second.second);
+          now != truths->assertions.end()) {
+        row[2] = now->second.first;
+        row[4] = typeset(now->second.second);
+      }
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -110,8 +110,10 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
   const bool of_maps = refs.only_in_maps(r);
   for (const auto& [name, value] : r.values)
     if (const ValueSpec* known = find_value(name).second;
-        std::isfinite(value) && !(of_maps && known && known->role == Role::none))
-      one["values"][name] = rounded(value), refs.use(name);
+        std::isfinite(value) && !(of_maps && known && known->role == Role::none)) {
+      one["values"][name] = rounded(value);
+      refs.use(name);
+    }
   if (timed && timed->stable()) {
     const Interval second = timed->cost();
     const Interval step{second.low * r.dt, second.mid * r.dt, second.high * r.dt};

@@ -24,7 +24,8 @@ struct CostScene {
   /// The cell of a case: its note is the setting, and what a small strain may have cost.
   Cell of(std::size_t at, Cell cell) const {
     const Record& r = bench.cases[at].record;
-    cell.note = setting_text(bench, at), cell.key = refs.key(r);
+    cell.note = setting_text(bench, at);
+    cell.key = refs.key(r);
     if (bounds(at)) cell.note += kUpperBound;
     for (const ValueSpec* value : values_with_role()) {
       const Quantity q = quantity(value->name);
@@ -128,7 +129,8 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, Json& charts, Answer
   const StudyBench& study = *input.bench;
   const WinnerMap winners = winners_of(input, refs);
   Json cost{{"machine", study.machine}};
-  refs.use("cpu.per_second"), refs.use("cpu.per_step");
+  refs.use("cpu.per_second");
+  refs.use("cpu.per_step");
   std::vector<SceneBench> shared;
   for (const SceneBench& bench : study.scenes) {
     const std::vector<Record> records = StudyBench{"", "", {bench}}.records();

@@ -97,10 +97,13 @@ Table ends_table(const Differences& differences) {
 class Counted {
  public:
   void add(double before, double now, const std::string& key) {
-    ++cases_, less_ += now<before, more_ += now> before;
+    ++cases_;
+    less_ += now < before;
+    more_ += now > before;
     const double change = mutual_change(before, now);
     if (!largest_.empty() && std::abs(change) <= std::abs(largest_.number())) return;
-    largest_ = Cell(change), largest_.key = key;
+    largest_ = Cell(change);
+    largest_.key = key;
   }
   bool any() const { return cases_ > 0; }
   std::vector<Cell> row(Cell title) const { return {title, cases_, less_, more_, largest_}; }

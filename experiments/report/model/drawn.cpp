@@ -34,8 +34,10 @@ Json json_of(const Point& p, const Chart& chart, CaseList& refs) {
              {"case", refs.key(*p.record)},
              {"failed", none},
              {"zero", !none && p.y == 0}};
-  if (const auto cost = chart.cost.find(p.record->key); cost != chart.cost.end())
-    point["x_low"] = cost->second.low, point["x_high"] = cost->second.high;
+  if (const auto cost = chart.cost.find(p.record->key); cost != chart.cost.end()) {
+    point["x_low"] = cost->second.low;
+    point["x_high"] = cost->second.high;
+  }
   add_if(point, "name", p.name.empty() ? work_of(*p.record).text() : p.name);
   return point;
 }
@@ -57,7 +59,8 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     if (series.scene != scene) continue;
     TimeSeries cut = series;
     const auto end = std::ranges::upper_bound(cut.t, until + 1e-9) - cut.t.begin();
-    cut.t.resize(static_cast<std::size_t>(end)), cut.y.resize(static_cast<std::size_t>(end));
+    cut.t.resize(static_cast<std::size_t>(end));
+    cut.y.resize(static_cast<std::size_t>(end));
     if (cut.t.size() > 1) by_value[series.value].push_back(json_of(cut, refs));
   }
   // The scene's own quantity before an error that every scene has; what stays zero but for rounding
@@ -97,7 +100,10 @@ namespace {
 void add_curves(Json& one, const Chart& chart, CaseList& refs) {
   std::size_t all = 0, failures = 0;
   for (const Curve& curve : chart.curves)
-    for (const Point& p : curve.points) ++all, failures += failed(p);
+    for (const Point& p : curve.points) {
+      ++all;
+      failures += failed(p);
+    }
   const std::vector<std::size_t> places =
       places_of(chart.curves.size(), all > kMostPoints ? kMostCurves : chart.curves.size());
   std::size_t drawn = 0;
@@ -110,7 +116,8 @@ void add_curves(Json& one, const Chart& chart, CaseList& refs) {
                 {"join", chart.join}};
     for (const std::size_t k : places_of(curve.points.size(), kMostPoints / places.size())) {
       series["points"].push_back(json_of(curve.points[k], chart, refs));
-      ++drawn, failures -= failed(curve.points[k]);
+      ++drawn;
+      failures -= failed(curve.points[k]);
     }
     one["series"].push_back(std::move(series));
   }
@@ -197,8 +204,10 @@ Json json_of(const SceneMedia& media, const ReportInput& input, CaseList& refs,
     if (!clip.poster.empty())
       film["poster"] = "data:" + clip.poster_type + ";base64," + base64(clip.poster);
   }
-  film["poster_t"] = media.poster, film["duration"] = media.duration;
-  film["frame"] = media.frame, film["speed"] = media.speed;
+  film["poster_t"] = media.poster;
+  film["duration"] = media.duration;
+  film["frame"] = media.frame;
+  film["speed"] = media.speed;
   film["alt"] = clip.alt;
   for (const Clip::Panel& panel : clip.panels) {
     Json one{{"solver", panel.solver}, {"settings", panel.settings}};

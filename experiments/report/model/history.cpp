@@ -43,13 +43,14 @@ Json json_of_row_steps(const History& history, std::size_t row, std::size_t firs
     Json value{{"value", step.value}, {"title", step.value}};
     if (step.value == "status")
       value["text"] = step.text;
-    else if (step.of_time())
-      value["title"] = step.value == "cpu.per_step" ? "CPU time of a step" : "wall time of a step",
+    else if (step.of_time()) {
+      value["title"] = step.value == "cpu.per_step" ? "CPU time of a step" : "wall time of a step";
       value["text"] = number_text(step.is) + " times";
-    else
-      value["title"] = refs.use(step.value).title,
+    } else {
+      value["title"] = refs.use(step.value).title;
       value["text"] = number_text(step.was, unit_of_value(step.value), 4) + " -> " +
                       number_text(step.is, unit_of_value(step.value), 4);
+    }
     one["values"].push_back(std::move(value));
   }
   Json all;

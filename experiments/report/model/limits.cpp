@@ -24,8 +24,10 @@ std::string end_text(const ParameterFrontier& one) {
 
 Table frontier_table(const std::vector<ParameterFrontier>& frontiers) {
   std::vector<std::string> solvers, parameters;
-  for (const ParameterFrontier& f : frontiers)
-    push_unique(solvers, f.solver), push_unique(parameters, f.parameter);
+  for (const ParameterFrontier& f : frontiers) {
+    push_unique(solvers, f.solver);
+    push_unique(parameters, f.parameter);
+  }
   Table table{"frontiers",
               "How far every parameter goes on a small swinging sheet",
               {Column("parameter")},

@@ -17,9 +17,12 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
   std::vector<std::string> scenes;
   for (const Record* r : refs.cases()) {
     push_unique(scenes, r->scene);
-    steps.insert(r->dt), ends.insert(std::round(r->steps * r->dt * 100) / 100);
-    if (const Work work = work_of(*r); work.sweeps > 0)
-      sweeps.insert(work.sweeps), substeps.insert(work.substeps);
+    steps.insert(r->dt);
+    ends.insert(std::round(r->steps * r->dt * 100) / 100);
+    if (const Work work = work_of(*r); work.sweeps > 0) {
+      sweeps.insert(work.sweeps);
+      substeps.insert(work.substeps);
+    }
   }
   const auto range = [](const std::set<double>& values, const char* name) {
     return range_text(values, quantity(name));
@@ -67,8 +70,10 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
       "Real cloth: errors are distances from constraints, a reference or a closed form, not from a "
       "measured fabric.");
   std::size_t records = 0, planned = 0;
-  for (const StudyResult& study : input.studies)
-    records += study.records.size(), planned += std::max(study.planned, study.records.size());
+  for (const StudyResult& study : input.studies) {
+    records += study.records.size();
+    planned += std::max(study.planned, study.records.size());
+  }
   if (records < planned)
     points.push_back("The " + std::to_string(planned - records) +
                      " planned cases that have not been run.");

@@ -20,7 +20,10 @@ Json json_of(const Contender& one) {
 Json json_of(const WinnerCell& cell) {
   Json json = Json::object();
   for (const Contender& one : cell.cheapest) json["cheapest"].push_back(json_of(one));
-  if (cell.next) json["next"] = json_of(*cell.next), json["times"] = cell.times;
+  if (cell.next) {
+    json["next"] = json_of(*cell.next);
+    json["times"] = cell.times;
+  }
   add_if(json, "why", cell.why);
   for (const auto& [solver, why] : cell.passed_over)
     json["passed_over"].push_back({{"solver", solver}, {"why", why}});

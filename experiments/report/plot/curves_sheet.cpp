@@ -44,13 +44,16 @@ struct Frame {
         });
       });
     };
-    log_x = x.logarithmic && any_positive(false), log_y = y.logarithmic && any_positive(true);
+    log_x = x.logarithmic && any_positive(false);
+    log_y = y.logarithmic && any_positive(true);
     std::vector<double> values;
     for (const Chart& chart : charts)
       for (const Curve& curve : chart.curves)
         for (const Point& p : curve.points) {
-          if (std::isfinite(p.x) && (!log_x || p.x > 0))
-            left = std::min(left, p.x * x.scale), right = std::max(right, p.x * x.scale);
+          if (std::isfinite(p.x) && (!log_x || p.x > 0)) {
+            left = std::min(left, p.x * x.scale);
+            right = std::max(right, p.x * x.scale);
+          }
           if (p.measured() && (!log_y || p.y > 0)) values.push_back(p.y * y.scale);
         }
     set_range(values, charts.size() > 1);
@@ -76,7 +79,8 @@ struct Frame {
 /// Titles of the axes and scales; the ticks of a setting are the values that a study tried.
 void set_axes(Sheet& sheet, const Frame& frame, const std::vector<Chart>& charts) {
   const Quantity &x = charts.front().x, &y = charts.front().y;
-  sheet.x_label = x.label(), sheet.y_label = y.label();
+  sheet.x_label = x.label();
+  sheet.y_label = y.label();
   for (const auto& [axis, log] : {std::pair("x", frame.log_x), {"y", frame.log_y}})
     if (log)
       sheet.settings += std::string("set logscale ") + axis + "\nset format " + axis + " '%g'\n";
@@ -231,7 +235,8 @@ Sheet curves_sheet(const std::vector<Chart>& charts) {
 Sheet series_sheet(const std::vector<PlotPanel>& panels, const std::string& value) {
   Sheet sheet;
   const Quantity x = quantity("t"), y = quantity(value);
-  sheet.x_label = x.label(), sheet.y_label = y.label();
+  sheet.x_label = x.label();
+  sheet.y_label = y.label();
   sheet.csv = kPointColumns;
   Variants variants;
   double low = 0, high = 0;
@@ -246,7 +251,10 @@ Sheet series_sheet(const std::vector<PlotPanel>& panels, const std::string& valu
                      csv_field(series.label) + "," + exact(series.t[k]) + "," + exact(series.y[k]) +
                      ",ok,,no,," + csv_field(series.key) + "," + csv_field(series.scene) + "\n";
       for (const double v : series.y)
-        if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+        if (std::isfinite(v)) {
+          low = std::min(low, v);
+          high = std::max(high, v);
+        }
       sheet.draw(only(id++, false, "column(4)", "(column(5)*" + exact(y.unit.scale) + ")"),
                  "with lines lw 1.5 lc rgb '" + colour_of(series.solver) + "' dt " +
                      variants.dash(series.solver, series.label),

@@ -67,8 +67,10 @@ std::string frontier_bars(const std::vector<std::string>& solvers, const std::st
 std::filesystem::path plot_frontiers(const std::vector<ParameterFrontier>& all,
                                      const std::filesystem::path& folder, const std::string& stem) {
   std::vector<std::string> parameters, solvers;
-  for (const ParameterFrontier& one : all)
-    push_unique(parameters, one.parameter), push_unique(solvers, one.solver);
+  for (const ParameterFrontier& one : all) {
+    push_unique(parameters, one.parameter);
+    push_unique(solvers, one.solver);
+  }
   double most = 10;
   std::string ticks;
   for (std::size_t k = 0; k < parameters.size(); ++k)

@@ -44,7 +44,8 @@ constexpr Shade kShades[] = {{0.01, "#1F7A5A", "#FFFFFF", "RMS stretch up to 1 %
 
 Sheet map_sheet(const std::vector<StatusMap>& maps) {
   Sheet sheet;
-  sheet.x_label = maps.front().x.label(), sheet.y_label = maps.front().y.label();
+  sheet.x_label = maps.front().x.label();
+  sheet.y_label = maps.front().y.label();
   sheet.csv = "curve,solver,label,x,y,column,row,status,reason,case,stretch\n";
   std::set<Status::Kind> kinds;
   for (const StatusMap& map : maps)

@@ -37,7 +37,8 @@ void Sheet::draw(const std::string& data, const std::string& look, const std::st
 void Sheet::explain(const std::string& look, const std::string& title) {
   const std::string entry = look + " title " + gnuplot_string(title);
   if (title.empty() || std::ranges::find(key, entry) != key.end()) return;
-  key.push_back(entry), titles.push_back(title);
+  key.push_back(entry);
+  titles.push_back(title);
 }
 
 namespace {

@@ -52,7 +52,9 @@ void fill(const Frontier& frontier, const FrontierQuestion& question, ParameterF
 std::optional<ParameterFrontier> search(const FrontierSetting& setting, const std::string& solver,
                                         Store& store, const CampaignOptions& options) {
   ParameterFrontier found;
-  found.solver = solver, found.parameter = setting.name, found.unit = setting.unit;
+  found.solver = solver;
+  found.parameter = setting.name;
+  found.unit = setting.unit;
   found.lacks = setting.lacks;
   if (!found.lacks.empty()) return found;
   const FrontierQuestion& question = setting.question;
@@ -77,7 +79,8 @@ std::optional<ParameterFrontier> search(const FrontierSetting& setting, const st
     return join(wrong, ", ");
   };
   const CaseFrontier result = find_frontier(question, store, options, judge);
-  found.cases = result.frontier.probes.size(), found.ran = result.ran;
+  found.cases = result.frontier.probes.size();
+  found.ran = result.ran;
   fill(result.frontier, question, found);
   if (result.interrupted) return {};
   return found;

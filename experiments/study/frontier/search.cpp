@@ -189,26 +189,32 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
   SearchRange range;
   const SolverChoice choice = parse_solver(base.solver);
   if (of == "dt") {
-    range.from = 1e-3, range.to = 0.5;
+    range.from = 1e-3;
+    range.to = 0.5;
   } else if (of_scene(of)) {
     const SceneKey* key = find_scene_key(of.substr(0, of.find('|')));
     if (key && !key->choices.empty())
       throw InputError("'" + of + "' is one of " + std::string(key->choices) + ", not a number");
-    if (key) range.from = key->range.min, range.to = key->range.max;
+    if (key) {
+      range.from = key->range.min;
+      range.to = key->range.max;
+    }
   } else {
     const ParamSpec& spec = find_param(choice, of.substr(0, of.find('|')));
     if (spec.kind == ParamSpec::Kind::text)
       throw InputError("'" + of + "' is a text, not a number");
     if (spec.kind == ParamSpec::Kind::choice)
       throw InputError("'" + of + "' is one of " + std::string(spec.choices) + ", not a number");
-    range.from = spec.min, range.to = spec.max;
+    range.from = spec.min;
+    range.to = spec.max;
     range.whole = spec.kind == ParamSpec::Kind::integer;
   }
   // Ranges such as 0 to infinity only say what is a number at all.
   const bool endless = !(range.to > range.from) || range.to > 1e4;
   if (endless && !(from && to))
     throw InputError("'" + of + "' has no range of its own: give --from and --to");
-  range.from = from.value_or(range.from), range.to = to.value_or(range.to);
+  range.from = from.value_or(range.from);
+  range.to = to.value_or(range.to);
   if (!(range.from < range.to))
     throw InputError("--from " + shortest(range.from) + " must be below --to " +
                      shortest(range.to));

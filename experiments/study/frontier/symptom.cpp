@@ -40,7 +40,10 @@ double swing_energy(const Scene& scene) {
     double reach = std::numeric_limits<double>::infinity(), height = 0;
     for (const int pin : scene.pins) {
       const double way = (scene.mesh.rest[i] - scene.mesh.rest[to_index(pin)]).norm();
-      if (way < reach) reach = way, height = scene.start.x[to_index(pin)].dot(up);
+      if (way < reach) {
+        reach = way;
+        height = scene.start.x[to_index(pin)].dot(up);
+      }
     }
     energy +=
         scene.mesh.mass[i] * scene.gravity.norm() * (scene.start.x[i].dot(up) - (height - reach));

@@ -45,7 +45,10 @@ std::string effects_of(const Scene& scene) {
 }
 
 Scene without_effects(Scene scene) {
-  scene.bending.reset(), scene.wind.reset(), scene.colliders.clear(), scene.self_collision.reset();
+  scene.bending.reset();
+  scene.wind.reset();
+  scene.colliders.clear();
+  scene.self_collision.reset();
   return scene;
 }
 
@@ -56,8 +59,10 @@ Scene touching_nothing(Scene scene) {
     if (auto* const plane = std::get_if<Plane>(&c.shape)) plane->offset -= kAway;
     if (auto* const ball = std::get_if<Ball>(&c.shape)) ball->center.y() -= kAway;
     if (auto* const box = std::get_if<Box>(&c.shape)) box->center.y() -= kAway;
-    if (auto* const capsule = std::get_if<Capsule>(&c.shape))
-      capsule->from.y() -= kAway, capsule->to.y() -= kAway;
+    if (auto* const capsule = std::get_if<Capsule>(&c.shape)) {
+      capsule->from.y() -= kAway;
+      capsule->to.y() -= kAway;
+    }
     if (auto* const body = std::get_if<MeshBody>(&c.shape)) body->center.y() -= kAway;
   }
   return scene;
@@ -89,7 +94,8 @@ class Copies final : public Solver {
 class TimedScene {
  public:
   TimedScene(const std::string& scene, const std::string& why) : wall_(false) {
-    row_.scene = scene, row_.refused = why;
+    row_.scene = scene;
+    row_.refused = why;
   }
   TimedScene(const Scene& scene, const EffectBenchOptions& options) : wall_(options.copies > 0) {
     const SolverChoice choice = parse_solver(options.solver);

@@ -455,7 +455,8 @@ void expect_beyond_is_outside(const auto& shape) {
     const bool out = surface(shape, x).distance >= thickness + way;
     const bool said = fast.beyond(vec3t<double>(x), way * way, thickness);
     EXPECT_TRUE(out || !said);
-    beyond += said, outside += out;
+    beyond += said;
+    outside += out;
   }
   EXPECT_GT(beyond, outside * 7 / 10);
 }

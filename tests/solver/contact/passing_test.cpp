@@ -32,7 +32,8 @@ std::optional<Vec3> searched_normal(const Shape& shape, const Vec3& a, const Vec
       low += third;
   }
   if (at(low).distance >= 0) return {};
-  high = low, low = 0;
+  high = low;
+  low = 0;
   for (int k = 0; k < 100; ++k) (at((low + high) / 2).distance > 0 ? low : high) = (low + high) / 2;
   return at(low).normal;
 }
@@ -54,7 +55,10 @@ std::optional<Vec3> entry_normal(const Shape& shape, const Vec3& a, const Vec3& 
   Vec3 normal = Vec3::Zero();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double sign = d[axis] > 0 ? 1 : -1, enters = (-sign * h[axis] - a[axis]) / d[axis];
-    if (enters > in) in = enters, normal = -sign * Vec3::Unit(axis);
+    if (enters > in) {
+      in = enters;
+      normal = -sign * Vec3::Unit(axis);
+    }
     out = std::min(out, (sign * h[axis] - a[axis]) / d[axis]);
   }
   if (in < 0 || in >= out) return {};
@@ -105,26 +109,36 @@ std::pair<int, int> thrown(const Shape& shape, const Vec3& center, const Motions
   Collider placed{.shape = shape,
                   .motion = {.velocity = motions.velocity, .spin = motions.spin, .pivot = center}};
   if (auto* ball = std::get_if<Ball>(&placed.shape)) ball->center = center;
-  if (auto* box = std::get_if<Box>(&placed.shape))
-    box->center = center, box->rotation = motions.turn;
-  if (auto* capsule = std::get_if<Capsule>(&placed.shape))
-    capsule->from += center, capsule->to += center;
+  if (auto* box = std::get_if<Box>(&placed.shape)) {
+    box->center = center;
+    box->rotation = motions.turn;
+  }
+  if (auto* capsule = std::get_if<Capsule>(&placed.shape)) {
+    capsule->from += center;
+    capsule->to += center;
+  }
   /// In the solid's own frame, of the point of it that is at p at time t.
   const auto own = [&](const Vec3& p, double t) -> Vec3 {
     const Vec3 q = second::started(placed.motion, p, t) - center;
     return std::holds_alternative<Box>(shape) ? Vec3(motions.turn.conjugate() * q) : q;
   };
   Scene scene;
-  scene.gravity.setZero(), scene.dt = kDt, scene.steps = 1, scene.thickness = kThickness;
+  scene.gravity.setZero();
+  scene.dt = kDt;
+  scene.steps = 1;
+  scene.thickness = kThickness;
   std::vector<Vec3> free;
   while (free.size() < kPoints) {
     const Vec3 x = center + Vec3(number(), number(), number()),
                target = center + 0.5 * Vec3(number(), number(), number()),
                way = (1 + 0.7 * number()) * (target - x);
     if (second::surface_at(placed, x, 0).distance < kThickness) continue;
-    scene.start.x.push_back(x), scene.start.v.push_back(way / kDt), free.push_back(x + way);
+    scene.start.x.push_back(x);
+    scene.start.v.push_back(way / kDt);
+    free.push_back(x + way);
   }
-  scene.mesh.rest = scene.start.x, scene.mesh.mass.assign(kPoints, 0.3);
+  scene.mesh.rest = scene.start.x;
+  scene.mesh.mass.assign(kPoints, 0.3);
   scene.colliders = {placed};
   const State state = simulate(
       scene, listing(std::string("iterations=1,contact=continuous,precision=") + precision), 1);

@@ -58,8 +58,10 @@ TEST(SelfCollision, NoneOfManyFastPairsPassesWhereverTheCellsLie) {
     const Vec3 along = Vec3(number(random), number(random), number(random)).normalized();
     const double gap = 0.11 + 0.1 * std::abs(number(random));
     const double way = 0.2 + 0.19 * std::abs(number(random));  // of four diameters: of each, half
-    x.push_back(at), x.push_back(at + gap * along);
-    v.push_back(32 * way * along), v.push_back(-32 * way * along);
+    x.push_back(at);
+    x.push_back(at + gap * along);
+    v.push_back(32 * way * along);
+    v.push_back(-32 * way * along);
     apart.push_back(along);
   }
   const State state = run(particles(x, v), "self=grid,iterations=1", 1);
@@ -89,12 +91,14 @@ TEST(SelfCollision, AFoldThatClosesSlowlyIsSeenInTime) {
   for (const char* layout : {"layout=interleaved", "layout=batches", "order=mesh"}) {
     Scene scene = hanging_sheet(16, 4, {true, false, false});
     const double spacing = 1.0 / 15, diameter = spacing / 2;
-    scene.pins.clear(), scene.gravity.setZero();
+    scene.pins.clear();
+    scene.gravity.setZero();
     scene.self_collision = SelfCollision{.radius = diameter / 2};
     for (std::size_t v = 0; v < scene.start.x.size(); ++v)
       if (v % 16 >= 8) {
         scene.start.x[v].x() = static_cast<double>(15 - v % 16) * spacing;
-        scene.start.x[v].z() = spacing, scene.start.v[v].z() = -spacing;
+        scene.start.x[v].z() = spacing;
+        scene.start.v[v].z() = -spacing;
       }
     const SolverChoice choice =
         parse_solver(std::string("jakobsen:precision=double,substeps=1,") + layout);
@@ -103,7 +107,8 @@ TEST(SelfCollision, AFoldThatClosesSlowlyIsSeenInTime) {
     State state;
     double least = spacing;
     for (int n = 0; n < 64; ++n) {
-      solver->step(n * scene.dt, scene.dt), solver->store(state);
+      solver->step(n * scene.dt, scene.dt);
+      solver->store(state);
       for (std::size_t v = 0; v < state.x.size(); ++v)
         if (v % 16 < 8) {
           const double gap = (state.x[v + 15 - 2 * (v % 16)] - state.x[v]).norm();
@@ -122,7 +127,8 @@ TEST(SelfCollision, TheOctreeDoesNotSeeAcrossASplitAndTheGridDoes) {
     for (const double sy : {-1, 1})
       for (const double sz : {-1, 1}) x.emplace_back(sx, sy, sz);
   std::vector<Vec3> v(x.size(), Vec3::Zero());
-  v[0] = {0.1, 0.1, 0.1}, v[1] = -v[0];
+  v[0] = {0.1, 0.1, 0.1};
+  v[1] = -v[0];
   const Scene scene = particles(x, v);
   const auto gap = [&](const char* params) {
     const State s = run(scene, params, 40);
@@ -250,7 +256,10 @@ TEST(NeighbourGrid, MovingPairsAreThoseWithinTheirOwnWay) {
   const std::vector<Vec3> now = anywhere(400, 1, 4);
   std::vector<Vec3> before = now, rest = now;
   const std::vector<Vec3> way = anywhere(800, 0.2, 5);
-  for (std::size_t i = 0; i < 400; ++i) before[i] += way[i], rest[i] += 4 * way[400 + i];
+  for (std::size_t i = 0; i < 400; ++i) {
+    before[i] += way[i];
+    rest[i] += 4 * way[400 + i];
+  }
   const auto x = points<float>(now), previous = points<float>(before),
              at_rest = points<float>(rest);
   const float within = 0.1F, reach = within + 0.4F * std::sqrt(3.0F), ignored = 0.8F;
@@ -337,7 +346,10 @@ TEST(NeighbourGrid, ListsOfPartsApartShareNoParticle) {
       std::size_t pairs = 0;
       for (std::size_t n = first; n < end; n += step) {
         std::set<std::uint32_t> own;
-        for (const auto& [a, b] : lists[n]) own.insert({a, b}), ++pairs;
+        for (const auto& [a, b] : lists[n]) {
+          own.insert({a, b});
+          ++pairs;
+        }
         for (const std::uint32_t i : own) EXPECT_TRUE(seen.insert(i).second) << i;
       }
       return pairs;

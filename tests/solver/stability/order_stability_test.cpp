@@ -112,7 +112,8 @@ Growth growth(const Scene& scene, const std::vector<Link>& links, double omega, 
       if (w[a] + w[b] == 0) continue;
       const Eigen::Vector2d d = (scene.mesh.rest[b] - scene.mesh.rest[a]).head<2>().normalized();
       const Eigen::Vector2d move = omega * d.dot(now[b] - now[a]) / (w[a] + w[b]) * d;
-      now[a] += w[a] * move, now[b] -= w[b] * move;
+      now[a] += w[a] * move;
+      now[b] -= w[b] * move;
     }
     double square = 0;
     for (std::size_t i = 0; i < w.size(); ++i)

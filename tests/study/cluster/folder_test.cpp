@@ -37,8 +37,10 @@ class Folder : public testing::Test {
   /// Keeps a record of case `n` in the store.
   static void put(const fs::path& store, int n, double value = 1, Kind kind = Kind::ok) {
     Record record = synthetic::iterations("hang").front();
-    record.key = key(n), record.id = "case " + std::to_string(n);
-    record.values = {{"a", value}}, record.status = {kind, "", -1, -1};
+    record.key = key(n);
+    record.id = "case " + std::to_string(n);
+    record.values = {{"a", value}};
+    record.status = {kind, "", -1, -1};
     Store(store).commit(record, {.series = "{\"step\":[" + std::to_string(n) + "]}"});
   }
   const Scratch root_;
@@ -61,8 +63,10 @@ TEST_F(Folder, APlanAsksForWhatItsLargestShardNeeds) {
   EXPECT_EQ(estimated_seconds(0), 0.1);
   EXPECT_NEAR(estimated_seconds(1e9), 15.1, 1e-9);
   Study study;
-  study.name = "s", study.preset = "p";
-  study.scenes = {"hang"}, study.solvers = {"xpbd", "jakobsen:iterations=2"};
+  study.name = "s";
+  study.preset = "p";
+  study.scenes = {"hang"};
+  study.solvers = {"xpbd", "jakobsen:iterations=2"};
   study.axes = {{"cloth.grid", {"[4, 4]", "[9, 5]", "[3, 3]"}}};
   const std::vector<Case> cases = taut::cases_of(study);
   const Plan is = plan(study, cases, {60, 400 << 20}, 2, 1);
@@ -137,8 +141,10 @@ TEST_F(Folder, ItsStatusIsThatOfEveryShard) {
 
 TEST_F(Folder, AMergeTakesResultsBeforeFailures) {
   const fs::path folder = make("c", {1, 1, 2, 2, 2});
-  put(shard_folder(folder, 1), 0, 1, Kind::timeout), put(shard_folder(folder, 1), 1, 1, Kind::oom);
-  put(shard_folder(folder, 2), 0, 5), put(shard_folder(folder, 2), 2, 6);
+  put(shard_folder(folder, 1), 0, 1, Kind::timeout);
+  put(shard_folder(folder, 1), 1, 1, Kind::oom);
+  put(shard_folder(folder, 2), 0, 5);
+  put(shard_folder(folder, 2), 2, 6);
   Store(shard_folder(folder, 2)).begin_session("mine");
   Store into(root_.path() / "m");
   const Merge merge({folder});
@@ -175,7 +181,8 @@ TEST_F(Folder, AMergeTakesResultsBeforeFailures) {
 TEST_F(Folder, AFailureDoesNotHideThatTwoResultsDiffer) {
   const fs::path folders[] = {make("a", {1}), make("b", {1}), make("c", {1})};
   put(shard_folder(folders[0], 1), 0, 0, Kind::timeout);
-  put(shard_folder(folders[1], 1), 0, 1), put(shard_folder(folders[2], 1), 0, 2);
+  put(shard_folder(folders[1], 1), 0, 1);
+  put(shard_folder(folders[2], 1), 0, 2);
   std::vector<fs::path> order(std::begin(folders), std::end(folders));
   do {
     const MergePlan plan = Merge(order).look(Store(root_.path() / "into"));
@@ -200,8 +207,10 @@ TEST_F(Folder, AMergeNamesConflictsAndWhatOneSideLacks) {
   };
   const fs::path a = make("a", {1, 1}), b = make("b", {1, 1, 1}), c = make("c", {1, 1});
   const fs::path nothing = root_.path() / "nothing";
-  put(shard_folder(a, 1), 0, 1), put(shard_folder(c, 1), 0, 2);
-  put(shard_folder(c, 1), 1, 1, Kind::crash), put(shard_folder(a, 1), 1, 3);
+  put(shard_folder(a, 1), 0, 1);
+  put(shard_folder(c, 1), 0, 2);
+  put(shard_folder(c, 1), 1, 1, Kind::crash);
+  put(shard_folder(a, 1), 1, 3);
   EXPECT_EQ(sentences({a}, nothing), "");
   EXPECT_EQ(sentences({a, c}, nothing),
             "case 0: a/shards/0001 and c/shards/0001 have different results\n");

@@ -15,8 +15,10 @@ namespace {
 
 Study two_cases() {
   Study study;
-  study.name = "made-up", study.question = "?";
-  study.scenes = {"hang"}, study.solvers = {"jakobsen", "bullet"};
+  study.name = "made-up";
+  study.question = "?";
+  study.scenes = {"hang"};
+  study.solvers = {"jakobsen", "bullet"};
   study.settings = {"cloth.grid=[4, 4]", "time.duration=0.1"};
   return study;
 }
@@ -34,7 +36,10 @@ class Timed {
     }
     for (const auto& [host, seconds] : hosts) {
       StudyBench session = StudyBench::here(study.name);
-      if (!host.empty()) session.host = host, session.machine = "the processor of " + host;
+      if (!host.empty()) {
+        session.host = host;
+        session.machine = "the processor of " + host;
+      }
       SceneBench scene{"hang", {0.99, 1, 1.01}, {}};
       for (std::size_t i = 0; i < records.size(); ++i) {
         const std::vector<double> samples(10, seconds * static_cast<double>(i + 1));

@@ -67,7 +67,9 @@ class Copies {
         files_{.series = to_json(run_.series)} {}
   void put(Store& into, const std::string& key, const std::string& id, const CaseSpec& spec) {
     Record& record = run_.record;
-    record.key = key, record.id = id, record.spec = spec;
+    record.key = key;
+    record.id = id;
+    record.spec = spec;
     const SolverChoice choice = parse_solver(spec.solver);
     for (const std::string name : {"iterations", "seed"})
       record.params[name] = choice.params.value(name);

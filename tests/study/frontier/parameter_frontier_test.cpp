@@ -217,9 +217,15 @@ TEST(FrontierSettings, TheoriesAreClosedForms) {
 
 ParameterFrontier kept(double good, double bad, bool downwards = false) {
   ParameterFrontier one;
-  one.solver = "jakobsen", one.parameter = "time step", one.unit = "s";
-  one.downwards = downwards, one.from = downwards ? 1 : 0.01, one.to = downwards ? 0.01 : 1;
-  one.good = good, one.bad = bad, one.symptom = std::isnan(bad) ? "" : "explodes";
+  one.solver = "jakobsen";
+  one.parameter = "time step";
+  one.unit = "s";
+  one.downwards = downwards;
+  one.from = downwards ? 1 : 0.01;
+  one.to = downwards ? 0.01 : 1;
+  one.good = good;
+  one.bad = bad;
+  one.symptom = std::isnan(bad) ? "" : "explodes";
   one.beyond = {"swing", {"time.dt=\"0.2\""}, "jakobsen"};
   return one;
 }
