@@ -30,26 +30,29 @@ int first_steps(const Scene& scene) {
   return static_cast<int>(std::lround(std::min<double>(steps, scene.steps)));
 }
 
-/// The velocity [m/s] of the frame from which a cloth is seen that hangs on nothing: that of its
-/// start.
-Vec3 mean_velocity(const Scene& scene) {
-  Vec3 momentum = Vec3::Zero();
-  double mass = 0;
-  for (std::size_t i = 0; i < scene.mesh.mass.size(); ++i) {
-    momentum += scene.mesh.mass[i] * scene.start.v[i];
-    mass += scene.mesh.mass[i];
-  }
-  return momentum / mass;
-}
-
-/// The way [m] until time t that is none of the cloth's own: the mean of its pins, or without any
-/// that of its start.
-Vec3 way_of_frame(const Scene& scene, double t) {
-  if (scene.pins.empty()) return t * mean_velocity(scene);
+/// The way [m] of the pins in the mean until time t, which is none of the cloth's own.
+Vec3 way_of_pins(const Scene& scene, double t) {
   Vec3 sum = Vec3::Zero();
   for (const int pin : scene.pins)
     sum += pin_position(scene, pin, t) - scene.start.x[static_cast<std::size_t>(pin)];
   return sum / static_cast<double>(scene.pins.size());
+}
+
+Vec3 weighted_mean(const Scene& scene, const std::vector<Vec3>& all) {
+  Vec3 sum = Vec3::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    sum += scene.mesh.mass[i] * all[i];
+    mass += scene.mesh.mass[i];
+  }
+  return sum / mass;
+}
+
+/// Takes from the ways [m] of all vertices until time t what a cloth does that keeps its shape: the
+/// way of its pins, or without any its fall, which no solver of links can miss.
+void keep_own_way(const Scene& scene, double t, std::vector<Vec3>& ways) {
+  const Vec3 common = scene.pins.empty() ? weighted_mean(scene, ways) : way_of_pins(scene, t);
+  for (Vec3& way : ways) way -= common;
 }
 
 /// From which step a case is off, is what its solver declares, and nothing else of it is known: the
@@ -76,7 +79,8 @@ class StepErrors final : public Metric {
            "share of the way that the cloth would have gone in the time T = 1.3 sqrt(size/g), half "
            "a second of a square metre, if no step "
            "had missed any of the exact step at the lengths that the links have: w.(w + l) "
-           "over |w + l|^2, w its way beside its pins', l the sum of (T - t) times the velocity "
+           "over |w + l|^2, w its way beside that of its pins or, without any, of its centre of "
+           "mass, l the sum of (T - t) times the velocity "
            "that the step at t misses; 0 of a cloth that stands still; none if it would hardly "
            "have moved, at most 5 % of its size",
        .window = Window::none,
@@ -167,14 +171,19 @@ class StepErrors final : public Metric {
   double way_share() const {
     if (end_.empty() || first_believed_ < kEnough * first_count_ || first_believed_ == 0)
       return Summary::kNone;
+    const double seconds = first_ * scene_.dt;
+    std::vector<Vec3> way = end_, full = end_;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      way[i] -= scene_.start.x[i];
+      full[i] = way[i] + first_count_ / first_believed_ * lost_[i];
+    }
+    keep_own_way(scene_, seconds, way);
+    keep_own_way(scene_, seconds, full);
     double along = 0, square = 0;
     const std::vector<std::size_t> free = free_vertices(scene_);
-    const Vec3 frame = way_of_frame(scene_, first_ * scene_.dt);
     for (const std::size_t i : free) {
-      const Vec3 way = end_[i] - scene_.start.x[i] - frame,
-                 full = way + first_count_ / first_believed_ * lost_[i];
-      along += way.dot(full);
-      square += full.squaredNorm();
+      along += way[i].dot(full[i]);
+      square += full[i].squaredNorm();
     }
     const bool moves =
         std::sqrt(square / static_cast<double>(free.size())) >= kLeastWay * extent(scene_);
