@@ -100,12 +100,8 @@ class NewtonPass final : public Pass<double> {
 
   void take_over(const Pass<double>& before) override {
     const auto& old = static_cast<const NewtonPass&>(before);
-    if (contacts_) contacts_->take_over(*old.contacts_);
-    std::size_t j = 0;  // springs keep their order; more of them can move now
-    for (std::size_t k = 0; keeps() && k < old.springs_.size(); ++k) {
-      while (springs_[j].a != old.springs_[k].a || springs_[j].b != old.springs_[k].b) ++j;
-      tension_[j] = old.tension_[k];
-    }
+    contacts_.take_over(old.contacts_);
+    kept_.take_over(old.kept_);
   }
 
   Points<double>* target() override { return &y_; }

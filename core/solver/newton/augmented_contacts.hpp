@@ -26,6 +26,10 @@ class AugmentedContacts {
       : contacts_(make_contacts(s.scene, s.params)), stiffness_(contacts_ ? s.w.size() : 0) {}
 
   void forget();  ///< no force
+  /// The forces of the same contacts when fewer vertices could move.
+  void take_over(const AugmentedContacts& before) {
+    if (contacts_) contacts_->take_over(*before.contacts_);
+  }
   void begin(double t, double h);
   /// elastic: of all links and bending at each vertex [N/m].
   void set_stiffness(const Particles<double>& p, std::span<const double> elastic, double h);

@@ -2,6 +2,15 @@
 
 namespace taut::solver::implicit {
 
+void KeptTensions::take_over(const KeptTensions& before) {
+  std::size_t j = 0;
+  for (std::size_t k = 0; k < before.tension_.size(); ++k) {
+    const Spring& one = before.springs_[k];
+    while (springs_[j].a != one.a || springs_[j].b != one.b) ++j;
+    tension_[j] = before.tension_[k];
+  }
+}
+
 void KeptTensions::put_into(Hessian& hessian, const std::vector<Vec3>& x) {
   excess_.assign(springs_.size(), 0);
   for (std::size_t j = 0; j < springs_.size(); ++j) {

@@ -30,6 +30,8 @@ class KeptTensions {
 
   bool on() const { return !tension_.empty(); }
   void forget() { std::ranges::fill(tension_, 0); }
+  /// Those of the same springs when fewer could move: springs keep their order.
+  void take_over(const KeptTensions& before);
   /// The springs' part of H at x.
   void put_into(Hessian&, const std::vector<Vec3>& x);
   /// By the solution for that H [m].
