@@ -37,7 +37,8 @@ TEST(CaseText, IsCalledByWhatWasAskedAndAddressedByWhatItIs) {
   EXPECT_EQ(one.id, "hang cloth.grid=[4,3] dt=1/32 duration=2 xpbd:iterations=4");
   EXPECT_EQ(one.spec.solver,
             "xpbd:substeps=8,iterations=4,structural=0,shear=0,bend=0,precision=float"
-            ",material=scene,multipliers=keep,order=coloured,seed=1,layout=auto,tethers=off,"
+            ",material=scene,multipliers=keep,method=sweeps,primal=off,order=coloured,seed=1,"
+            "layout=auto,tethers=off,"
             "contact=continuous,faces=off,self=grid,simd=auto,threads=1");
   EXPECT_EQ(one.spec.overrides.size(), 3u);
   EXPECT_EQ(one.scene->steps, 64);

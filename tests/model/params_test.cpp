@@ -116,7 +116,8 @@ TEST(SolverTexts, AreReadWithErrorsCountedFromTheFirstCharacter) {
   EXPECT_EQ(choice.entry->name, "xpbd");
   EXPECT_EQ(choice.canonical(),
             "xpbd:substeps=8,iterations=3,structural=0,shear=0,bend=0.5,precision=float"
-            ",material=scene,multipliers=keep,order=coloured,seed=1,layout=auto,tethers=off,"
+            ",material=scene,multipliers=keep,method=sweeps,primal=off,order=coloured,seed=1,"
+            "layout=auto,tethers=off,"
             "contact=continuous,faces=off,self=grid,simd=auto,threads=1");
   EXPECT_EQ(choice.brief(), "xpbd:iterations=3,bend=0.5");
   EXPECT_EQ(parse_solver("xpbd:substeps=8").brief(), "xpbd");
