@@ -113,12 +113,13 @@ std::vector<Collider> obstacles(const Scene& scene) {
   Motion motion;
   motion.velocity = {0, 2, 0}, motion.spin = {0, 3, 1}, motion.pivot = box.center;
   return {Collider{Plane{Vec3(1, 2, 2) / 3, Vec3(1, 2, 2).dot(middle) / 3 - 0.3}, {}, 0.5},
-          Collider{Ball{middle + Vec3(-0.2, 0.1, 0), 0.2}, {}, 0.3}, Collider{box, motion, 0.8},
+          Collider{Ball{middle + Vec3(-0.2, 0.1, 0), 0.2}, {}, 0.3},
+          Collider{box, motion, 0.8},
           Collider{Ball{middle + Vec3(0, -0.3, 0), 0.15}, motion, 0},
           Collider{Capsule{middle + Vec3(-0.3, -0.2, 0.1), middle + Vec3(0.1, -0.1, -0.1), 0.1},
                    motion, 0.2},
-          Collider{MeshBody{torus(0.2, 0.08, 12, 8).mesh(), middle + Vec3(0.1, -0.2, -0.2)},
-                   motion, 0.2}};
+          Collider{MeshBody{torus(0.2, 0.08, 12, 8).mesh(), middle + Vec3(0.1, -0.2, -0.2)}, motion,
+                   0.2}};
 }
 
 TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
