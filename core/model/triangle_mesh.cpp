@@ -45,7 +45,7 @@ TriangleMesh::TriangleMesh(std::vector<Vec3> vertices, std::vector<Triangle> tri
         (vertices_[to_place(t[0])] + vertices_[to_place(t[1])] + vertices_[to_place(t[2])]) / 3);
   }
   join_edges();
-  nodes_.reserve(2 * triangles_.size() / (kLeaf / 2) + 1);
+  nodes_.reserve(4 * triangles_.size() / (kLeaf + 1) + 1);
   if (!triangles_.empty()) build(0, static_cast<std::int32_t>(order_.size()), middles);
   make_boxes();
   make_normals();

@@ -73,7 +73,7 @@ class TriangleMesh {
     std::int32_t first = 0;  ///< of a leaf: in order_; else the right child
     std::int32_t count = 0;  ///< of a leaf's triangles; 0: none
   };
-  static constexpr std::int32_t kLeaf = 4;     ///< triangles at most
+  static constexpr std::int32_t kLeaf = 2;     ///< triangles at most
   static constexpr std::size_t kDeepest = 64;  ///< levels; halves of 2^31 triangles have 31
 
   enum class Feature { inside, edge, corner };

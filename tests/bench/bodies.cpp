@@ -1,11 +1,14 @@
-// What a body of triangles costs: to be made, to be refitted, and to be asked where a point or a
-// path meets it.
+// What a body of triangles costs: to be read, to be made, to be refitted, and to be asked where a
+// point or a path meets it.
 #include "tests/support/bodies.hpp"
 
 #include <benchmark/benchmark.h>
 
+#include <cstdio>
 #include <random>
+#include <string>
 
+#include "core/io/mesh_io.hpp"
 #include "tests/bench/bench.hpp"
 
 namespace taut::bench {
@@ -37,14 +40,30 @@ double seconds(const F& f) {
   return seconds_of(CLOCK_THREAD_CPUTIME_ID) - begin;
 }
 
+std::string as_obj(const Triangles& body) {
+  std::string text;
+  char line[120];
+  for (const Vec3& x : body.vertices) {
+    std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", x.x(), x.y(), x.z());
+    text += line;
+  }
+  for (const auto& [a, b, c] : body.triangles) {
+    std::snprintf(line, sizeof line, "f %d %d %d\n", a + 1, b + 1, c + 1);
+    text += line;
+  }
+  return text;
+}
+
 void body(benchmark::State& state) {
   const Triangles ball = ball_of_triangles(1, static_cast<int>(state.range(0)));
   const Questions questions;
   TriangleMesh mesh(ball.vertices, ball.triangles);
   const double count = static_cast<double>(ball.triangles.size()),
                asked = static_cast<double>(questions.near.size());
-  double make = 0, refit = 0, near = 0, anywhere = 0, hit = 0, rounds = 0;
+  const std::string text = as_obj(ball);
+  double read = 0, make = 0, refit = 0, near = 0, anywhere = 0, hit = 0, rounds = 0;
   for (auto _ : state) {
+    read += seconds([&] { benchmark::DoNotOptimize(parse_body_obj("ball.obj", text)); });
     make += seconds([&] { benchmark::DoNotOptimize(TriangleMesh(ball.vertices, ball.triangles)); });
     refit += seconds([&] { mesh.refit(ball.vertices); });
     near += seconds([&] {
@@ -60,6 +79,7 @@ void body(benchmark::State& state) {
     ++rounds;
   }
   state.counters["triangles"] = count;
+  state.counters["read_s"] = read / rounds;
   state.counters["make_s"] = make / rounds;
   state.counters["refit_s"] = refit / rounds;
   state.counters["nearest_at_1cm_s"] = near / rounds / asked;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/scene.hpp"
+#include "core/model/triangle_mesh.hpp"
 
 /// What was asked for against what an engine holds.
 namespace taut {
@@ -63,6 +64,14 @@ class SceneComparison {
       vector(what + ".from", capsule->from, std::get<Capsule>(b).from);
       vector(what + ".to", capsule->to, std::get<Capsule>(b).to);
       number(what + ".radius", capsule->radius, std::get<Capsule>(b).radius);
+    } else if (const auto* body = std::get_if<MeshBody>(&a)) {
+      const auto& other = std::get<MeshBody>(b);
+      vector(what + ".center", body->center, other.center);
+      number(what + ".rotation", 1, std::abs(body->rotation.dot(other.rotation)));
+      same(what + ".sides", body->sides == other.sides);
+      same(what + ".triangles", body->mesh->triangles() == other.mesh->triangles());
+      each(what + ".vertices", body->mesh->vertices(), other.mesh->vertices(),
+           [&](const std::string& w, const Vec3& p, const Vec3& q) { vector(w, p, q); });
     } else {
       const Box &p = std::get<Box>(a), &q = std::get<Box>(b);
       vector(what + ".center", p.center, q.center);

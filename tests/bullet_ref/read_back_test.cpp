@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "tests/bullet_ref/differences.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace taut::read_back_test {
 namespace {
@@ -44,7 +45,9 @@ Scene everything() {
       {.shape = Box{{-3, 0, 0.3}, {0.1, 0.2, 0.3}, turned}, .motion = {.spin = {0, 0, 2}}},
       {.shape = Capsule{{2, -0.3, 0.1}, {2.5, 0.4, 0.9}, 0.2},
        .motion = {.velocity = {0, 1, 0}, .spin = {1, 0, 2}}},
-      {.shape = Capsule{{-2, 5, 0}, {-2, 4, 0}, 0.3}}};
+      {.shape = Capsule{{-2, 5, 0}, {-2, 4, 0}, 0.3}},
+      {.shape = MeshBody{torus(0.3, 0.1, 7, 5).mesh(), {3, 0.2, 0.7}, turned},
+       .motion = {.velocity = {0, 1, 0}, .spin = {1, 0, 2}}}};
   scene.wind = Wind{.velocity = {3, 0, 1}, .strength = 0.2, .law = Wind::Law::literal};
   scene.gravity = {0.5, -3.7, 0.1};
   scene.damping = 0.3;

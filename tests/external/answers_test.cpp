@@ -265,8 +265,8 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   EXPECT_EQ(file["format"], "taut-scene/3");
   EXPECT_EQ(file["colliders"][3], (Json{{"type", "mesh"},
                                         {"center", {1, 2, 3}},
-                                        {"rotation", {2.0 / 9, 4.0 / 9, -5.0 / 9, 6.0 / 9}},
                                         {"sides", "both"},
+                                        {"rotation", {2.0 / 9, 4.0 / 9, -5.0 / 9, 6.0 / 9}},
                                         {"vertices", {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}},
                                         {"triangles", {{0, 1, 2}}},
                                         {"friction", 0.75},

@@ -197,7 +197,7 @@ duration = inf
             "x:5:8: 'mass' in [cloth] must be at least 1e-9 and at most 1e9, not 0\n"
             "x:7:9: 'shear' in [links] must be true or false, not a whole number\n"
             "x:9:8: 'type' in [[collider]] must be \"plane\" or \"ball\" or \"box\" or "
-            "\"capsule\", not \"bal\"; did you mean 'ball'?\n"
+            "\"capsule\" or \"mesh\", not \"bal\"; did you mean 'ball'?\n"
             "x:11:6: 'dt' in [time] must be a number in s or a fraction such as \"1/64\", not the "
             "string \"soon\"\n"
             "x:12:12: 'duration' in [time] must be finite\n");

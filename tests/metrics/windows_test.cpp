@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/metrics/measured.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace taut::windows_test {
 namespace {
@@ -71,7 +72,8 @@ TEST(Metrics, SayWhichValuesTheyHaveAtEveryMoment) {
   scene.colliders = {{.shape = Plane{.offset = -1}},
                      {.shape = Ball{{0.5, 0.05, 0.5}, 0.3}},
                      {.shape = Box{{0.2, 0, 0.8}, {0.2, 0.3, 0.2}}},
-                     {.shape = Capsule{{0.8, 0, 0.1}, {0.9, 0, 0.3}, 0.1}}};
+                     {.shape = Capsule{{0.8, 0, 0.1}, {0.9, 0, 0.3}, 0.1}},
+                     {.shape = MeshBody{pyramid(0.3, 0.2).mesh(), {0.2, -0.1, 0.2}}}};
   scene.self_collision = SelfCollision{.radius = 0.05};
   Scene slides = sheet(4);
   slides.colliders = {{.shape = Plane{.offset = -1}}};

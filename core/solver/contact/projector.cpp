@@ -75,80 +75,90 @@ class ProjectorOf final : public Projector<Real> {
   Contact<Real, SurfaceOf> contact_{};
 };
 
-/// A body of triangles, one particle after the other: what lies beside lanes, for each walk in the
-/// tree is another.
-///
-/// A particle that was at distance d from the surface is at d - s at least when it has moved by s
-/// against the body. So it remembers d and where that was, and hardly any particle is looked up in
-/// every sweep.
+/// Where a particle was in a body's frame, and how far from its surface at least.
+struct Seen {
+  Vec3 at = Vec3::Zero();
+  double distance = 0;  ///< m; 0: nothing is known
+};
+
+/// A body of triangles in a substep. A particle that was at distance d from the surface is at d - s
+/// at least when it has moved by s against the body: it remembers d and where that was, and hardly
+/// any particle is looked up in every sweep.
+template <class Real>
+struct BodyContact {
+  Contact<Real, MeshSurface> contact;
+  SphereSurface<Real> around;  ///< all of it
+  double rounding;             ///< m, far beyond that of coordinates
+  bool continuous;
+
+  /// Whether x, which began the substep at `previous`, has been moved.
+  bool project(Vec3T<Real>& x, const Vec3T<Real>& previous, Seen& seen) const {
+    const Real thickness = contact.thickness;
+    const Real way2 = continuous ? squared_norm(x - contact.motion(previous)) : Real(0);
+    if (around.beyond(x, way2, thickness)) return false;
+    const Vec3 at = contact.surface.local(x);
+    const double reach =
+        static_cast<double>(thickness) + 1.01 * std::sqrt(static_cast<double>(way2));
+    if (seen.distance - (at - seen.at).norm() > reach + rounding) return false;
+    const Contact<Real, MeshSurface> asked = contact;
+    const bool near = continuous ? asked.template near<true>(x, previous)
+                                 : asked.template near<false>(x, previous);
+    seen = {at, near ? 0 : asked.surface.distance_at_least(x)};
+    if (!near) return false;
+    return continuous ? asked.project_continuous(x, previous, true)
+                      : asked.project(x, previous, true);
+  }
+};
+
+/// One particle after the other, beside the lanes: each walks in the tree for itself.
 template <class Real>
 class MeshProjector final : public Projector<Real> {
  public:
-  MeshProjector(const Collider& collider, double thickness, bool continuous)
-      : collider_(collider), continuous_(continuous) {
-    contact_.thickness = static_cast<Real>(thickness);
-    contact_.friction = static_cast<Real>(collider.friction);
+  MeshProjector(const Collider& collider, double thickness, bool continuous) : collider_(collider) {
+    body_.contact.thickness = static_cast<Real>(thickness);
+    body_.contact.friction = static_cast<Real>(collider.friction);
+    body_.continuous = continuous;
+    const TriangleMesh& mesh = *std::get<MeshBody>(collider.shape).mesh;
+    body_.around.radius = static_cast<Real>(1.001 * mesh.box().diagonal().norm() / 2);
+    body_.rounding = 1e-6 * mesh.reach();
   }
 
   void begin(double t, double dt) override {
-    body_ = std::get<MeshBody>(shape_at(collider_, t + dt));
-    contact_.surface = MeshSurface<Real>(body_);
-    contact_.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
-    rounding_ = 1e-6 * body_.mesh->reach();
+    if (queued_in_) queued_in_->finish();  // what is queued reads the body of the last substep
+    const auto body = std::get<MeshBody>(shape_at(collider_, t + dt));
+    body_.contact.surface = MeshSurface<Real>(body);
+    body_.contact.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
+    body_.around.center = vec3t<Real>(body.center + body.rotation * body.mesh->box().center());
   }
 
   void project(const ParticleSpan<Real>& span, std::size_t blocks,
                ThreadPool& pool) const override {
+    queued_in_ = &pool;
     seen_.resize(span.parts() * (span.sheet.lanes > 1 ? span.sheet.stride : kLanes));
     pool.queue(
         blocks,
         [this, span](std::size_t begin, std::size_t end) {
-          with_lanes<Real, Real, Real>(span, [&](Real, auto lanes) {
+          with_lanes<Real, Real, Real>(span, [&](Real, auto of_layout) {
+            constexpr int lanes = of_layout;
+            const auto one = [&](std::size_t place, bool present) {
+              if (!present) return;
+              Vec3T<Real> x = load_vec3<Real, lanes>(span.x + place);
+              Seen& seen = seen_[lanes == kPackedLanes ? place / 4 : place];
+              if (body_.project(x, load_vec3<Real, lanes>(span.previous + place), seen))
+                store_vec3<Real, lanes>(span.x + place, x);
+            };
             visit_particles<Real, lanes>(span, span.part_of_block(begin), span.part_of_block(end),
-                                         [&](std::size_t place, bool present) {
-                                           if (present) project_one<lanes>(span, place);
-                                         });
+                                         one);
           });
         },
         span.particles >= ThreadPool::kWorthSharing);
   }
 
  private:
-  /// Where a particle was in the body's frame, and how far from its surface at least.
-  struct Seen {
-    Vec3 at = Vec3::Zero();
-    double distance = 0;  ///< m; 0: nothing is known
-  };
-
-  template <int lanes>
-  void project_one(const ParticleSpan<Real>& span, std::size_t place) const {
-    Vec3T<Real> x = load_vec3<Real, lanes>(span.x + place);
-    const Vec3T<Real> previous = load_vec3<Real, lanes>(span.previous + place);
-    Seen& seen = seen_[lanes == kPackedLanes ? place / 4 : place];
-    const Vec3 at = contact_.surface.local(x);
-    const auto thickness = static_cast<double>(contact_.thickness);
-    double reach = thickness;
-    if (continuous_) reach += 1.01 * static_cast<double>(norm(x - contact_.motion(previous)));
-    if (seen.distance - (at - seen.at).norm() > reach + rounding_) return;
-    const Contact<Real, MeshSurface> contact = contact_;
-    const bool near = continuous_ ? contact.template near<true>(x, previous)
-                                  : contact.template near<false>(x, previous);
-    if (!near) {
-      seen = {at, contact.surface.distance_at_least(x)};
-      return;
-    }
-    seen.distance = 0;
-    const bool moved = continuous_ ? contact.project_continuous(x, previous, true)
-                                   : contact.project(x, previous, true);
-    if (moved) store_vec3<Real, lanes>(span.x + place, x);
-  }
-
   Collider collider_;
-  bool continuous_;
-  MeshBody body_;
-  Contact<Real, MeshSurface> contact_{};
-  double rounding_ = 0;             ///< m, far beyond that of coordinates
+  BodyContact<Real> body_{};
   mutable std::vector<Seen> seen_;  ///< by place
+  mutable ThreadPool* queued_in_ = nullptr;
 };
 
 }  // namespace
