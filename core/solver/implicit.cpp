@@ -813,6 +813,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  loop::kSolvedFriction);
 }
 
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"multipliers", "keep"}};
+
 }  // namespace
 }  // namespace taut::solver::implicit
 
@@ -830,4 +832,5 @@ TAUT_SOLVER(implicit) = {
                  .sweeps = "iterations",
                  .all_at_once = true,
                  .stiffness = taut::kStiffnesses,
-                 .labelled = "substeps|iterations|structural"}};
+                 .alternatives = taut::solver::implicit::kAlternatives,
+                 .labelled = "substeps|iterations|structural|multipliers"}};

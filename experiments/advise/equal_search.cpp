@@ -72,13 +72,16 @@ class SolverSearch {
       cut_off_ = false;
       const double end = cpu_ + (seconds - cpu_) / left--;
       const Evaluation run = [&](const std::string& setting) { return evaluate(setting, end); };
-      // Cheap settings first: one column of dear ones would use up the time of all others.
+      const Target target{error, {}};
       const double most = kShareOfOneRun * (end - cpu_) / duration_;
-      for (double dearest = most / 64; dearest <= most && !cut_off_; dearest *= 4) {
-        const Target target{error, {}};
-        const auto tried = search_settings(solver, target, run, {}, SearchDepth::repeated, dearest);
-        if (best_for(target, tried)) break;
-      }
+      // Cheap settings first: one column of dear ones would use up the time of all others. And all
+      // columns before any alternative: where nothing reaches the error yet, each alternative
+      // walks all columns again.
+      for (const SearchDepth depth : {SearchDepth::columns, SearchDepth::repeated})
+        for (double dearest = most / 256; dearest <= most && !cut_off_; dearest *= 4) {
+          const auto tried = search_settings(solver, target, run, {}, depth, dearest);
+          if (best_for(target, tried)) break;
+        }
       cut_[error] = cut_off_;
     }
   }
