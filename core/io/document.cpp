@@ -483,9 +483,10 @@ std::vector<const Value*> Section::tables(const std::string& key) {
 void Section::finish(const std::vector<std::string>& elsewhere) {
   for (const Key& key : table_.keys) {
     if (std::find(known_.begin(), known_.end(), key.text) != known_.end()) continue;
-    std::string meant = suggestion(key.text, known_);
+    std::string meant;  // the same word elsewhere is nearer than another one here
     for (const std::string& path : elsewhere)
       if (meant.empty() && path.ends_with("." + key.text)) meant = "; did you mean '" + path + "'?";
+    if (meant.empty()) meant = suggestion(key.text, known_);
     diagnostics_.report(key.place, "unknown key '" + key.text + "' in " + name_ + meant);
   }
 }

@@ -74,7 +74,7 @@ std::vector<std::string> effects(const Scene& scene) {
   return all;
 }
 
-py::array pins_at(const Scene& scene, double t) {
+py::array places_of_pins(const Scene& scene, double t) {
   std::vector<Vec3> places;
   for (const int pin : scene.pins) places.push_back(pin_position(scene, pin, t));
   return array_of(places);
@@ -130,8 +130,9 @@ void define_scene(py::module_& m) {
           },
           py::arg("settings"), doc::kReplace)
       .def(
-          "pin_positions", [](const SourcedScene& s, double t) { return pins_at(*s.scene, t); },
-          py::arg("t"), doc::kPinPositions)
+          "pin_positions",
+          [](const SourcedScene& s, double t) { return places_of_pins(*s.scene, t); }, py::arg("t"),
+          doc::kPinPositions)
       .def(
           "surface",
           [](const SourcedScene& s, std::size_t collider, const py::object& x, double t) {
