@@ -75,7 +75,7 @@ TEST_F(BodyFiles, KeysPlaceTheBody) {
   EXPECT_NEAR(surface(later, {0.9, 1.9, 11.1}).distance, 0.1, 1e-15);
 }
 
-TEST_F(BodyFiles, FacesThatLookInwardAreTurnedAndCornersAtOnePlaceAreOne) {
+TEST_F(BodyFiles, FacesThatLookInwardAreTurned) {
   write("b.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv 1 0 0\nvt 0 0\nf 1 2 3\nf 5 4 6\nf 1 3 4\n"
         "f 2 4 3\n");

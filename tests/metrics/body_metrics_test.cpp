@@ -85,7 +85,7 @@ Vec3 in_frame(const Collider& collider, double t, const Vec3& x) {
   return body.rotation.conjugate() * (x - body.center);
 }
 
-TEST(BodyMetrics, PassagesThroughPyramidAndTorusAreThoseOfTwoThousandPointsOfEachWay) {
+TEST(BodyMetrics, PassagesThroughPyramidAndTorusAreThoseOfPoints) {
   for (const Triangles& body : {pyramid(0.7, 0.6), torus(0.3, 0.13, 7, 5)}) {
     Scene scene = sheet(6);
     scene.steps = 4;

@@ -44,7 +44,7 @@ std::optional<std::pair<double, Vec3>> slab_hit(const Vec3& a, const Vec3& b) {
   return std::pair(in, normal);
 }
 
-TEST(TriangleMesh, ABoxOfTwelveTrianglesIsTheBoxOnAMillionSegments) {
+TEST(TriangleMesh, ABoxOfTrianglesIsTheBoxOnAMillionSegments) {
   const Vec3 center(0.2, -0.4, 0.1);
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()));
   const Shape box = Box{center, kHalf, turned};
@@ -81,7 +81,7 @@ TEST(TriangleMesh, ABoxOfTwelveTrianglesIsTheBoxOnAMillionSegments) {
   EXPECT_LT(ties, 10);
 }
 
-TEST(TriangleMesh, ATessellatedBallIsTheBallWithAnErrorOfTheSecondOrder) {
+TEST(TriangleMesh, ATessellatedBallIsTheBallToSecondOrder) {
   constexpr double kRadius = 0.4;
   Random random;
   double before = 0;

@@ -137,7 +137,7 @@ int needed(const Scene& scene, const std::string& solver) {
 const std::string kSweeps = "xpbd:substeps=1,precision=double,order=mesh,iterations=";
 
 /// Rigid links, after half a second of motion.
-TEST(GlobalXpbd, NeedsAsManySolutionsOnAFinerSheetWhereSweepsGrowAsTheSquare) {
+TEST(GlobalXpbd, NeedsAsManySolutionsOnAFinerSheet) {
   const auto both = [&](int links) {
     Scene scene = swinging(links + 1, 1e6);
     std::erase_if(scene.links, [](const Link& l) { return l.family == Family::shear; });
@@ -152,7 +152,7 @@ TEST(GlobalXpbd, NeedsAsManySolutionsOnAFinerSheetWhereSweepsGrowAsTheSquare) {
 }
 
 /// The finer a chain, the more its links turn in a step that is as long: 2, 3 and 7 solutions.
-TEST(GlobalXpbd, NeedsFewMoreSolutionsOnAFinerChainLetGoFromTheSide) {
+TEST(GlobalXpbd, NeedsFewMoreSolutionsOnAFinerFallingChain) {
   const auto chain = [](int links) {
     Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
     for (Vec3& x : scene.start.x) x = {0, x.y() * std::sqrt(0.5), -x.y() * std::sqrt(0.5)};
@@ -243,7 +243,7 @@ TEST(GlobalXpbd, SaysWhatItDoesNotKnow) {
   EXPECT_EQ(refused("xpbd:method=global,primal=on,tethers=on"), 3u);
 }
 
-TEST(GlobalXpbd, GivesTheSameBitsForEveryInstructionSetAndNumberOfThreads) {
+TEST(GlobalXpbd, GivesTheSameBitsEverywhere) {
   Scene plain = crumpled(hanging_sheet(14, 11, {true, true, false}), 0.01);
   Scene touching = plain;
   touching.colliders = {Collider{Ball{Vec3(0.5, -0.5, 0), 0.2}, {}, 0.3}};

@@ -62,7 +62,7 @@ double within(const std::string& solver) {
   return solver.starts_with("pd") || solver.starts_with("admm") ? 2e-5 : 1e-9;
 }
 
-TEST(BodyContact, ABoxOfTrianglesIsTheBoxInEverySolverForAQuarterSecond) {
+TEST(BodyContact, ABoxOfTrianglesIsTheBoxInEverySolver) {
   Scene scene = sheet_above(0.26);
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.2, Vec3(1, 2, 3).normalized()));
   for (const bool moves : {false, true})
@@ -94,7 +94,7 @@ TEST(BodyContact, AndInEveryResponse) {
 }
 
 // In a frame that moves by a constant velocity all is the same.
-TEST(BodyContact, ABodyThatMovesAtConstantVelocityIsAtRestInAMovingFrame) {
+TEST(BodyContact, ASteadyBodyIsAtRestInAMovingFrame) {
   const Vec3 speed(0.7, -0.3, 0.4);
   for (const std::string& solver : our_solvers()) {
     // of what has not converged rounding chooses who touches
@@ -112,7 +112,7 @@ TEST(BodyContact, ABodyThatMovesAtConstantVelocityIsAtRestInAMovingFrame) {
 }
 
 // A wall of two triangles is the plane that they lie in, friction and all.
-TEST(BodyContact, AWallOfTwoTrianglesIsAPlaneWithCoulombsFriction) {
+TEST(BodyContact, AWallOfTwoTrianglesIsAPlaneWithFriction) {
   const Vec3 normal = Vec3(0.5, 1, 0.2).normalized();
   const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), normal);
   const Triangles wall{{{-9, 0, -9}, {9, 0, -9}, {9, 0, 9}, {-9, 0, 9}}, {{0, 2, 1}, {0, 3, 2}}};
@@ -135,7 +135,7 @@ double deepest(const Scene& scene, const State& state, double t) {
   return most;
 }
 
-TEST(BodyContact, VerticesAreKeptAtTheThicknessFromABodyThatIsNotConvex) {
+TEST(BodyContact, VerticesAreKeptFromABodyThatIsNotConvex) {
   for (const std::string& solver : our_solvers())
     for (const char* contact : {"continuous", "discrete"}) {
       Scene scene = sheet_above(0.25);
@@ -178,7 +178,7 @@ double deepest_of_faces(const Scene& scene, const State& state) {
 // Vertices l apart that lie on both sides of a ridge of half-angle a keep themselves out of it, and
 // their chord is (l/2) cos a deep, 39 mm here; with faces the ridge keeps out of the cloth, but for
 // what the last sweep of the links, or the last iteration of a solve, leaves.
-TEST(BodyContact, ARidgePokesThroughBetweenVerticesAndNotThroughFaces) {
+TEST(BodyContact, ARidgePokesThroughVerticesAndNotThroughFaces) {
   const Triangles roof{
       {{-0.8, -0.8, -1}, {0.8, -0.8, -1}, {0, 0, -1}, {-0.8, -0.8, 1}, {0.8, -0.8, 1}, {0, 0, 1}},
       {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};
