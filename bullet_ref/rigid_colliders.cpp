@@ -86,6 +86,8 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above, const Slab& slab)
   return {box.rotation, box.center};
 }
 
+}  // namespace
+
 /// A body's triangles as Bullet has them, and the shape, which refers to them.
 class TriangleShape {
  public:
@@ -113,6 +115,8 @@ class TriangleShape {
   btTriangleIndexVertexArray array_;
   std::optional<btBvhTriangleMeshShape> shape_;
 };
+
+namespace {
 
 /// From the arrays that the shape itself refers to.
 std::shared_ptr<const TriangleMesh> triangles_of(const btBvhTriangleMeshShape& shape) {
