@@ -113,7 +113,7 @@ struct ReportInput {
   std::vector<MapResult> maps;
   std::vector<TimeSeries> series;  ///< over time, for the scene on top and its playhead
   std::vector<SceneMedia> media;
-  std::optional<StudyBench> bench;  ///< what accuracy costs; nullopt: not timed
+  std::optional<StudyBench> bench;              ///< what accuracy costs; nullopt: not timed
   std::optional<Truths> truths;                 ///< nullopt: not run
   std::optional<Json> regressions;              ///< of the model; nullopt: not checked
   std::optional<Differences> differences = {};  ///< nullopt: one folder alone
