@@ -121,7 +121,10 @@ TEST(BodyContact, AWallOfTwoTrianglesIsAPlaneWithFriction) {
     for (const std::string& solver : our_solvers()) {
       scene.colliders = {{Plane{normal, 0}, {}, friction}};
       const State want = simulate(scene, solver, kQuarterSecond);
-      scene.colliders = {{MeshBody{wall.mesh(), {}, turned, MeshBody::Sides::both}, {}, friction}};
+      scene.colliders = {
+          {MeshBody{.mesh = wall.mesh(), .rotation = turned, .sides = MeshBody::Sides::both},
+           {},
+           friction}};
       EXPECT_LE(apart(simulate(scene, solver, kQuarterSecond), want), 1e-9)
           << solver << ' ' << friction;
     }
