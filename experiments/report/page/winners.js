@@ -62,7 +62,7 @@ function winnersCard() {
     note('Each cell: the solver, how many times cheaper it is than the next solver, CPU time of a frame of 1/60\u00A0s, setting, arithmetic, and the stiffness of links that are not rigid. ',
       'Nothing counts that fails, passes through a body or sinks into it by more than 0.1\u00A0% of the cloth\u2019s diagonal, goes less than half of its way, or is off its way by more than a quarter of it',
       unjudged && ` (on ${unjudged} there is no reference in motion: not judged, and cloth that lags keeps its links there)`, '. ',
-      bySteps && `On ${bySteps} there is no reference in motion either: cloth counts for nothing that goes less than a quarter of its way by what its steps miss of the exact step, the same bound for all; solvers that declare no step (Bullet\u2019s) and contact that does not settle are not judged there. `,
+      bySteps && `On ${bySteps} there is no reference in motion either: cloth counts for nothing that goes less than a quarter of its own way (a fall as a whole is none) by what its steps miss of the exact step, the same bound for all; solvers that declare no step (Bullet\u2019s) and contact that does not settle are not judged there. `,
       'Only settings that were timed compete: a rival whose next one just misses the error is out. ', certainty));
 }
 
