@@ -411,11 +411,11 @@ std::vector<int> in_order(Section& section, const std::string& key, const Mesh& 
   return all;
 }
 
-using Pair = std::pair<int, int>;
+using VertexPair = std::pair<int, int>;
 
 /// Pairs of vertices of one face, or linked already, the lesser first.
-std::set<Pair> together(const Scene& scene) {
-  std::set<Pair> all;
+std::set<VertexPair> together(const Scene& scene) {
+  std::set<VertexPair> all;
   const auto add = [&](int a, int b) { all.insert(std::minmax(a, b)); };
   for (const auto& [a, b, c] : scene.mesh.triangles) {
     add(a, b);
@@ -438,7 +438,7 @@ std::set<Pair> together(const Scene& scene) {
 void read_seams(Section& root, Scene& scene) {
   const auto items = root.tables("seam");
   if (items.empty()) return;
-  std::set<Pair> known = together(scene);
+  std::set<VertexPair> known = together(scene);
   std::vector<Link> seams;
   for (const Value* item : items) {
     Section seam(root.diagnostics(), *item, "[[seam]]");
