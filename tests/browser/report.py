@@ -289,8 +289,8 @@ def prints(checks):
 
 
 def answer(checks):
-    """The first screen: every question with all its cells within 1280 x 800 and, without their notes, on a phone; a click unfolds
-    its scenes; a number leads to its case and its command."""
+    """The first screen: every question with all its cells within 1280 x 800 and, without their notes, on a phone, where a map has
+    its first scene and is as wide as the screen; a click unfolds its scenes; a number leads to its case and its command."""
     page = checks.open()
     tables = checks.model()[0]["answer"]["tables"]
     page.size(1280, 800)
@@ -301,6 +301,10 @@ def answer(checks):
     page.size(390, 844)
     page.run("state.set({open: 'none'})")
     page.settle()
+    if mapped:
+        bottom = "document.querySelector('#winners tbody tr').getBoundingClientRect().bottom"
+        wide = page.run("(box => box.scrollWidth - box.clientWidth)(document.querySelector('#winners .scroll'))")
+        checks.true(wide <= 1, "on a phone the map needs no scrolling sideways", wide)
     checks.true(page.run(bottom) <= 844, "and one of a phone", page.run(bottom))
     page.size(1280, 800)
     for name, table in tables.items():

@@ -108,7 +108,7 @@ class Commits(Repository):
         made = self.repository(RELAXED)
         process = self.start("history", "./study.toml", "--git", "repo", "--commits", "HEAD~9..HEAD", "--solver", "python3 mine.py",
                              "--out", "out")
-        while "4 " not in (line := process.stderr.readline()) and line:  # "building ... change 4"
+        while not (line := process.stderr.readline()).endswith("change 4\n") and line:  # "building ... change 4"
             pass
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
