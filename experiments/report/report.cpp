@@ -30,11 +30,14 @@ std::string report_title(const ReportInput& input) {
   if (!input.title.empty()) return input.title;
   constexpr std::size_t kMostNames = 3;
   std::vector<std::string> names, scenes;
-  for (const StudyResult& study : input.studies)
-    for (const Record& r : study.records) {
-      push_unique(names, solver_title(r.solver));
-      push_unique(scenes, r.scene);
-    }
+  const auto count = [&](const Record& r) {
+    push_unique(names, solver_title(r.solver));
+    push_unique(scenes, r.scene);
+  };
+  for (const StudyResult& study : input.studies) std::ranges::for_each(study.records, count);
+  if (input.bench)
+    for (const SceneBench& scene : input.bench->scenes)
+      for (const BenchedCase& c : scene.cases) count(c.record);
   if (names.size() > kMostNames)
     return std::to_string(names.size()) + " cloth solvers on " + std::to_string(scenes.size()) +
            (scenes.size() == 1 ? " scene" : " scenes");

@@ -179,6 +179,9 @@ TEST(Settings, ArePutIntoFewWords) {
   EXPECT_EQ(labelled_parameters("jakobsen"),
             (Names{"omega", "order", "tethers", "levels", "precision"}));
   EXPECT_EQ(labelled_parameters("nobody's"), Names{});
+  EXPECT_EQ(searched_parameters("nobody's"), Names{});
+  EXPECT_EQ(searched_parameters("mass-spring"), (Names{"precision", "structural", "shear"}));
+  EXPECT_TRUE(std::ranges::count(searched_parameters("bullet"), "reorder"));
   EXPECT_EQ(brief_settings("jakobsen:substeps=2,iterations=8,order=mesh"), "2 × 8, order=mesh");
   EXPECT_EQ(brief_settings("mass-spring:substeps=4,drag=2"), "4 substeps, drag=2");
   EXPECT_EQ(brief_settings("nosuch:abc"), "abc");

@@ -117,6 +117,19 @@ TEST(Report, NamesFromOutsideStayText) {
   EXPECT_EQ(html.find("<!--"), std::string::npos);
 }
 
+TEST(Model, TitleCountsTheSolversOfStudiesAndOfTimedCases) {
+  ReportInput input = example();
+  input.bench = StudyBench{"trade", "a machine", {{"hang", {1, 1, 1}, {}}}};
+  for (const char* solver : {"pd", "vbd"}) {
+    BenchedCase& one = input.bench->scenes[0].cases.emplace_back();
+    one.record = input.studies[0].records[0];
+    one.record.solver = solver;
+    one.record.key = solver;
+  }
+  const std::string title = model_of(input)["meta"]["title"].get<std::string>();
+  EXPECT_TRUE(title.starts_with("4 cloth solvers on ")) << title;
+}
+
 TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   const Json model = model_of(example());
   EXPECT_EQ(model["schema"], "taut-report/6");

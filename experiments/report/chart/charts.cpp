@@ -32,7 +32,7 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
     all.erase(name == "vertices" ? "cloth.grid" : own_parameter(record.solver, name));
     if (name != "setting") continue;
     for (const char* work : {kSubsteps, kSweeps}) all.erase(work);
-    for (const std::string& parameter : labelled_parameters(record.solver)) all.erase(parameter);
+    for (const std::string& parameter : searched_parameters(record.solver)) all.erase(parameter);
   }
   return all;
 }

@@ -226,6 +226,17 @@ std::vector<std::string> labelled_parameters(const std::string& solver) {
   return all;
 }
 
+std::vector<std::string> searched_parameters(const std::string& solver) {
+  std::vector<std::string> all = labelled_parameters(solver);
+  const SolverEntry* entry = find_entry(solver);
+  if (!entry) return all;
+  for (const std::string& name : parts_of(entry->accuracy.stiffness.parameters))
+    push_unique(all, name);
+  for (const auto& [name, values] : entry->accuracy.alternatives)
+    push_unique(all, std::string(name));
+  return all;
+}
+
 std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
   std::vector<std::string> used;
   const SolverEntry* entry = find_entry(r.solver);

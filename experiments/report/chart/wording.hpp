@@ -84,6 +84,9 @@ std::map<std::string, std::string> other_settings(const Record&);
 /// What this program's solver of that name has in labels beside substeps and sweeps, as its entry
 /// says; none of a solver that it does not have.
 std::vector<std::string> labelled_parameters(const std::string& solver);
+/// All that a search for a setting may vary, the labelled ones among them: cases that differ in
+/// nothing else are settings of one solver.
+std::vector<std::string> searched_parameters(const std::string& solver);
 
 /// Accelerators that this case uses and that a solver with these parameters lacks ("tethers").
 std::vector<std::string> extras(const Record&, const std::map<std::string, std::string>& others);
