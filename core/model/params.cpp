@@ -149,6 +149,16 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
     }
   }
   if (!problems.empty()) throw InputError(problems);
+  for (std::size_t i = 0; i < specs.size(); ++i)
+    if (!seen[i]) values_[i] = default_of(specs[i]);
+}
+
+std::string Params::default_of(const ParamSpec& spec) const {
+  std::string ignored;
+  const auto equals = spec.where.find('=');
+  const bool there =
+      equals != spec.where.npos && is(spec.where.substr(0, equals), spec.where.substr(equals + 1));
+  return canonical_value(spec, there ? spec.default_there : spec.default_value, ignored);
 }
 
 std::size_t Params::find(std::string_view name) const {
@@ -173,10 +183,8 @@ std::string Params::text(bool only_changed, std::string_view but) const {
   const std::vector<std::string> left_out = parts_of(but);
   std::string all;
   for (std::size_t i = 0; i < specs_.size(); ++i) {
-    std::string ignored;
     if (std::ranges::count(left_out, specs_[i].name) > 0) continue;
-    if (only_changed && values_[i] == canonical_value(specs_[i], specs_[i].default_value, ignored))
-      continue;
+    if (only_changed && values_[i] == default_of(specs_[i])) continue;
     all += (all.empty() ? "" : ",") + std::string(specs_[i].name) + "=" +
            quoted_if_needed(specs_[i], values_[i]);
   }

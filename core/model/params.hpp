@@ -13,12 +13,27 @@ struct ParamSpec {
   enum class Kind { integer, real, choice, text };
   std::string_view name;
   Kind kind = Kind::real;
-  std::string_view unit;           ///< "" if it has none
-  std::string_view default_value;  ///< as typed
-  double min = 0, max = 0;         ///< inclusive; numbers only
-  std::string_view choices;        ///< "exact|sqrt-free"; choices only
-  std::string_view help;           ///< one line
+  std::string_view unit;                ///< "" if it has none
+  std::string_view default_value;       ///< as typed
+  double min = 0, max = 0;              ///< inclusive; numbers only
+  std::string_view choices;             ///< "exact|sqrt-free"; choices only
+  std::string_view help;                ///< one line
+  std::string_view where = {};          ///< "method=global": another choice has this value
+  std::string_view default_there = {};  ///< then this is the default
 
+  /// The same with another default there.
+  constexpr ParamSpec but(std::string_view where_, std::string_view default_) const {
+    ParamSpec same = *this;
+    same.where = where_;
+    same.default_there = default_;
+    return same;
+  }
+  /// For people: "1", "1; 3 with method=global".
+  std::string defaults() const {
+    std::string text(default_value);
+    if (!where.empty()) text.append("; ").append(default_there).append(" with ").append(where);
+    return text;
+  }
   static constexpr ParamSpec integer(std::string_view name, std::string_view default_value,
                                      double min, double max, std::string_view help) {
     return {name, Kind::integer, "", default_value, min, max, "", help};
@@ -76,6 +91,7 @@ class Params {
 
  private:
   std::string text(bool only_changed, std::string_view but) const;
+  std::string default_of(const ParamSpec&) const;  ///< beside these values of the others
   std::size_t find(std::string_view name) const;
   std::string owner_;
   std::span<const ParamSpec> specs_;

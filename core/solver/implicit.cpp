@@ -17,8 +17,8 @@
 // outlives the step, and iterations begin at y; a step whose gradient, in the norm of 1/M, has
 // grown in the end, and one in which anything touches, is computed as above. integrator=bdf2 and
 // midpoint are steps of the same form with another y and h (newton/integrator.hpp). Contact adds
-// its own part to G (newton/augmented_contacts.hpp), whose forces follow once the gradient is
-// small.
+// its own part to G (core/solver/contact/augmented_contacts.hpp), whose forces follow once the
+// gradient is small.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,9 +26,9 @@
 #include <vector>
 
 #include "core/model/bending.hpp"
+#include "core/solver/contact/augmented_contacts.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
-#include "core/solver/newton/augmented_contacts.hpp"
 #include "core/solver/newton/hessian.hpp"
 #include "core/solver/newton/integrator.hpp"
 #include "core/solver/newton/kept_tensions.hpp"
@@ -81,7 +81,7 @@ class NewtonPass final : public Pass<double> {
                                        s.w, [](double w) { return w > 0; })))),
                  s.simd),
         stiffness_(s.w.size()),
-        contacts_(s) {
+        contacts_(s.scene, s.params) {
     for (const Spring& spring : springs_) {
       stiffness_[spring.a] += spring.stiffness;
       stiffness_[spring.b] += spring.stiffness;
@@ -150,12 +150,12 @@ class NewtonPass final : public Pass<double> {
                                                                        : iterate_kept(x, g, h))) {
       // the minimum for these forces of contact; the end if theirs is no other one
       left_ = 0;
-      if (!contacts_.update(p, h, left_, enough_)) ended_at_ = std::move(x);
+      if (!contacts_.update(p, x, h, left_, enough_)) ended_at_ = std::move(x);
       return;
     }
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, x[i]);
-    contacts_.update(p, h, left_, enough_);
+    contacts_.update(p, x, h, left_, enough_);
   }
 
   std::vector<PassCost> cost() const override {
@@ -307,7 +307,10 @@ class NewtonPass final : public Pass<double> {
       const double c = clamped ? std::max(0.0, across) : across;
       hessian_.block(j) = {stiffness * c, stiffness * (1 - c), d / length};
     }
-    contacts_.add_hessian(x, hessian_);
+    hessian_.clear_contacts();
+    contacts_.each(x, [&](std::size_t vertex, const AugmentedContacts::Part& part) {
+      hessian_.add_contact(vertex, part.hessian);
+    });
   }
 
   double energy(const std::vector<Vec3>& x, double h) const {
@@ -319,7 +322,8 @@ class NewtonPass final : public Pass<double> {
       const double c = (x[b] - x[a]).norm() - rest;
       sum += stiffness / 2 * c * c;
     }
-    contacts_.add_energy(x, sum);
+    contacts_.each(x,
+                   [&](std::size_t, const AugmentedContacts::Part& part) { sum += part.energy; });
     return sum;
   }
 
@@ -356,7 +360,9 @@ class NewtonPass final : public Pass<double> {
         if (const int c = hessian_.column(to_index(e.vertex[i])); c >= 0)
           g.segment<3>(c) += e.weight[i] * pull;
     }
-    contacts_.add_gradient(x, hessian_, g);
+    contacts_.each(x, [&](std::size_t vertex, const AugmentedContacts::Part& part) {
+      g.segment<3>(hessian_.column(vertex)) -= part.force;
+    });
     return g;
   }
 

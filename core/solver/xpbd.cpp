@@ -22,8 +22,11 @@ namespace taut::solver::xpbd {
 namespace {
 
 constexpr auto kParams = loop::with_common(
-    {loop::substeps("8", "each step is this many steps of dt / substeps"),
-     loop::iterations("1", "sweeps per substep; Small Steps finds that one is best"),
+    {loop::substeps("8", "each step is this many steps of dt / substeps").but("method=global", "1"),
+     loop::iterations("1",
+                      "sweeps per substep, of which Small Steps finds that one is best; or "
+                      "solutions of method=global")
+         .but("method=global", "3"),
      ParamSpec::real("structural", "m/N", "0", 0, 1e12, "compliance of structural links"),
      ParamSpec::real("shear", "m/N", "0", 0, 1e12, "compliance of shear links"),
      ParamSpec::real("bend", "m/N", "0", 0, 1e12, "compliance of bend links"), loop::kPrecision,
@@ -33,10 +36,10 @@ constexpr auto kParams = loop::with_common(
                        "which loses the compliance"),
      ParamSpec::choice("method", "sweeps", "sweeps|global",
                        "link after link, as published; or all at once, a sparse LDLT in each "
-                       "iteration (fast projection): 3 of them, with substeps=1, are about right"),
+                       "iteration (fast projection)"),
      ParamSpec::choice("primal", "off", "off|on",
                        "of method=global: minimise implicit Euler's energy, with a line search, "
-                       "so that iterations end at its step; without contact"),
+                       "so that iterations end at its step, with contact inside of the solve"),
      kOrderParam, ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"), kLayoutParam,
      loop::kTethers});
 
@@ -87,9 +90,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   if (params.is("multipliers", "reset"))
     reasons.emplace_back("multipliers=reset is of method=sweeps");
   if (!primal) return reasons;
-  const std::string own = "primal=on minimises an energy of links alone: it knows no ";
-  if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
-    reasons.push_back(own + "contact");
+  const std::string own = "primal=on minimises an energy of links and contact: it knows no ";
   if (scene.bending) reasons.push_back(own + "bending");
   if (params.is("tethers", "on")) reasons.push_back(own + "tethers");
   return reasons;
@@ -110,15 +111,18 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
         {{"projection", "exact, multipliers " + std::string(params.choice("multipliers"))},
          links,
          loop::link_order(params)});
-  return loop::resolved_settings(
-      scene, params,
-      {links,
-       {"links solved", std::string("all at once by a sparse LDLT, analysed once as set-up") +
-                            (params.is("primal", "on") ? ", down implicit Euler's energy" : "")},
-       {"work unit", "factorisations of the links' system, not projections"}});
+  const bool primal = params.is("primal", "on");
+  const ResolvedSettings own{
+      links,
+      {"links solved", std::string("all at once by a sparse LDLT, analysed once as set-up") +
+                           (primal ? ", down implicit Euler's energy" : "")},
+      {"work unit", "factorisations of the links' system, not projections"}};
+  if (!primal) return loop::resolved_settings(scene, params, own);
+  return loop::resolved_settings(scene, params, own, "refused", loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {
+    {"precision", "float|double"}, {"method", "global"}, {"primal", "on"}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   if (params.is("method", "global")) return {};
@@ -145,7 +149,7 @@ TAUT_SOLVER(xpbd) = {
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .alternatives = taut::solver::xpbd::kAlternatives,
-                 .labelled = "substeps|iterations|precision",
+                 .labelled = "substeps|iterations|method|primal|precision",
                  .accelerators = "tethers|threads"},
     .optional_effects = taut::loop::kOptionalEffects,
     .linear_model = taut::solver::xpbd::linear_model};

@@ -1,11 +1,13 @@
 #include "core/solver/xpbd_global.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/solver/contact/augmented_contacts.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/panel_factor.hpp"
 #include "core/solver/springs.hpp"
@@ -13,6 +15,8 @@
 namespace taut {
 
 namespace {
+
+using Eigen::Matrix3d;
 
 /// a of rigid links, of the matrix' mean diagonal.
 constexpr double kSoftnessOfRigid = 1e-9;
@@ -29,23 +33,32 @@ class GlobalLinks final : public Pass<Real> {
         mobility_(w_),
         primal_(primal),
         links_(springs_.size()),
-        right_(springs_.size()) {
+        right_(springs_.size()),
+        contacts_(primal ? AugmentedContacts(s.scene, s.params) : AugmentedContacts()) {
     analyse(s.simd);
   }
 
-  void begin(Particles<Real>& p, double, double h) override {
-    y_ = positions(p);
+  void restart() override { contacts_.forget(); }
+  void take_over(const Pass<Real>& before) override {
+    contacts_.take_over(static_cast<const GlobalLinks&>(before).contacts_);
+  }
+  Points<Real>* target() override { return primal_ ? &y_ : nullptr; }
+
+  void begin(Particles<Real>& p, double t, double h) override {
+    y_ = p.x;
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const double k = springs_[j].stiffness;
       links_[j].softness = std::isinf(k) ? kSoftnessOfRigid * mean_diagonal_ : 1 / (k * h * h);
       links_[j].lambda = 0;
     }
+    if (contacts_.any()) begin_contacts(p, t, h);
   }
 
-  void apply(Particles<Real>& p, double, double) override {
+  void apply(Particles<Real>& p, double, double h) override {
     std::vector<Vec3> x = positions(p);
     look_at(x);
     if (primal_) resist_across();
+    if (contacts_.any()) look_at_contacts(p, x, h);
     const std::vector<Vec3> astray = primal_ ? away_from_forces(x) : std::vector<Vec3>();
     fill();
     if (!factor_.factor()) {
@@ -53,19 +66,20 @@ class GlobalLinks final : public Pass<Real> {
     } else {
       solve(astray);
       const std::vector<Vec3> way = way_of_solution(astray);
-      const double share = primal_ ? share_that_falls(x, way) : 1;
+      const double share = primal_ ? share_that_falls(x, way, h) : 1;
       for (std::size_t j = 0; j < links_.size(); ++j) links_[j].lambda += share * right_[rank_[j]];
       for (std::size_t i = 0; i < x.size(); ++i) x[i] += share * way[i];
     }
     for (std::size_t i = 0; i < x.size(); ++i)
       if (w_[i] > 0) p.x.set(i, x[i].template cast<Real>());
+    if (contacts_.any()) contacts_.update(p, x, h, left_, 0);
   }
 
   std::vector<PassCost> cost() const override {
     return {{.pass = "links, all at once",
              .items = springs_.size(),
              .bytes = springs_.size() * (sizeof(Spring) + sizeof(Linked) + sizeof(double)) +
-                      y_.size() * sizeof(Vec3) + 2 * w_.size() * sizeof(double)},
+                      y_.bytes() + 2 * w_.size() * sizeof(double)},
             {.pass = "LDLT of the links, entries of its factor",
              .items = factor_.entries(),
              .bytes = factor_.bytes() + beside_.size() * sizeof beside_[0] +
@@ -84,6 +98,14 @@ class GlobalLinks final : public Pass<Real> {
     double* at;
     std::uint32_t one, other, vertex;
     double sign;  ///< -1 where one link ends and the other begins, else 1
+  };
+
+  /// A vertex in contact, in kg and m: h^2 times forces and stiffnesses.
+  struct Held {
+    bool touches = false;
+    Vec3 force = Vec3::Zero();              ///< kg m, at x
+    Matrix3d stiffness = Matrix3d::Zero();  ///< kg, minus its change with x
+    Matrix3d less = Matrix3d::Zero();       ///< 1/kg, of the mobility that it has without contact
   };
 
   void analyse(Simd simd) {
@@ -115,6 +137,39 @@ class GlobalLinks final : public Pass<Real> {
     });
   }
 
+  void begin_contacts(const Particles<Real>& p, double t, double h) {
+    std::vector<double> elastic(w_.size(), 0.0);  // N/m
+    for (std::size_t j = 0; j < links_.size(); ++j)
+      for (const std::size_t v : {springs_[j].a, springs_[j].b})
+        elastic[v] += 1 / (links_[j].softness * h * h);
+    contacts_.begin(t, h);
+    contacts_.set_stiffness(p, elastic, h);
+    contacts_.predict_new(p, h);
+  }
+
+  /// What touches at x, and what it makes of the vertices' mobility.
+  void look_at_contacts(const Particles<Real>& p, const std::vector<Vec3>& x, double h) {
+    contacts_.find(p);
+    held_.assign(contacts_.touch() ? w_.size() : 0, {});
+    contacts_.each(x, [&](std::size_t v, const AugmentedContacts::Part& part) {
+      held_[v].touches = true;
+      held_[v].force += h * h * part.force;
+      held_[v].stiffness += h * h * part.hessian;
+    });
+    for (std::size_t v = 0; v < held_.size(); ++v)
+      if (Held& at = held_[v]; at.touches)
+        at.less = mobility_[v] * Matrix3d::Identity() -
+                  (Matrix3d::Identity() / mobility_[v] + at.stiffness).inverse();
+  }
+
+  bool touches(std::size_t v) const { return !held_.empty() && held_[v].touches; }
+
+  /// V f.
+  Vec3 mobile(std::size_t v, const Vec3& f) const {
+    const Vec3 free = mobility_[v] * f;
+    return touches(v) ? Vec3(free - held_[v].less * f) : free;
+  }
+
   void look_at(const std::vector<Vec3>& x) {
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const Vec3 d = x[springs_[j].b] - x[springs_[j].a];
@@ -130,6 +185,13 @@ class GlobalLinks final : public Pass<Real> {
       *diagonal_[j] = mobility_[springs_[j].a] + mobility_[springs_[j].b] + links_[j].softness;
     for (const Shared& s : beside_)
       *s.at += s.sign * mobility_[s.vertex] * links_[s.one].u.dot(links_[s.other].u);
+    if (held_.empty()) return;
+    for (std::size_t j = 0; j < links_.size(); ++j)
+      for (const std::size_t v : {springs_[j].a, springs_[j].b})
+        if (held_[v].touches) *diagonal_[j] -= links_[j].u.dot(held_[v].less * links_[j].u);
+    for (const Shared& s : beside_)
+      if (const Held& at = held_[s.vertex]; at.touches)
+        *s.at -= s.sign * links_[s.one].u.dot(at.less * links_[s.other].u);
   }
 
   /// The masses of the primal step.
@@ -146,10 +208,10 @@ class GlobalLinks final : public Pass<Real> {
       if (w_[i] > 0) mobility_[i] = 1 / (1 / w_[i] + across[i]);
   }
 
-  /// V M p, p: how far x is from where the multipliers' forces, in the directions at x, take y [m].
+  /// V M p, p: how far x is from where the forces, in the directions at x, take y [m].
   std::vector<Vec3> away_from_forces(const std::vector<Vec3>& x) const {
     std::vector<Vec3> p = x;
-    for (std::size_t i = 0; i < p.size(); ++i) p[i] -= y_[i];
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] -= y_[i].template cast<double>();
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const auto& [a, b, rest, stiffness] = springs_[j];
       const Vec3 push = links_[j].lambda * links_[j].u;
@@ -157,7 +219,10 @@ class GlobalLinks final : public Pass<Real> {
       p[b] -= w_[b] * push;
     }
     for (std::size_t i = 0; i < p.size(); ++i)
-      if (w_[i] > 0) p[i] *= mobility_[i] / w_[i];
+      if (touches(i))
+        p[i] = mobile(i, p[i] / w_[i] - held_[i].force);
+      else if (w_[i] > 0)
+        p[i] *= mobility_[i] / w_[i];
     return p;
   }
 
@@ -178,8 +243,8 @@ class GlobalLinks final : public Pass<Real> {
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const auto& [a, b, rest, stiffness] = springs_[j];
       const Vec3 push = right_[rank_[j]] * links_[j].u;
-      way[a] -= mobility_[a] * push;
-      way[b] += mobility_[b] * push;
+      way[a] -= mobile(a, push);
+      way[b] += mobile(b, push);
     }
     for (std::size_t i = 0; i < astray.size(); ++i)
       if (w_[i] > 0) way[i] -= astray[i];
@@ -187,19 +252,21 @@ class GlobalLinks final : public Pass<Real> {
   }
 
   /// h^2 times implicit Euler's energy [kg m^2].
-  double energy(const std::vector<Vec3>& x) const {
+  double energy(const std::vector<Vec3>& x, double h) const {
     double sum = 0;
     for (std::size_t i = 0; i < x.size(); ++i)
-      if (w_[i] > 0) sum += (x[i] - y_[i]).squaredNorm() / (2 * w_[i]);
+      if (w_[i] > 0) sum += (x[i] - y_[i].template cast<double>()).squaredNorm() / (2 * w_[i]);
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const auto& [a, b, rest, stiffness] = springs_[j];
       const double c = (x[b] - x[a]).norm() - rest;
       sum += c * c / (2 * links_[j].softness);
     }
+    contacts_.each(
+        x, [&](std::size_t, const AugmentedContacts::Part& part) { sum += h * h * part.energy; });
     return sum;
   }
   /// Its gradient at x [kg m]; 0 for pins.
-  std::vector<Vec3> gradient(const std::vector<Vec3>& x) const {
+  std::vector<Vec3> gradient(const std::vector<Vec3>& x, double h) const {
     std::vector<Vec3> g(x.size(), Vec3::Zero());
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const auto& [a, b, rest, stiffness] = springs_[j];
@@ -210,8 +277,11 @@ class GlobalLinks final : public Pass<Real> {
       g[a] -= pull;
       g[b] += pull;
     }
+    contacts_.each(
+        x, [&](std::size_t v, const AugmentedContacts::Part& part) { g[v] -= h * h * part.force; });
     for (std::size_t i = 0; i < x.size(); ++i)
-      g[i] = w_[i] > 0 ? Vec3(g[i] + (x[i] - y_[i]) / w_[i]) : Vec3(Vec3::Zero());
+      g[i] = w_[i] > 0 ? Vec3(g[i] + (x[i] - y_[i].template cast<double>()) / w_[i])
+                       : Vec3(Vec3::Zero());
     return g;
   }
   static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -221,21 +291,24 @@ class GlobalLinks final : public Pass<Real> {
   }
 
   /// 1 or the first of its halves with which the energy falls (Armijo); 0: rounding is all that is
-  /// left.
-  double share_that_falls(const std::vector<Vec3>& x, const std::vector<Vec3>& way) const {
-    const std::vector<Vec3> g = gradient(x);
-    const double before = energy(x), slope = dot(g, way);
+  /// left. left_ is the gradient there.
+  double share_that_falls(const std::vector<Vec3>& x, const std::vector<Vec3>& way, double h) {
+    const std::vector<Vec3> g = gradient(x, h);
+    const double before = energy(x, h), slope = dot(g, way);
     double share = 1;
     std::vector<Vec3> trial(x.size());
     for (int halvings = 0; halvings < kMostHalvings; ++halvings, share /= 2) {
       for (std::size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + share * way[i];
-      const double now = energy(trial);
-      if (now <= before + kFalls * share * slope) return share;
+      const double now = energy(trial, h);
+      const bool falls = now <= before + kFalls * share * slope;
       // near the minimum, differences of the energy are rounding: the gradient decides
-      if (now > before * (1 + 1e-12)) continue;
-      const std::vector<Vec3> left = gradient(trial);
-      if (dot(left, left) < dot(g, g)) return share;
+      if (!falls && now > before * (1 + 1e-12)) continue;
+      if (falls && !contacts_.any()) return share;
+      const std::vector<Vec3> g_now = gradient(trial, h);
+      left_ = std::sqrt(dot(g_now, g_now)) / (h * h);
+      if (falls || dot(g_now, g_now) < dot(g, g)) return share;
     }
+    left_ = 0;
     return 0;
   }
 
@@ -243,7 +316,7 @@ class GlobalLinks final : public Pass<Real> {
   std::vector<double> w_;         ///< [n] 1/kg
   std::vector<double> mobility_;  ///< [n] 1/kg, of the matrix: V with primal=on, else W
   bool primal_;
-  std::vector<Vec3> y_;  ///< [n] m
+  Points<Real> y_;  ///< m
   std::vector<Linked> links_;
   double mean_diagonal_ = 0;  ///< 1/kg
   PanelFactor factor_;
@@ -251,6 +324,9 @@ class GlobalLinks final : public Pass<Real> {
   std::vector<double*> diagonal_;  ///< [links]
   std::vector<Shared> beside_;
   std::vector<double> right_;  ///< m, then kg m; in the order of elimination
+  AugmentedContacts contacts_;
+  double left_ = 0;         ///< N, the gradient after an iteration down the energy
+  std::vector<Held> held_;  ///< [n]; empty: nothing touches
 };
 
 }  // namespace
@@ -260,7 +336,7 @@ loop::Links<Real> make_global_links(const loop::Setup& s,
                                     const std::array<double, kFamilies.size()>& stiffness,
                                     bool primal) {
   std::vector<Spring> springs = make_springs(s.scene, s.w, stiffness);
-  loop::Links<Real> links{.layout = Layout::packed(s.w.size())};
+  loop::Links<Real> links{.layout = Layout::packed(s.w.size()), .contacts = primal};
   if (!springs.empty())
     links.pass = std::make_unique<GlobalLinks<Real>>(s, std::move(springs), primal);
   return links;

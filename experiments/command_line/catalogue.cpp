@@ -53,7 +53,7 @@ void list_solvers(Answer& all, const std::string& only) {
     table.rows.push_back({entry->name, entry->summary, entry->source});
     for (const ParamSpec& spec : entry->params)
       parameters.rows.push_back(
-          {entry->name, spec.name, spec.default_value, spec.unit, allowed(spec), spec.help});
+          {entry->name, spec.name, spec.defaults(), spec.unit, allowed(spec), spec.help});
   }
   all.add(std::move(table));
   all.add(std::move(parameters));

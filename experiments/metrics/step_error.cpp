@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "experiments/metrics/metric.hpp"
@@ -21,6 +20,8 @@ constexpr double kEnough = 0.5;
 /// square metre hangs; steps of it where there is no gravity. In how many of its steps that is
 /// looked at; of L, what the cloth has to move at least.
 constexpr double kFirst = 1.3, kLeastWay = 0.05;
+/// Of the way that a cloth would have gone, what rounding may seem to miss at most.
+constexpr double kMostRounding = 0.1;
 constexpr int kFirstWithoutGravity = 32, kFirstSamples = 8;
 
 /// Steps in which a cloth shows whether it moves.
@@ -56,15 +57,13 @@ void keep_own_way(const Scene& scene, double t, std::vector<Vec3>& ways) {
   for (Vec3& way : ways) way -= common;
 }
 
-/// No cloth goes farther [m] in these seconds than twice a fall from its start. Where hundreds of
-/// substeps in single precision have rounded, what they seem to miss is more; without gravity
-/// nothing is known.
-double farthest(const Scene& scene, double seconds) {
-  const double g = scene.gravity.norm();
-  if (g == 0) return std::numeric_limits<double>::infinity();
-  double fastest = 0;
-  for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());
-  return 2 * (g * seconds / 2 + fastest) * seconds;
+/// The rounding of a place over the place, RMS of what is uniform in half a unit in the last place
+/// to either side: of what was computed in single precision all coordinates are floats.
+double relative_rounding(const std::vector<Vec3>& x) {
+  const auto is_float = [](double a) { return static_cast<double>(static_cast<float>(a)) == a; };
+  const bool all = std::ranges::all_of(
+      x, [&](const Vec3& v) { return is_float(v.x()) && is_float(v.y()) && is_float(v.z()); });
+  return (all ? 0x1p-24 : 0x1p-53) / std::sqrt(3.0);
 }
 
 /// From which step a case is off, is what its solver declares, and nothing else of it is known: the
@@ -94,7 +93,8 @@ class StepErrors final : public Metric {
            "over |w + l|^2, w its way beside that of its pins or, without any, of its centre of "
            "mass, l the sum of (T - t) times the velocity "
            "that the step at t misses; 0 of a cloth that stands still; none if it would hardly "
-           "have moved, at most 5 % of its size, or farther than twice a fall, which is rounding",
+           "have moved, at most 5 % of its size, or if rounding is above a tenth of the way: l, "
+           "each step missing |x|/sqrt(3) 2^-24 of coordinates that are all floats, else 2^-53",
        .window = Window::none,
        .title = "share of the way, by what its steps miss"},
       {"step.error.believed", kSignedShare,
@@ -109,7 +109,8 @@ class StepErrors final : public Metric {
         every_(std::max(kEvery, (scene.steps + kMostSamples - 1) / kMostSamples)),
         first_(first_steps(scene)),
         first_every_(std::max(1, first_ / kFirstSamples)),
-        lost_(scene.start.x.size(), Vec3::Zero()) {}
+        lost_(scene.start.x.size(), Vec3::Zero()),
+        rounded_(scene.start.x.size(), 0.0) {}
 
   void declare(const DeclaredStep& step) override {
     declared_ = step;
@@ -177,29 +178,35 @@ class StepErrors final : public Metric {
     if (missed.empty()) return;
     ++first_believed_;
     const double left = first_ * scene_.dt - m.t;
-    for (std::size_t i = 0; i < missed.size(); ++i)  // as much in each substep of these steps
-      lost_[i] += left * first_every_ * declared_.substeps / h * missed[i];
+    // as much in each substep of these steps
+    const double times = left * first_every_ * declared_.substeps / h;
+    const double rounding = relative_rounding(m.state.x);
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      lost_[i] += times * missed[i];
+      rounded_[i] += times * rounding * m.state.x[i].norm();
+    }
   }
   double way_share() const {
     if (end_.empty() || first_believed_ < kEnough * first_count_ || first_believed_ == 0)
       return Summary::kNone;
-    const double seconds = first_ * scene_.dt;
+    const double seconds = first_ * scene_.dt, scale = first_count_ / first_believed_;
     std::vector<Vec3> way = end_, full = end_;
     for (std::size_t i = 0; i < way.size(); ++i) {
       way[i] -= scene_.start.x[i];
-      full[i] = way[i] + first_count_ / first_believed_ * lost_[i];
+      full[i] = way[i] + scale * lost_[i];
     }
     keep_own_way(scene_, seconds, way);
     keep_own_way(scene_, seconds, full);
-    double along = 0, square = 0;
+    double along = 0, square = 0, rounding = 0;
     const std::vector<std::size_t> free = free_vertices(scene_);
     for (const std::size_t i : free) {
       along += way[i].dot(full[i]);
       square += full[i].squaredNorm();
+      rounding += std::pow(scale * rounded_[i], 2);
     }
     const double rms = std::sqrt(square / static_cast<double>(free.size()));
-    const bool moves = rms >= kLeastWay * extent(scene_) && rms <= farthest(scene_, seconds);
-    return moves ? along / square : Summary::kNone;
+    const bool known = rounding <= kMostRounding * kMostRounding * square;
+    return known && rms >= kLeastWay * extent(scene_) ? along / square : Summary::kNone;
   }
   void judge(const Snapshot& m) {
     const double h = substep();
@@ -220,6 +227,7 @@ class StepErrors final : public Metric {
   State before_;
   int step_before_ = -1;
   std::vector<Vec3> lost_, end_;  ///< m; the places after the first steps
+  std::vector<double> rounded_;   ///< m, what of lost_ may be rounding
   double first_count_ = 0, first_believed_ = 0;
   int count_ = 0;
   double believed_ = 0, sum_ = 0, peak_ = 0;  ///< steps, m, m

@@ -163,5 +163,18 @@ TEST(SolverDefaults, AreTheProcesssOwnClockAndMemoryAndSilence) {
   EXPECT_GT(silent.peak_bytes(), std::size_t{1} << 20);
 }
 
+TEST(Params, HaveAnotherDefaultBesideAnotherChoice) {
+  const ParamSpec specs[] = {
+      ParamSpec::choice("method", "sweeps", "sweeps|global", "how"),
+      ParamSpec::integer("n", "8", 1, 99, "how many").but("method=global", "3")};
+  EXPECT_EQ(specs[1].defaults(), "8; 3 with method=global");
+  const auto of = [&](const char* text) { return Params("s", specs, text); };
+  EXPECT_EQ(of("").canonical(), "method=sweeps,n=8");
+  EXPECT_EQ(of("method=global").canonical(), "method=global,n=3");
+  EXPECT_EQ(of("method=global").brief(), "method=global");
+  EXPECT_EQ(of("n=8,method=global").brief(), "method=global,n=8");
+  EXPECT_EQ(of("n=3").brief(), "n=3");
+}
+
 }  // namespace
 }  // namespace taut::params_test

@@ -479,7 +479,7 @@ TEST(FailureMap, SaysTheFirstThatHoldsAndTheNumbersBehindIt) {
   made.add("1e3", "bullet", none, 0.004, 0.01);
   made.add("1e6", "bullet", 1, 0.5, 1).status = {Status::Kind::extreme, "stretch", 3, 1};
   made.add("1e6", "pd", 1, 0, 0).status = {Status::Kind::unsupported, "no balls", -1, -1};
-  const Table table = failure_map(made.records, nullptr);
+  const Table table = failure_map(made.records, {}, nullptr);
   ASSERT_EQ(table.columns.size(), 3u);
   EXPECT_EQ(table.columns[1].heading, "swing, structural = 1e3");
   EXPECT_EQ(table.columns[2].heading, "swing, structural = 1e6");
@@ -501,11 +501,11 @@ TEST(FailureMap, SaysTheFirstThatHoldsAndTheNumbersBehindIt) {
 TEST(FailureMap, IsOfCasesThatDifferInStiffnessAlone) {
   Stiffened made;
   made.add("", "jakobsen", 1, 0, 0);
-  EXPECT_TRUE(failure_map(made.records, nullptr).rows.empty());
+  EXPECT_TRUE(failure_map(made.records, {}, nullptr).rows.empty());
   made.add("1e3", "jakobsen", 1, 0, 0);
-  EXPECT_TRUE(failure_map(made.records, nullptr).rows.empty()) << "one stiffness";
+  EXPECT_TRUE(failure_map(made.records, {}, nullptr).rows.empty()) << "one stiffness";
   made.add("1e4", "jakobsen", 1, 0, 0);
-  EXPECT_EQ(failure_map(made.records, nullptr).columns.size(), 3u);
+  EXPECT_EQ(failure_map(made.records, {}, nullptr).columns.size(), 3u);
 }
 
 }  // namespace

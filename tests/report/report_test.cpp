@@ -164,7 +164,8 @@ TEST(Model, HasTheFailureMap) {
   EXPECT_EQ(table["rows"][0][1], "freezes");
   EXPECT_EQ(table["rows"][0][2], "freezes");
   int with_cost = 0;
-  for (const Json& note : table["notes"]) with_cost += note.value("note", "").ends_with(" a step");
+  for (const Json& note : table["notes"])
+    with_cost += note.value("note", "").ends_with(" a simulated second");
   EXPECT_EQ(with_cost, 1);
 }
 

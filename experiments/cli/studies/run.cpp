@@ -12,6 +12,7 @@
 #include "experiments/study/study_table.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/process.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::verb::run {
 
@@ -72,7 +73,10 @@ Answer answer_of(const CampaignProgress& campaign, const std::vector<Study>& stu
         continue;
       }
       const std::vector<Record> records = collect(study, store).records;
-      answer.add(report::failure_map(records, nullptr)).name = name;
+      std::vector<Record> timed;
+      if (const auto benches = stored_benches(store, study.name); !benches.empty())
+        timed = benches.front().records();
+      answer.add(report::failure_map(records, timed, nullptr)).name = name;
     }
   return answer;
 }

@@ -46,7 +46,7 @@ const char* verdict(const Record& r) {
   return "right";
 }
 
-/// "100 % of the way, strain 0.086 %, energy -0.012, 0.31 ms"
+/// "100 % of the way, strain 0.086 %, energy -0.012, 20 ms a simulated second"
 std::string numbers(const Record& r) {
   std::vector<std::string> all;
   const auto add = [&](std::string_view name, const std::string& before, const std::string& after) {
@@ -56,7 +56,7 @@ std::string numbers(const Record& r) {
   add(kShareBySteps, "", " of the way");
   add("stretch.rms", "strain ", "");
   add("energy.peak", "energy ", " m g L");
-  add(kCpuValue, "", " a step");
+  add("cpu.per_second", "", " a simulated second");
   return join(all, ", ");
 }
 
@@ -73,7 +73,7 @@ Cell cell_of(const Record& r, CaseList* list) {
 
 }  // namespace
 
-Table failure_map(const Records& records, CaseList* list) {
+Table failure_map(const Records& records, const std::vector<Record>& timed, CaseList* list) {
   Table table{kFailureMap,
               "Who is right on soft, stiff, taut and slack cloth: who freezes, who strains",
               {Column("solver")},
@@ -84,8 +84,11 @@ Table failure_map(const Records& records, CaseList* list) {
                   "; gains energy: above " + shown(kShare, kGained, 1) +
                   " of m g L more than at the start; else right. The first of these that holds."};
   Records here;
-  for (const Record* r : records)
-    if (!stiffness_of(*r).empty()) here.push_back(r);
+  for (const Record* r : records) {
+    if (stiffness_of(*r).empty()) continue;
+    const auto with_cost = std::ranges::find(timed, r->key, &Record::key);
+    here.push_back(with_cost == timed.end() ? r : &*with_cost);
+  }
   const auto columns = distinct(here, [](const Record* r) { return column_of(*r); });
   if (distinct(here, [](const Record* r) { return stiffness_of(*r); }).size() < 2) return table;
   for (const std::string& column : columns) table.columns.emplace_back(column, column);

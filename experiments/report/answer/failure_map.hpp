@@ -22,7 +22,8 @@ inline constexpr const char* kFailureMap = "failure_map";
 ///     right        none of these
 ///
 /// the first that holds, with the numbers behind it in its note. Without rows where no two cases of
-/// a scene differ in stiffness alone. `list`: where its cells lead; null: nowhere.
-Table failure_map(const Records&, CaseList* list);
+/// a scene differ in stiffness alone. Of the records that are among `timed`, what a simulated
+/// second costs (StudyBench::records). `list`: where its cells lead; null: nowhere.
+Table failure_map(const Records&, const std::vector<Record>& timed, CaseList* list);
 
 }  // namespace taut::report

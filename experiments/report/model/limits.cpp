@@ -47,21 +47,13 @@ Table frontier_table(const std::vector<ParameterFrontier>& frontiers) {
   return table;
 }
 
-/// The study's records, of those that were timed the ones with what a step costs.
-Records with_costs(const std::vector<Record>& records, const std::vector<Record>& timed) {
-  Records all(records);
-  for (const Record*& r : all)
-    if (const auto at = std::ranges::find(timed, r->key, &Record::key); at != timed.end()) r = &*at;
-  return all;
-}
-
 }  // namespace
 
 Json json_of_limits(const ReportInput& input, CaseList& refs, Answer& tables) {
   Json limits;
   const std::vector<Record> timed = input.bench ? input.bench->records() : std::vector<Record>();
   for (const StudyResult& study : input.studies)
-    if (Table map = failure_map(with_costs(study.records, timed), &refs); !map.rows.empty()) {
+    if (Table map = failure_map(study.records, timed, &refs); !map.rows.empty()) {
       add_table(limits, std::move(map), tables);
       break;  // the first study that has one
     }

@@ -18,6 +18,11 @@ namespace {
 
 constexpr double kStiffness = 100;  // N/m: stiffer, and pd would take 20 times as long
 const std::string kSprings = "structural=100,shear=100,bend=0";
+const std::string kGlobal = "xpbd:method=global,primal=on,substeps=1,precision=double";
+/// With those springs, of which xpbd takes the compliances.
+std::string sprung(const std::string& solver) {
+  return with(solver, solver.starts_with("xpbd") ? "structural=0.01,shear=0.01" : kSprings);
+}
 
 /// A sheet of 9 x 9, half a metre wide, that has fallen on to the collider; without friction it
 /// soon slides off.
@@ -100,12 +105,13 @@ Scene a_rounding_error_apart(Scene scene, int n) {
   return scene;
 }
 
-/// Implicit's from eight starts: what rounding chooses has to end there, too.
+/// Those of Newton's kind from eight starts: what rounding chooses has to end there, too.
 TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
 #ifdef TAUT_SANITIZED
   GTEST_SKIP() << "half a million iterations; sanitizers see the same code in other tests";
 #endif
   const std::vector<Converged> solvers{{"implicit", 1, 100},
+                                       {kGlobal, 1, 100},
                                        {"pd", 10, 20000},
                                        {"vbd", 10, 20000},
                                        {"admm:links=elastic", 10, 20000}};
@@ -113,13 +119,13 @@ TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
     for (const Converged& one : solvers) {
       const auto after = [&](int iterations, int start = 0) {
         const std::string text =
-            with(one.solver, kSprings + ",iterations=" + std::to_string(iterations));
+            with(sprung(one.solver), "iterations=" + std::to_string(iterations));
         const Scene from = a_rounding_error_apart(scene, start);
         return violation(from, after_one_step(from, text).x);
       };
       const std::string where = one.solver + " on a " + name_of(scene) + ", friction " +
                                 std::to_string(scene.colliders[0].friction);
-      const int starts = one.solver == "implicit" ? 8 : 1;
+      const int starts = one.solver == "implicit" || one.solver == kGlobal ? 8 : 1;
       for (int n = 0; n < starts; ++n)
         EXPECT_LT(after(one.many, n), 1e-8) << where << ", start " << n;
       if (!std::holds_alternative<Plane>(scene.colliders[0].shape))  // there it is right at once
@@ -154,7 +160,9 @@ TEST(ContactConditions, LetASheetRestOnARoughSlope) {
     scene.start = simulate(scene, "implicit", 40);
     scene.damping = 2;
     scene.start = simulate(scene, "implicit", 200);
-    for (const std::string solver : {"implicit", "pd", "admm", "vbd"}) {
+    for (const std::string& solver :
+         {std::string("implicit"), std::string("pd"), std::string("admm"), std::string("vbd"),
+          kGlobal + ",iterations=30"}) {
       double fastest = 0;
       for (const Vec3& v : simulate(scene, solver, 60).v) fastest = std::max(fastest, v.norm());
       EXPECT_LT(fastest, 1e-9) << solver << ", " << n << " x " << n;
@@ -240,13 +248,13 @@ Violation violation_of_pairs(const Scene& scene, const std::vector<Vec3>& x) {
 TEST(ContactConditions, HoldBetweenSheets) {
   const Scene scene = sheet_on_sheet();
   const std::vector<Converged> solvers{{"implicit", 2, 400},
+                                       {kGlobal, 2, 1000},
                                        {"pd", 10, 20000},
                                        {"vbd", 10, 20000},
                                        {"admm:links=elastic", 10, 20000}};
   for (const Converged& one : solvers) {
     const auto after = [&](int iterations) {
-      const std::string text =
-          with(one.solver, kSprings + ",iterations=" + std::to_string(iterations));
+      const std::string text = with(sprung(one.solver), "iterations=" + std::to_string(iterations));
       return violation_of_pairs(scene, after_one_step(scene, text).x);
     };
     EXPECT_LT(after(one.many).most, 1e-8) << one.solver;
@@ -342,12 +350,15 @@ double violation_of_face(const Scene& scene, const std::vector<Vec3>& x) {
 TEST(ContactConditions, HoldForAFace) {
   for (const double friction : {0.0, 0.1, 0.6}) {
     const Scene scene = face_on_ball(friction);
-    const std::vector<Converged> solvers{
-        {"implicit", 2, 200}, {"pd", 5, 5000}, {"vbd", 5, 5000}, {"admm:links=elastic", 5, 5000}};
+    const std::vector<Converged> solvers{{"implicit", 2, 200},
+                                         {kGlobal, 2, 400},
+                                         {"pd", 5, 5000},
+                                         {"vbd", 5, 5000},
+                                         {"admm:links=elastic", 5, 5000}};
     for (const Converged& one : solvers) {
       const auto after = [&](int iterations) {
         const std::string text =
-            with(one.solver, kSprings + ",faces=on,iterations=" + std::to_string(iterations));
+            with(sprung(one.solver), "faces=on,iterations=" + std::to_string(iterations));
         return violation_of_face(scene, after_one_step(scene, text).x);
       };
       EXPECT_LT(after(one.many), 1e-8) << one.solver << ", friction " << friction;

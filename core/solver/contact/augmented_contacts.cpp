@@ -1,15 +1,15 @@
-#include "core/solver/newton/augmented_contacts.hpp"
+#include "core/solver/contact/augmented_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace taut::solver::implicit {
+namespace taut {
 
 namespace {
 
 /// Of the stiffness of all else at a vertex, that of its contact; and of a change of the forces of
 /// contact, the gradient that is left before they take it.
-constexpr double kStiffness = 3, kSettled = 0.3;
+constexpr double kOfElsewhere = 3, kSettled = 0.3;
 
 }  // namespace
 
@@ -23,11 +23,17 @@ void AugmentedContacts::begin(double t, double h) {
   if (contacts_) contacts_->begin(t, h);
 }
 
-void AugmentedContacts::set_stiffness(const Particles<double>& p, std::span<const double> elastic,
+template <class Real>
+void AugmentedContacts::set_stiffness(const Particles<Real>& p, std::span<const double> elastic,
                                       double h) {
   for (std::size_t i = 0; i < stiffness_.size(); ++i)
-    if (p.w[i] > 0) stiffness_[i] = kStiffness * (elastic[i] + 1 / (p.w[i] * h * h));
+    if (const auto w = static_cast<double>(p.w[i]); w > 0)
+      stiffness_[i] = kOfElsewhere * (elastic[i] + 1 / (w * h * h));
 }
+template void AugmentedContacts::set_stiffness(const Particles<float>&, std::span<const double>,
+                                               double);
+template void AugmentedContacts::set_stiffness(const Particles<double>&, std::span<const double>,
+                                               double);
 
 AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at, const Vec3& x) const {
   const ContactForce& held = contacts_->force(at.vertex, at.collider);
@@ -52,39 +58,24 @@ AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at, const 
   return out;
 }
 
-void AugmentedContacts::add_energy(const std::vector<Vec3>& x, double& sum) const {
-  for (const TouchingVertex& at : touching_) sum += part(at, x[at.vertex]).energy;
-}
-
-void AugmentedContacts::add_gradient(const std::vector<Vec3>& x, const Hessian& hessian,
-                                     Vector& g) const {
-  for (const TouchingVertex& at : touching_)
-    g.segment<3>(hessian.column(at.vertex)) -= part(at, x[at.vertex]).force;
-}
-
-void AugmentedContacts::add_hessian(const std::vector<Vec3>& x, Hessian& hessian) const {
-  hessian.clear_contacts();
-  for (const TouchingVertex& at : touching_)
-    hessian.add_contact(at.vertex, part(at, x[at.vertex]).hessian);
-}
-
-bool AugmentedContacts::update(const Particles<double>& p, double h, double left, double rounding) {
+template <class Real>
+bool AugmentedContacts::update(const Particles<Real>& p, const std::vector<Vec3>& x, double h,
+                               double left, double rounding) {
   if (!contacts_) return false;
   contacts_->find(p, touching_);
   acting_.clear();
   double change2 = 0;
   for (const TouchingVertex& at : touching_) {
     ContactForce& held = contacts_->force(at.vertex, at.collider);
-    const Vec3 x = p.x[at.vertex];
-    const double gap = at.gap(x);
+    const double gap = at.gap(x[at.vertex]);
     ContactForce now = held;
     if (!held.holds()) {
-      held.push = now.push = std::max(0.0, -gap) / (p.w[at.vertex] * h * h);
+      held.push = now.push = std::max(0.0, -gap) / (static_cast<double>(p.w[at.vertex]) * h * h);
       change2 += now.push * now.push;
     } else {
       const double k = stiffness_[at.vertex];
       now.push = std::max(0.0, held.push - k * gap);
-      now.rub -= k * at.slip(x);
+      now.rub -= k * at.slip(x[at.vertex]);
       const double length = now.rub.norm(), most = at.friction * now.push;
       if (length > most) now.rub *= most / length;
       change2 += (at.total(now) - at.total(held)).squaredNorm();
@@ -97,5 +88,9 @@ bool AugmentedContacts::update(const Particles<double>& p, double h, double left
       contacts_->force(touching_[c].vertex, touching_[c].collider) = acting_[c];
   return change > rounding;
 }
+template bool AugmentedContacts::update(const Particles<float>&, const std::vector<Vec3>&, double,
+                                        double, double);
+template bool AugmentedContacts::update(const Particles<double>&, const std::vector<Vec3>&, double,
+                                        double, double);
 
-}  // namespace taut::solver::implicit
+}  // namespace taut

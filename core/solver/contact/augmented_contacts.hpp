@@ -6,10 +6,8 @@
 #include <vector>
 
 #include "core/solver/contact/contacts.hpp"
-#include "core/solver/loop.hpp"
-#include "core/solver/newton/hessian.hpp"
 
-namespace taut::solver::implicit {
+namespace taut {
 
 /// Contact as an augmented Lagrangian at each vertex that touches (Alart, Curnier, Computer Methods
 /// in Applied Mechanics and Engineering 92, 1991): with the force of the last iteration, push along
@@ -22,8 +20,9 @@ namespace taut::solver::implicit {
 /// take turns at sticking and slipping without end.
 class AugmentedContacts {
  public:
-  explicit AugmentedContacts(const loop::Setup& s)
-      : contacts_(make_contacts(s.scene, s.params)), stiffness_(contacts_ ? s.w.size() : 0) {}
+  AugmentedContacts() = default;  ///< none
+  AugmentedContacts(const Scene& scene, const Params& params)
+      : contacts_(make_contacts(scene, params)), stiffness_(contacts_ ? scene.start.x.size() : 0) {}
 
   void forget();  ///< no force
   /// The forces of the same contacts when fewer vertices could move.
@@ -32,31 +31,42 @@ class AugmentedContacts {
   }
   void begin(double t, double h);
   /// elastic: of all links and bending at each vertex [N/m].
-  void set_stiffness(const Particles<double>& p, std::span<const double> elastic, double h);
+  template <class Real>
+  void set_stiffness(const Particles<Real>& p, std::span<const double> elastic, double h);
+  /// The forces of what newly touches at p.x = y as if it had no link.
+  template <class Real>
+  void predict_new(const Particles<Real>& p, double h) {
+    if (contacts_) contacts_->predict_new(p, h);
+  }
   /// What touches at p.x.
-  void find(const Particles<double>& p) {
+  template <class Real>
+  void find(const Particles<Real>& p) {
     if (contacts_) contacts_->find(p, touching_);
   }
+  bool any() const { return contacts_ != nullptr; }  ///< the scene has what may touch
   bool touch() const { return !touching_.empty(); }
   void let_go() { touching_.clear(); }  ///< nothing touches until find()
 
-  // Of what touches, at x:
-  void add_energy(const std::vector<Vec3>& x, double& sum) const;                  ///< J
-  void add_gradient(const std::vector<Vec3>& x, const Hessian&, Vector& g) const;  ///< N
-  void add_hessian(const std::vector<Vec3>& x, Hessian&) const;                    ///< N/m
-
-  /// The forces become what acts at p.x, if the gradient that is left [N] is less; what has newly
-  /// come inside is held from now on, at first by what its own inertia asks for. Whether a force
-  /// changes by more than `rounding` [N]. False without contact.
-  bool update(const Particles<double>& p, double h, double left, double rounding);
-
- private:
   /// A contact's part at x: energy [J], force [N], Hessian [N/m].
   struct Part {
     double energy = 0;
     Vec3 force = Vec3::Zero();
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
   };
+  /// visit(vertex, part) of what touches, at x. A vertex' contacts come one after the other.
+  template <class Visit>
+  void each(const std::vector<Vec3>& x, const Visit& visit) const {
+    for (const TouchingVertex& at : touching_) visit(at.vertex, part(at, x[at.vertex]));
+  }
+
+  /// The forces become what acts at x, which p.x is but for rounding, if the gradient that is left
+  /// [N] is less; what has newly come inside is held from now on, at first by what its own inertia
+  /// asks for. Whether a force changes by more than `rounding` [N]. False without contact.
+  template <class Real>
+  bool update(const Particles<Real>& p, const std::vector<Vec3>& x, double h, double left,
+              double rounding);
+
+ private:
   Part part(const TouchingVertex& at, const Vec3& x) const;
 
   std::unique_ptr<Contacts> contacts_;    ///< null: none
@@ -65,4 +75,4 @@ class AugmentedContacts {
   std::vector<double> stiffness_;         ///< [n] N/m, k; empty: no contact
 };
 
-}  // namespace taut::solver::implicit
+}  // namespace taut
