@@ -79,7 +79,7 @@ DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
   if (params.has("substeps")) step.substeps = params.integer("substeps");
   if (scene.self_collision && !(params.has("self") && params.is("self", "off")))
     step.none = "self-collision is no part of it";
-  else if (!scene.colliders.empty() && params.has("faces") && params.is("faces", "on"))
+  else if (!scene.colliders.empty() && params.has("faces") && !params.is("faces", "off"))
     step.none = "contact of faces is no part of it";
   return step;
 }

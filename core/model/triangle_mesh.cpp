@@ -80,8 +80,8 @@ void TriangleMesh::join_edges() {
     while (end < sides.size() && edge_of(sides[end]) == edge_of(sides[begin])) ++end;
     const Side &a = sides[begin], &b = sides[end - 1];
     if (end - begin == 2 && a.upward != b.upward) {
-      across_[to_place(a.triangle)][a.edge] = b.triangle;
-      across_[to_place(b.triangle)][b.edge] = a.triangle;
+      across_[to_place(a.triangle)][a.edge] = 3 * b.triangle + b.edge;
+      across_[to_place(b.triangle)][b.edge] = 3 * a.triangle + a.edge;
     } else if (open_edge_ < 0 || a.triangle < open_edge_) {
       open_edge_ = a.triangle;
     }
@@ -186,23 +186,46 @@ NearestPlace TriangleMesh::seen_from(const Vec3& p, int triangle) const {
   if (place.feature == Feature::corner)
     pseudo = corner_normals_[to_place(triangles_[to_place(triangle)][place.which])];
   else if (const auto beyond = across_[to_place(triangle)][place.which]; beyond >= 0)
-    pseudo += normals_[to_place(beyond)];
+    pseudo += normals_[to_place(beyond / 3)];
   const double length = out.norm();
   if (pseudo.dot(out) < 0) return {-length, out / -length, triangle};
   return {length, out / length, triangle};
 }
 
-NearestPlace TriangleMesh::nearest(const Vec3& p) const {
+template <std::size_t most>
+TriangleMesh::NearestTriangles<most>::NearestTriangles() {
+  triangles.fill(-1);
+  squares.fill(std::numeric_limits<double>::infinity());
+}
+
+template <std::size_t most>
+void TriangleMesh::NearestTriangles<most>::add(int triangle, double distance2) {
+  const auto before = [&](std::size_t k) {
+    return distance2 < squares[k] || (distance2 == squares[k] && triangle < triangles[k]);
+  };
+  if (!before(most - 1)) return;
+  std::size_t k = most - 1;
+  for (; k > 0 && before(k - 1); --k) {
+    squares[k] = squares[k - 1];
+    triangles[k] = triangles[k - 1];
+  }
+  squares[k] = distance2;
+  triangles[k] = triangle;
+}
+
+template <std::size_t most>
+TriangleMesh::NearestTriangles<most> TriangleMesh::nearest_triangles(const Vec3& p) const {
   struct Waiting {
     std::int32_t node;
     double distance2;
   };
   std::array<Waiting, kDeepest> stack;
   std::size_t waiting = 0;
-  double least2 = std::numeric_limits<double>::infinity();
-  int best = 0;
-  // Whatever the order of the walk, it sees every triangle that may be the nearest.
-  const auto too_far = [&](double distance2) { return distance2 > least2 * (1 + 1e-12); };
+  NearestTriangles<most> best;
+  // Whatever the order of the walk, it sees every triangle that may be one of the nearest.
+  const auto too_far = [&](double distance2) {
+    return distance2 > best.squares[most - 1] * (1 + 1e-12);
+  };
   for (Waiting at{0, 0};;) {
     const Node& node = nodes_[to_place(at.node)];
     if (!too_far(at.distance2) && node.count == 0) {
@@ -215,14 +238,49 @@ NearestPlace TriangleMesh::nearest(const Vec3& p) const {
     }
     for (std::int32_t k = 0; !too_far(at.distance2) && k < node.count; ++k) {
       const int triangle = order_[to_place(node.first + k)];
-      const double distance2 = (p - place_on(triangle, p).point).squaredNorm();
-      if (distance2 > least2 || (distance2 == least2 && triangle > best)) continue;
-      least2 = distance2;
-      best = triangle;
+      best.add(triangle, squared_distance_of(triangle, p));
     }
-    if (waiting == 0) return seen_from(p, best);
+    if (waiting == 0) return best;
     at = stack[--waiting];
   }
+}
+
+NearestPlace TriangleMesh::nearest(const Vec3& p) const {
+  return seen_from(p, std::max(0, nearest_triangles<1>(p).triangles[0]));  // 0: of no number
+}
+
+/// From the foot of p in the triangle's plane; negative outside of the triangle.
+double TriangleMesh::to_border(int triangle, const Vec3& p) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = corner(triangle, k), &b = corner(triangle, (k + 1) % 3);
+    const Vec3 inward = normals_[to_place(triangle)].cross(b - a).normalized();
+    least = std::min(least, inward.dot(p - a));
+  }
+  return least;
+}
+
+NearestPlace TriangleMesh::nearest(const Vec3& p, Nearby& nearby) const {
+  if (!nearby.know(p)) {
+    const auto found = nearest_triangles<Nearby::kMost + 1>(p);
+    nearby.at = p;
+    nearby.noise = 1e3 * kNoise * reach_;
+    for (std::size_t k = 0; k <= Nearby::kMost; ++k)
+      nearby.distances[k] = std::sqrt(found.squares[k]);
+    std::copy_n(found.triangles.begin(), Nearby::kMost, nearby.triangles.begin());
+    const int first = std::max(0, nearby.triangles[0]);
+    // the point's distances and the border of its foot move by no more than it does
+    const double apart = (nearby.distances[1] - nearby.distances[0]) / 2;
+    nearby.within = std::max(0.0, std::min(apart, to_border(first, p)) - nearby.noise);
+    return seen_from(p, first);
+  }
+  const double moved2 = (p - nearby.at).squaredNorm();
+  if (moved2 < nearby.within * nearby.within) return above(p, nearby.triangles[0]);
+  const double farthest = nearby.distances[0] + 2 * std::sqrt(moved2) + nearby.noise;
+  NearestTriangles<1> best;
+  for (std::size_t k = 0; k < Nearby::kMost && nearby.distances[k] <= farthest; ++k)
+    best.add(nearby.triangles[k], squared_distance_of(nearby.triangles[k], p));
+  return seen_from(p, best.triangles[0]);
 }
 
 /// Seen along the path, as Woop, Benthin and Wald do (Watertight Ray/Triangle Intersection, 2013):

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -50,10 +51,40 @@ class TriangleMesh {
   double volume() const;  ///< m^3; negative: triangles look inward
   const Vec3& normal(int triangle) const { return normals_[to_place(triangle)]; }
 
+  /// Angle-weighted, of no particular length.
+  const Vec3& corner_normal(int vertex) const { return corner_normals_[to_place(vertex)]; }
+  /// Edges are numbered 3 triangle + k, from its corner k to the next. The number of this one in
+  /// the triangle beyond it; negative: there is none.
+  int beyond(int triangle, int k) const { return across_[to_place(triangle)][to_place(k)]; }
+
   /// The vertices move, triangles stay: boxes and normals are made anew, the tree's shape is kept.
   void refit(std::vector<Vec3> vertices);
 
   NearestPlace nearest(const Vec3&) const;
+  /// Triangles near a point that has been looked up: while it has hardly moved, the nearest is one
+  /// of them.
+  struct Nearby {
+    static constexpr std::size_t kMost = 4;
+    Vec3 at = Vec3::Zero();
+    std::array<int, kMost> triangles{};         ///< the nearest first
+    std::array<double, kMost + 1> distances{};  ///< m, and that of the next one
+    double within = 0;  ///< m, so far it may move and be nearest to the inside of the first one
+    double noise = 0;   ///< m, far beyond rounding
+
+    /// Whether nearest(p, *this) is one of them.
+    bool know(const Vec3& p) const {
+      const double spare = (distances[kMost] - distances[0] - noise) / 2;
+      return spare > 0 && (p - at).squaredNorm() < spare * spare;
+    }
+  };
+  /// The same bits. Looks p up in `nearby` as long as that knows it, else in the tree, for which
+  /// it then stands.
+  NearestPlace nearest(const Vec3& p, Nearby& nearby) const;
+  /// nearest() of a point whose nearest place is within this triangle.
+  NearestPlace above(const Vec3& p, int triangle) const {
+    const Vec3& normal = normals_[to_place(triangle)];
+    return {normal.dot(p - corner(triangle, 0)), normal, triangle};
+  }
   /// The first triangle on the way, its start included and its end not.
   std::optional<MeshHit> first_hit(const Vec3& from, const Vec3& to) const;
   /// All of them, in the order of the way; the end is included.
@@ -84,6 +115,21 @@ class TriangleMesh {
   };
   Place place_on(int triangle, const Vec3& p) const;
   NearestPlace seen_from(const Vec3& p, int triangle) const;
+  double squared_distance_of(int triangle, const Vec3& p) const {
+    return (p - place_on(triangle, p).point).squaredNorm();
+  }
+  /// The `most` triangles that are nearest to p, the nearest first, of equals the first in the
+  /// order of `triangles`; fewer: -1, at an infinite distance.
+  template <std::size_t most>
+  struct NearestTriangles {
+    std::array<int, most> triangles;
+    std::array<double, most> squares;  ///< m^2, of their distances
+    NearestTriangles();
+    void add(int triangle, double distance2);
+  };
+  template <std::size_t most>
+  NearestTriangles<most> nearest_triangles(const Vec3& p) const;
+  double to_border(int triangle, const Vec3& p) const;
   const Vec3& corner(int triangle, std::size_t k) const {
     return vertices_[to_place(triangles_[to_place(triangle)][k])];
   }
@@ -98,9 +144,9 @@ class TriangleMesh {
 
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
-  std::vector<std::array<std::int32_t, 3>> across_;  ///< the triangle beyond each edge; -1: none
+  std::vector<std::array<std::int32_t, 3>> across_;  ///< beyond()
   std::vector<Vec3> normals_;                        ///< [triangles] unit
-  std::vector<Vec3> corner_normals_;                 ///< [n] unit, angle-weighted
+  std::vector<Vec3> corner_normals_;                 ///< [n] corner_normal()
   std::vector<std::int32_t> order_;                  ///< triangles as leaves have them
   std::vector<Node> nodes_;
   Eigen::AlignedBox3d box_;

@@ -40,6 +40,7 @@ Simd simd_of(const Params& params) {
 
 ContactSettings contact_settings(const Params& params) {
   return {.response = params.one_of("contact", kResponses),
+          .edges = !params.is("faces", "off"),
           .faces = params.is("faces", "on"),
           .self = params.one_of("self", kSelfCollision),
           .simd = simd_of(params)};
@@ -321,8 +322,10 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
     const MeshBody* body = std::get_if<MeshBody>(&c.shape);
     return body && body->sides == MeshBody::Sides::both;
   };
-  if (params.is("faces", "on") && std::ranges::any_of(scene.colliders, is_thin))
-    return {"faces=on: on which side of a thin body a face is, is known of its vertices alone"};
+  if (!params.is("faces", "off") && std::ranges::any_of(scene.colliders, is_thin))
+    return {"faces=" + std::string(params.choice("faces")) +
+            ": on which side of a thin body a face is, is known of its vertices "
+            "alone"};
   if (!in_float(params)) return {};
   const double h = scene.dt / params.integer("substeps");
   const double farthest = coordinates(scene).first;

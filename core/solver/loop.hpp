@@ -120,10 +120,10 @@ inline constexpr ParamSpec kContact =
                       "through (continuous) or without (discrete); or as published, where cloth "
                       "does not rest as physics has it: out once, before or after the sweeps; or "
                       "put on the surface for good (freeze) or for a step (halt)");
-inline constexpr ParamSpec kFaces =
-    ParamSpec::choice("faces", "off", "off|on",
-                      "keep faces, not only vertices, out of balls and capsules and of the edges "
-                      "and corners of boxes");
+inline constexpr ParamSpec kFaces = ParamSpec::choice(
+    "faces", "off", "off|edges|on",
+    "keep edges of the cloth (edges), or faces and edges (on), not only vertices, "
+    "out of balls, capsules, boxes and solid bodies of triangles");
 inline constexpr ParamSpec kSelf = ParamSpec::choice(
     "self", "grid", "grid|octree|off",
     "self-collision where the scene has it: grid, octree as published by Vasilovici, or none");

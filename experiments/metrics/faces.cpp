@@ -1,3 +1,4 @@
+#include <array>
 #include <set>
 
 #include "core/model/index.hpp"
@@ -192,14 +193,11 @@ class Faces final : public Metric {
                              box->rotation * Vec3(x, y, z).cwiseProduct(box->half_extents));
     return places;
   }
-  /// Height above the face's plane, times twice its area.
-  static double height(const Corners& t, const Vec3& p) {
-    return (t[1] - t[0]).cross(t[2] - t[0]).dot(p - t[0]);
-  }
-  static bool within(const Corners& t, const Vec3& p) {
+  /// Of three corners as seen from a place in one plane with them.
+  static bool surround(const Corners& t) {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
     const auto side = [&](std::size_t a, std::size_t b) {
-      return (t[b] - t[a]).cross(p - t[a]).dot(normal) >= 0;
+      return t[a].cross(t[b]).dot(normal) >= 0;
     };
     return side(0, 1) && side(1, 2) && side(2, 0);
   }
@@ -239,15 +237,45 @@ class Faces final : public Metric {
       }
     }
   }
-  /// Whether the place goes through the face on its way.
-  static bool passes(const Corners& before, const Corners& now, const Vec3& from, const Vec3& to) {
-    const double was = height(before, from), is = height(now, to);
-    if ((was > 0) == (is > 0)) return false;
-    const double share = was / (was - is);
-    const auto between = [&](const Vec3& a, const Vec3& b) { return Vec3(a + share * (b - a)); };
-    return within(
-        {between(before[0], now[0]), between(before[1], now[1]), between(before[2], now[2])},
-        between(from, to));
+  /// How often the place goes through the face while all go straight: six times the volume between
+  /// them is a cubic in the share of the way, and 0 where they are in one plane.
+  static int passes(Corners before, Corners now, const Vec3& from, const Vec3& to) {
+    Eigen::AlignedBox3d way;
+    Corners d;
+    for (std::size_t c = 0; c < 3; ++c) {
+      before[c] -= from;
+      now[c] -= to;
+      d[c] = now[c] - before[c];
+      way.extend(before[c]).extend(now[c]);
+    }
+    if (!way.contains(Vec3::Zero())) return 0;
+    const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+      return a.dot(b.cross(c));
+    };
+    const auto& [a, b, c] = before;
+    const double k0 = volume(a, b, c),
+                 k1 = volume(d[0], b, c) + volume(a, d[1], c) + volume(a, b, d[2]),
+                 k2 = volume(d[0], d[1], c) + volume(d[0], b, d[2]) + volume(a, d[1], d[2]),
+                 k3 = volume(d[0], d[1], d[2]);
+    const auto above = [&](double s) { return k0 + s * (k1 + s * (k2 + s * k3)) > 0; };
+    std::array<double, 4> turns{0, 1, 1, 1};  // between them it rises, or falls
+    const double discriminant = k2 * k2 - 3 * k3 * k1;
+    if (discriminant > 0) {
+      const double root = -(k2 + std::copysign(std::sqrt(discriminant), k2));
+      turns[1] = std::clamp(k3 != 0 ? root / (3 * k3) : 1, 0.0, 1.0);
+      turns[2] = std::clamp(root != 0 ? k1 / root : 1, 0.0, 1.0);
+      std::sort(turns.begin(), turns.end());
+    }
+    int count = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      double low = turns[n], high = turns[n + 1];
+      if (above(low) == above(high)) continue;
+      constexpr int kHalvings = 50;
+      for (int k = 0; k < kHalvings; ++k)
+        (above((low + high) / 2) == above(low) ? low : high) = (low + high) / 2;
+      count += surround({a + high * d[0], b + high * d[1], c + high * d[2]});
+    }
+    return count;
   }
 
   static Corners in_frame(const MeshBody& body, Corners t) {

@@ -1,8 +1,26 @@
+#include <optional>
+
+#include "core/model/triangle_mesh.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
 namespace {
+
+/// Outward normal of a plane, and of a body all of whose triangles lie in one.
+std::optional<Vec3> flat_normal(const Shape& shape) {
+  if (const Plane* plane = std::get_if<Plane>(&shape)) return plane->normal;
+  const MeshBody* body = std::get_if<MeshBody>(&shape);
+  if (!body) return {};
+  const Vec3& normal = body->mesh->normal(0);
+  const std::vector<Vec3>& corners = body->mesh->vertices();
+  const double noise = 1e-12 * body->mesh->reach();
+  for (std::size_t t = 0; t < body->mesh->triangles().size(); ++t)
+    if ((body->mesh->normal(static_cast<int>(t)) - normal).norm() > 1e-9) return {};
+  for (const Vec3& x : corners)
+    if (std::abs(normal.dot(x - corners[0])) > noise) return {};
+  return body->rotation * normal;
+}
 
 /// The cloth against one plane, as a whole: what its threads do to each other cancels, so that
 /// gravity, damping and the plane alone move its centre of mass c. A step's contact impulse per
@@ -39,12 +57,12 @@ class Slip final : public Metric {
   static bool measures(const Scene& scene) {
     if (scene.colliders.size() != 1 || !scene.pins.empty() || scene.wind) return false;
     const Collider& collider = scene.colliders[0];
-    return std::holds_alternative<Plane>(collider.shape) && collider.motion.spin.isZero(0) &&
+    return flat_normal(collider.shape) && collider.motion.spin.isZero(0) &&
            collider.motion.path.empty();
   }
   explicit Slip(const Scene& scene)
       : mass_(scene.mesh.mass),
-        normal_(std::get<Plane>(scene.colliders[0].shape).normal),
+        normal_(side_of(scene) * *flat_normal(scene.colliders[0].shape)),
         plane_velocity_(scene.colliders[0].motion.velocity),
         g_dt_(scene.gravity * scene.dt),
         keep_(std::exp(-scene.damping * scene.dt)),
@@ -73,6 +91,12 @@ class Slip final : public Metric {
   }
 
  private:
+  /// A body with two sides may be met from behind.
+  static double side_of(const Scene& scene) {
+    const Shape& shape = scene.colliders[0].shape;
+    const Vec3 center = mean(scene.mesh.mass, scene.start.x);
+    return surface(shape, center).normal.dot(*flat_normal(shape)) < 0 ? -1 : 1;
+  }
   /// What v becomes in a step without contact.
   Vec3 drift(const Vec3& v) const { return keep_ * v + g_dt_; }
 
@@ -97,7 +121,7 @@ class Slip final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(slip, Slip, "Whether friction on a plane is Coulomb's",
+TAUT_METRIC(slip, Slip, "Whether friction on a plane, or a flat body, is Coulomb's",
             "momentum of the whole cloth against Coulomb's law, step by step");
 
 }  // namespace taut

@@ -6,6 +6,7 @@
 #include "core/model/index.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
+#include "experiments/truths/bodies.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -120,6 +121,7 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
   const Collider plate{Box{Vec3::Zero(), Vec3(2, thickness / 2, 2)}, {}, 0};
   const Collider ball{Ball{Vec3::Zero(), thickness / 2}, {}, 0};
   const Collider capsule{Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), thickness / 2}, {}, 0};
+  const Collider body{MeshBody{.mesh = box_of_triangles(Vec3(2, thickness / 2, 2))}, {}, 0};
   const Collider thick{Box{Vec3::Zero(), Vec3(2, 0.03, 2)}, {}, 0};
   Scene s = above_plane(1, Vec3::UnitY(), 0);
   s.colliders = {plate};
@@ -133,13 +135,16 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
                    missed(solver, ball, travel), 1 - thickness / travel, 0.006);
     findings.equal(solver, "share that misses a capsule of 2R = 0.4 s across its axis", "1",
                    missed(solver, capsule, travel), 1 - thickness / travel, 0.006);
+    findings.equal(solver, "share that misses a plate of 12 triangles of 0.4 s", "1",
+                   missed(solver, body, travel), 1 - thickness / travel, 0.006);
     findings.below(solver, "share that misses a plate thicker than the travel", "1",
                    missed(solver, thick, travel), 0);
   }
   const std::string continuous = jakobsen(1, "exact", "contact=continuous");
   if (!can_run(findings, continuous, s)) return;
   for (const auto& [what, collider] :
-       {std::pair("plate", plate), std::pair("ball", ball), std::pair("capsule", capsule)})
+       {std::pair("plate", plate), std::pair("ball", ball), std::pair("capsule", capsule),
+        std::pair("body of triangles", body)})
     findings.deviates(continuous, std::string("share that misses a ") + what + " of 0.4 travels",
                       "1", missed(continuous, collider, travel), 1 - thickness / travel, 0, 0,
                       "its contact tests the path, so that nothing is missed");

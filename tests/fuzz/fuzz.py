@@ -149,7 +149,8 @@ class Attempt:
 
 def scene_made(attempt):
     name = attempt.random.choice(['made.toml', 'made.toml', '<b>&"\'`id`.toml', '\u202egpj.toml', '=1+1.toml', '$(touch canary).toml'])
-    attempt.write(name, attempt.make.scene())
+    attempt.write(name, attempt.make.scene(body='body.obj'))
+    attempt.write('body.obj', attempt.make.body())
     attempt.write('study.toml', f'question = "?"\nscenes = {toml(["./" + name])}\nsolvers = {toml([attempt.solver()])}\n')
     attempt.taut('plan', './' + name, attempt.solver(), '--json')
     attempt.run('./study.toml')

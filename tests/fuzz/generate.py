@@ -83,8 +83,9 @@ class Maker:
             moved['path'] = [{'t': t, 'displacement': self.vector(self.log(0.01, 10))} for t in times]
         return moved
 
-    def collider(self):
-        kind = self.random.choice(['plane', 'ball', 'box', 'capsule'])
+    def collider(self, body=None):
+        """body: an OBJ file that one of them may be of."""
+        kind = self.random.choice(['plane', 'ball', 'box', 'capsule'] + (['mesh'] if body else []))
         one = {'type': kind, 'friction': self.random.choice([0, 0.5, 1000]), **self.motion()}
         if kind == 'plane':
             one.update(normal=self.vector(), offset=-self.log(0.01, 100))
@@ -94,11 +95,13 @@ class Maker:
             one['center'] = self.vector(self.log(0.1, 10))
         if kind in ('ball', 'capsule'):
             one['radius'] = self.log(1e-3, 10)
+        if kind == 'mesh':
+            one.update(file=body, scale=self.log(0.1, 10), sides=self.random.choice(['out', 'out', 'both']))
         if kind == 'box':
             one.update(half_extents=[self.log(1e-3, 5) for _ in range(3)], rotation={'axis': self.vector(), 'angle': self.random.uniform(-180, 180)})
         return one
 
-    def scene(self, mesh=None):
+    def scene(self, mesh=None, body=None):
         r = self.random
         nu, nv = r.randint(1, 9), r.randint(2, 9)
         cloth = {'mesh': mesh} if mesh else {'grid': [nu, nv], 'size': [self.log(1e-3, 100), self.log(1e-3, 100)]}
@@ -129,11 +132,24 @@ class Maker:
         lines = [f'summary = {toml(self.text())}']
         for name, table in tables.items():
             lines += [f'[{name}]'] + [f'{key} = {toml(value)}' for key, value in table.items()]
-        several = [('collider', self.collider()) for _ in range(r.choice([0, 0, 1, 2]))]
+        several = [('collider', self.collider(body)) for _ in range(r.choice([0, 0, 1, 2]))]
         if cloth.get('pins') and self.maybe(0.2):
             several.append(('pin_motion', {'vertices': cloth['pins'][:1], **self.motion()}))
         for name, table in several:
             lines += [f'[[{name}]]'] + [f'{key} = {toml(value)}' for key, value in table.items()]
+        return '\n'.join(lines) + '\n'
+
+    def body(self):
+        """A closed body: an octahedron whose corners are moved, or a prism with a notch."""
+        if self.maybe():
+            corners = [[x * self.random.uniform(0.3, 1.5) for x in corner]
+                       for corner in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))]
+            faces = [(1, 3, 5), (3, 2, 5), (2, 4, 5), (4, 1, 5), (3, 1, 6), (2, 3, 6), (4, 2, 6), (1, 4, 6)]
+        else:
+            notch = self.random.uniform(-0.5, 0.9)
+            corners = [[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (0, notch), (-1, 1))]
+            faces = [(5, 4, 3, 2, 1), (6, 7, 8, 9, 10)] + [(k + 1, (k + 1) % 5 + 1, (k + 1) % 5 + 6, k + 6) for k in range(5)]
+        lines = [f'v {x:g} {y:g} {z:g}' for x, y, z in corners] + [f'f {" ".join(map(str, face))}' for face in faces]
         return '\n'.join(lines) + '\n'
 
     def obj(self):

@@ -140,6 +140,36 @@ TEST(BodyMetrics, EveryCrossingOfAThinBodyIsAPassage) {
   EXPECT_EQ(v.at("penetration.max"), 0);
 }
 
+// A wall of two triangles is the plane that they lie in, from both of its sides.
+TEST(BodyMetrics, SlipOnAFlatBodyIsThatOnItsPlane) {
+  Scene scene = sheet(4);
+  scene.steps = 20;
+  const Vec3 normal = Vec3(0.3, 1, 0.1).normalized();
+  const auto slides = [&](int step) {
+    State state = scene.start;
+    for (Vec3& x : state.x) x += 1e-4 * step * step * Vec3(1, -0.3, 0.2);
+    return state;
+  };
+  scene.colliders = {{Plane{normal, -1}, {}, 0.3}};
+  const Values want = measure(scene, slides);
+  const Triangles wall{{{-9, 0, -9}, {9, 0, -9}, {9, 0, 9}, {-9, 0, 9}}, {{0, 2, 1}, {0, 3, 2}}};
+  for (const double side : {1.0, -1.0}) {
+    scene.colliders = {
+        {MeshBody{.mesh = wall.mesh(),
+                  .center = -normal,
+                  .rotation = Eigen::Quaterniond::FromTwoVectors(side * Vec3::UnitY(), normal),
+                  .sides = MeshBody::Sides::both},
+         {},
+         0.3}};
+    const Values got = measure(scene, slides);
+    for (const char* name : {"slip.error", "slip.error.peak", "slip.distance"})
+      EXPECT_NEAR(got.at(name), want.at(name), 1e-12) << name << ' ' << side;
+  }
+  EXPECT_GT(want.at("slip.distance"), 1e-3);
+  scene.colliders = {{MeshBody{.mesh = pyramid(1, 1).mesh()}, {}, 0.3}};
+  EXPECT_EQ(measure(scene, slides).count("slip.error"), 0u);
+}
+
 // The tip of a pyramid goes through one face of a sheet that falls on it, and its others through
 // none; seen without the tree.
 TEST(BodyMetrics, AVertexOfTheBodyThatPiercesAFaceIsAPassage) {

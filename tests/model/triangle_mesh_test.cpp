@@ -196,6 +196,34 @@ TEST(TriangleMesh, TheTreeSeesWhatALookAtAllTrianglesSees) {
   for (const auto& [name, body] : bodies()) expect_all_seen(name, *body.mesh());
 }
 
+// A point that has been looked up once and moves a little gets the bits of a look at all.
+TEST(TriangleMesh, WhatIsNearbyAnswersToTheBit) {
+  for (const auto& [name, body] : bodies()) {
+    const auto mesh = body.mesh();
+    Random random;
+    int known = 0, within = 0, asked = 0;
+    for (int n = 0; n < 600; ++n) {
+      TriangleMesh::Nearby nearby;
+      Vec3 p = random.point(0.8);
+      // edges and corners are nearest, too; steps are small and large
+      if (n % 3 == 0) p = 1.02 * body.vertices[to_index(n) % body.vertices.size()];
+      for (int k = 0; k < 30; ++k) {
+        const NearestPlace want = mesh->nearest(p);
+        known += nearby.know(p);
+        within += (p - nearby.at).norm() < nearby.within;
+        ++asked;
+        const NearestPlace got = mesh->nearest(p, nearby);
+        ASSERT_EQ(got.distance, want.distance) << name << ' ' << n;
+        ASSERT_EQ(got.normal, want.normal) << name << ' ' << n;
+        ASSERT_EQ(got.triangle, want.triangle) << name << ' ' << n;
+        p += (k % 7 == 0 ? 0.05 : 0.004) * random.point(1);
+      }
+    }
+    EXPECT_GT(known, asked / 5) << name;
+    EXPECT_GT(within, asked / 100) << name;
+  }
+}
+
 TEST(TriangleMesh, RefittedItAnswersAsOneMadeAnew) {
   for (const auto& [name, body] : bodies()) {
     std::vector<Vec3> moved = body.vertices;

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "core/model/index.hpp"
@@ -16,30 +17,22 @@ class Contacts::Surface {
  public:
   virtual ~Surface() = default;
   virtual void begin(double t, double h) = 0;
-  /// Whether x is inside, or `held`; then `at` is filled in.
-  virtual bool touches(const Vec3& x, const Vec3& previous, bool held,
-                       TouchingVertex& at) const = 0;
+  /// Whether x is inside, or `held`; then `at`, but for its collider, is filled in.
+  virtual bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
+                       TouchingVertex& at) = 0;
   virtual bool turns() const = 0;
   virtual Vec3 turned(const Vec3& force) const = 0;
 };
 
 namespace {
 
-// What a contact is asked by: a body of triangles by a copy, which remembers the point.
-template <template <class> class SurfaceOf>
-const Contact<double, SurfaceOf>& for_one_point(const Contact<double, SurfaceOf>& contact) {
-  return contact;
-}
-Contact<double, MeshSurface> for_one_point(const Contact<double, MeshSurface>& contact) {
-  return contact;
-}
 MeshSurface<double> surface_of(const MeshBody& body) { return MeshSurface<double>(body); }
 
 template <template <class> class SurfaceOf>
 class SurfaceIn final : public Contacts::Surface {
  public:
-  SurfaceIn(const Collider& collider, double thickness, bool continuous)
-      : collider_(collider), continuous_(continuous) {
+  SurfaceIn(const Collider& collider, double thickness, bool continuous, std::size_t vertices)
+      : collider_(collider), continuous_(continuous), seen_(kIsMesh ? vertices : 0) {
     contact_.thickness = thickness;
     contact_.friction = collider.friction;
   }
@@ -50,11 +43,18 @@ class SurfaceIn final : public Contacts::Surface {
     contact_.motion = rigid_motion(collider_.motion, t, h);
   }
 
-  bool touches(const Vec3& x, const Vec3& previous, bool held, TouchingVertex& at) const override {
+  bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
+               TouchingVertex& at) override {
     const Vec3T<double> to = vec3t<double>(x), before = vec3t<double>(previous);
     Tangent<double> tangent;
-    const auto& contact = for_one_point(contact_);
-    if (!contact.touched(to, before, continuous_, held, tangent)) return false;
+    if constexpr (kIsMesh) {  // by a copy, for vertices are asked about by several threads
+      Contact<double, MeshSurface> contact = contact_;
+      contact.surface.ask_about(&seen_[vertex]);
+      if (!contact.touched(to, before, continuous_, held, tangent)) return false;
+    } else if (!contact_.touched(to, before, continuous_, held, tangent)) {
+      return false;
+    }
+    at.vertex = vertex;
     at.normal = point(tangent.normal);
     at.offset = tangent.offset + contact_.thickness;
     at.from = point(contact_.motion(before));
@@ -70,22 +70,24 @@ class SurfaceIn final : public Contacts::Surface {
   }
 
  private:
+  static constexpr bool kIsMesh = std::is_same_v<SurfaceOf<double>, MeshSurface<double>>;
   Collider collider_;
   bool continuous_;
   Contact<double, SurfaceOf> contact_{};
+  std::vector<Seen> seen_;  ///< [vertices] of a body of triangles
 };
 
 std::unique_ptr<Contacts::Surface> make_surface(const Collider& c, double thickness,
-                                                bool continuous) {
+                                                bool continuous, std::size_t vertices) {
   if (std::holds_alternative<Plane>(c.shape))
-    return std::make_unique<SurfaceIn<PlaneSurface>>(c, thickness, continuous);
+    return std::make_unique<SurfaceIn<PlaneSurface>>(c, thickness, continuous, vertices);
   if (std::holds_alternative<Ball>(c.shape))
-    return std::make_unique<SurfaceIn<BallSurface>>(c, thickness, continuous);
+    return std::make_unique<SurfaceIn<BallSurface>>(c, thickness, continuous, vertices);
   if (std::holds_alternative<Capsule>(c.shape))
-    return std::make_unique<SurfaceIn<CapsuleSurface>>(c, thickness, continuous);
+    return std::make_unique<SurfaceIn<CapsuleSurface>>(c, thickness, continuous, vertices);
   if (std::holds_alternative<Box>(c.shape))
-    return std::make_unique<SurfaceIn<BoxSurface>>(c, thickness, continuous);
-  return std::make_unique<SurfaceIn<MeshSurface>>(c, thickness, continuous);
+    return std::make_unique<SurfaceIn<BoxSurface>>(c, thickness, continuous, vertices);
+  return std::make_unique<SurfaceIn<MeshSurface>>(c, thickness, continuous, vertices);
 }
 
 }  // namespace
@@ -93,7 +95,7 @@ std::unique_ptr<Contacts::Surface> make_surface(const Collider& c, double thickn
 Contacts::Contacts(const Scene& scene, bool continuous)
     : forces_(scene.start.x.size() * scene.colliders.size()) {
   for (const Collider& collider : scene.colliders)
-    surfaces_.push_back(make_surface(collider, scene.thickness, continuous));
+    surfaces_.push_back(make_surface(collider, scene.thickness, continuous, scene.start.x.size()));
 }
 Contacts::~Contacts() = default;
 
@@ -112,8 +114,7 @@ void Contacts::begin(double t, double h) {
 bool Contacts::touches(std::size_t vertex, std::size_t collider, const Vec3& x,
                        const Vec3& previous, TouchingVertex& at) {
   ContactForce& held = force(vertex, collider);
-  if (!surfaces_[collider]->touches(x, previous, held.holds(), at)) return false;
-  at.vertex = vertex;
+  if (!surfaces_[collider]->touches(vertex, x, previous, held.holds(), at)) return false;
   at.collider = collider;
   held.rub = at.across(held.rub);
   return true;

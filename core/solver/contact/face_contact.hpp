@@ -1,41 +1,55 @@
 #pragma once
 
+#include <optional>
+
 #include "core/model/triangle.hpp"
-#include "core/model/triangle_mesh.hpp"
+#include "core/solver/contact/body_features.hpp"
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/layout/particles.hpp"
 
 namespace taut {
 
-/// Keeps the faces, not just their corners, out of a ball or a capsule, and edges and corners of a
-/// box or a solid body of triangles out of the faces. Of each face that is too deep, the deepest
-/// point is moved out along the surface's normal; its corners share the correction by their
-/// barycentric weights b and inverse masses w,
+/// Keeps faces and edges of the cloth, not just its vertices, out of a ball or a capsule, edges and
+/// corners of a box out of the faces, and those of a solid body of triangles (BodyFeatures). Of
+/// each piece that is too deep, the deepest point is moved out along the surface's normal; its
+/// corners share the correction by their barycentric weights b and inverse masses w,
 ///
 ///     dx_i = w_i b_i s n / sum of w_j b_j^2,
 ///
-/// so that the point moves by s n and momentum changes along n alone.
+/// so that the point moves by s n and momentum changes along n alone. Continuous: an edge that has
+/// passed through a convex edge of a body or the axis of a capsule goes back to the side from which
+/// it came; where a substep ended before it was there, in the next.
 ///
-/// With a solver that has a target y, a face keeps the force F at its point from sweep to sweep and
-/// from substep to substep, as long as Signorini and Coulomb ask for it, were the corners free
+/// With a solver that has a target y, a piece keeps the force F at its point from sweep to sweep
+/// and from substep to substep, as long as Signorini and Coulomb ask for it, were the corners free
 /// (settle() in contacts.hpp); its changes move y as they move x, so that links feel b F.
 template <class Real>
 class FaceContactPass final : public Pass<Real> {
  public:
-  /// The collider is no plane and no thin body. solver: null, or that of the links, whose target
-  /// moves as well.
-  FaceContactPass(const Collider& collider, double thickness, std::vector<Triangle> faces,
-                  Pass<Real>* solver)
+  /// The collider is no plane and no thin body. pieces: faces and edges (is_edge()). solver: null,
+  /// or that of the links, whose target moves as well.
+  FaceContactPass(const Collider& collider, double thickness, bool continuous,
+                  std::vector<Triangle> pieces, Pass<Real>* solver)
       : collider_(collider),
         thickness_(thickness),
-        faces_(std::move(faces)),
+        continuous_(continuous),
+        faces_(std::move(pieces)),
         solver_(solver),
-        held_(solver ? faces_.size() : 0) {}
+        held_(solver ? faces_.size() : 0) {
+    if (std::holds_alternative<MeshBody>(collider.shape))
+      features_.emplace(thickness, faces_.size());
+  }
 
-  void restart() override { held_.assign(held_.size(), {}); }
+  void restart() override {
+    held_.assign(held_.size(), {});
+    safe_.clear();
+  }
   void take_over(const Pass<Real>& before) override {
-    held_ = static_cast<const FaceContactPass&>(before).held_;
+    const auto& old = static_cast<const FaceContactPass&>(before);
+    held_ = old.held_;
+    features_ = old.features_;
+    safe_ = old.safe_;
   }
 
   void begin(Particles<Real>& p, double t, double dt) override {
@@ -60,7 +74,9 @@ class FaceContactPass final : public Pass<Real> {
       const Eigen::AlignedBox3d& box = body->mesh->box();
       center_ = body->center + body->rotation * box.center();
       reach_ = box.diagonal().norm() / 2 + thickness_;
+      to_body_ = body->rotation.conjugate().toRotationMatrix();
     }
+    if (continuous_) remember_sides(p);
     for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
       if (held_[f].holds()) {
         held_[f].force = turned(held_[f].force);
@@ -69,18 +85,9 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   void apply(Particles<Real>& p, double, double dt) override {
-    for (std::size_t f = 0; f < faces_.size(); ++f) {
-      const Triangle& face = faces_[f];
-      const Corners t{at(p.x, face[0]), at(p.x, face[1]), at(p.x, face[2])};
-      const double side2 = std::max((t[1] - t[0]).squaredNorm(), (t[2] - t[0]).squaredNorm());
-      const bool holds = solver_ && held_[f].holds();
-      // every point of the face is within a side of its first corner
-      if (!holds && (t[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2)) continue;
-      Separation out = separation_of(shape_, t);
-      if (out.length <= 0 && holds) out = outside(t, held_[f].weights);
-      if (solver_ && (out.length > 0 || holds)) hold(p, face, out, dt, held_[f]);
-      if (!solver_ && out.length > 0) push(p, face, out);
-    }
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      for (int round = 0; round < kRounds && !keep_out(p, f, dt); ++round) {
+      }
   }
 
   std::vector<PassCost> cost() const override {
@@ -91,12 +98,6 @@ class FaceContactPass final : public Pass<Real> {
   }
 
  private:
-  /// How the deepest point of a face leaves a solid.
-  struct Separation {
-    double length = 0;           ///< m; <= 0: it is outside
-    Vec3 normal = Vec3::Zero();  ///< unit
-    TrianglePoint point;
-  };
   /// What holds a face [N], and at which of its points.
   struct Held {
     Vec3 force = Vec3::Zero(), weights = Vec3::Zero();
@@ -116,15 +117,89 @@ class FaceContactPass final : public Pass<Real> {
     return {deepest.depth * sides, box.rotation * out / sides, deepest.at};
   }
 
+  /// An edge that goes back through another one turns on its way, and may be through it again.
+  static constexpr int kRounds = 4;
+
+  /// Whether that was all: the piece had not passed through anything.
+  bool keep_out(Particles<Real>& p, std::size_t f, double dt) {
+    const Triangle& face = faces_[f];
+    const Corners t{at(p.x, face[0]), at(p.x, face[1]), at(p.x, face[2])};
+    const bool holds = solver_ && held_[f].holds();
+    // every point of the face is within a side of its first corner
+    const bool far = (t[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2_of(t));
+    if (far && !holds && !may_have_passed(f, t)) return true;
+    Separation out = separation_of(f, t);
+    if (out.length <= 0 && holds) out = outside(f, t);
+    if (solver_ && (out.length > 0 || holds)) hold(p, face, out, dt, held_[f]);
+    if (!solver_ && out.length > 0) push(p, face, out);
+    return !out.has_passed;
+  }
+
   /// Precondition: no plane.
-  Separation separation_of(const Shape& shape, const Corners& t) const {
-    if (const Ball* ball = std::get_if<Ball>(&shape)) return out_of(*ball, t);
-    if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return out_of(*capsule, t);
-    if (const MeshBody* body = std::get_if<MeshBody>(&shape)) return out_of_body(*body, t);
-    const Box& box = std::get<Box>(shape);
-    const Deepest deepest = deepest_in(box, t);
-    if (deepest.depth <= 0) return {};
-    return over_edge(box, deepest);
+  Separation separation_of(std::size_t piece, const Corners& t) {
+    if (const MeshBody* body = std::get_if<MeshBody>(&shape_)) return out_of(*body, piece, t);
+    Separation out;
+    if (const Ball* ball = std::get_if<Ball>(&shape_)) {
+      out = out_of(*ball, t);
+    } else if (const Capsule* capsule = std::get_if<Capsule>(&shape_)) {
+      if (continuous_ && is_edge(faces_[piece])) out = back_over(*capsule, piece, t);
+      if (out.length <= 0) out = out_of(*capsule, t);
+    } else {
+      const Box& box = std::get<Box>(shape_);
+      const Deepest deepest = deepest_in(box, t);
+      if (deepest.depth > 0) out = over_edge(box, deepest);
+    }
+    if (is_edge(faces_[piece])) of_two_corners(out.point.weights);
+    return out;
+  }
+  static void of_two_corners(Vec3& weights) {
+    weights[1] += weights[2];
+    weights[2] = 0;
+  }
+
+  /// Where the corners of an edge would be if they had moved with the collider.
+  Corners before(const Particles<Real>& p, const Triangle& piece) const {
+    Corners t;
+    for (std::size_t c = 0; c < 2; ++c)
+      t[c] = point(motion_(vec3t<double>(at(p.previous, piece[c]))));
+    t[2] = t[1];
+    return t;
+  }
+  bool may_have_passed(std::size_t piece, const Corners& t) const {
+    if (!continuous_ || !is_edge(faces_[piece])) return false;
+    double way2 = 0;
+    for (std::size_t c = 0; c < 2; ++c)
+      way2 = std::max(way2, (t[c] - safe_[piece][c]).squaredNorm());
+    return way2 > reach_ * reach_;
+  }
+
+  /// Where edges come from: where they began the substep, or where they were before they passed
+  /// through what they have not gone back through.
+  void remember_sides(const Particles<Real>& p) {
+    const bool first = safe_.empty();
+    if (first) safe_.resize(faces_.size());
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (!is_edge(faces_[f])) continue;
+      const Corners now = before(p, faces_[f]);
+      for (std::size_t c = 0; c < 3 && !first; ++c)
+        safe_[f][c] = point(motion_(vec3t<double>(safe_[f][c])));
+      if (first || !has_passed(f, now)) safe_[f] = now;
+    }
+  }
+  bool has_passed(std::size_t piece, const Corners& now) {
+    if ((now[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2_of(now)) &&
+        !may_have_passed(piece, now))
+      return false;
+    if (const Capsule* capsule = std::get_if<Capsule>(&shape_))
+      return first_crossing(safe_[piece], now, axis_of(*capsule)).has_value();
+    const MeshBody* body = std::get_if<MeshBody>(&shape_);
+    return body && out_of(*body, piece, now).has_passed;
+  }
+  static double side2_of(const Corners& t) {
+    return std::max((t[1] - t[0]).squaredNorm(), (t[2] - t[0]).squaredNorm());
+  }
+  static FixedEdge axis_of(const Capsule& capsule) {
+    return {capsule.from, capsule.to - capsule.from};
   }
 
   template <class Round>
@@ -134,51 +209,40 @@ class FaceContactPass final : public Pass<Real> {
     return {deepest.depth, surface(shape, deepest.at.position).normal, deepest.at};
   }
 
-  /// Of the places of the face that are nearest to an edge or a corner of the body: the one that
-  /// has to go the farthest. From inside it goes to that edge or corner, so that it does not leave
-  /// by one of its sides and enter by another, unless the surface is much nearer elsewhere.
-  Separation out_of_body(const MeshBody& body, const Corners& t) const {
-    const TriangleMesh& mesh = *body.mesh;
-    Corners local;
-    Eigen::AlignedBox3d box;
-    for (std::size_t c = 0; c < 3; ++c) {
-      local[c] = body.rotation.conjugate() * (t[c] - body.center);
-      box.extend(local[c]);
-    }
-    box.min().array() -= thickness_;
-    box.max().array() += thickness_;
-    Separation best;
-    const auto improve = [&](const TrianglePoint& at, const Vec3& edge) {
-      const Separation out = towards(edge, at, mesh.nearest(at.position));
-      if (out.length > best.length) best = out;
-    };
-    mesh.in_box(box, [&](int triangle) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Triangle& corners = mesh.triangles()[index(triangle)];
-        const Vec3 &a = mesh.vertices()[index(corners[k])],
-                   &b = mesh.vertices()[index(corners[(k + 1) % 3])];
-        improve(closest_point(local, a), a);
-        const Capsule edge{a, b, 0};
-        const TrianglePoint at = deepest_in(edge, local).at;
-        improve(at, edge.nearest_on_axis(at.position));
-      }
-    });
-    best.normal = body.rotation * best.normal;
-    best.point.position = body.center + body.rotation * best.point.position;
-    return best;
+  /// Of an edge that has passed through the axis.
+  Separation back_over(const Capsule& capsule, std::size_t edge, const Corners& t) const {
+    const auto met = first_crossing(safe_[edge], t, axis_of(capsule));
+    if (!met) return {};
+    const LinesApart& at = met->end;
+    return {
+        capsule.radius - at.height, at.normal, {at.on(t), {1 - at.on_cloth, at.on_cloth, 0}}, true};
   }
 
-  Separation towards(const Vec3& edge, const TrianglePoint& at, const NearestPlace& place) const {
-    constexpr double kMuchNearer = 5;
-    const Vec3 way = edge - at.position;
-    const double length = way.norm();
-    if (place.distance < 0 && length > 0 && length < kMuchNearer * -place.distance)
-      return {thickness_ + length, way / length, at};
-    return {thickness_ - place.distance, place.normal, at};
+  Corners in_body(const MeshBody& body, const Corners& t, bool edge) const {
+    Corners corners;
+    for (std::size_t c = 0; c < (edge ? 2u : 3u); ++c) corners[c] = to_body_ * (t[c] - body.center);
+    if (edge) corners[2] = corners[1];
+    return corners;
+  }
+  Separation in_world(const MeshBody& body, Separation out) const {
+    out.normal = to_body_.transpose() * out.normal;
+    out.point.position = body.center + to_body_.transpose() * out.point.position;
+    return out;
+  }
+  Separation out_of(const MeshBody& body, std::size_t piece, const Corners& t) {
+    const bool edge = is_edge(faces_[piece]);
+    Corners was;
+    if (continuous_ && edge) was = in_body(body, safe_[piece], true);
+    return in_world(body, features_->out_of(*body.mesh, piece, edge, in_body(body, t, edge),
+                                            continuous_ && edge ? &was : nullptr));
   }
 
   /// Of a point of the face that the collider may have left.
-  Separation outside(const Corners& t, const Vec3& weights) const {
+  Separation outside(std::size_t piece, const Corners& t) const {
+    if (const MeshBody* body = std::get_if<MeshBody>(&shape_); body && is_edge(faces_[piece]))
+      if (auto out = features_->out_of_last(*body->mesh, piece, in_body(*body, t, true)))
+        return in_world(*body, *out);
+    const Vec3& weights = held_[piece].weights;
     Separation out;
     out.point = {weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2], weights};
     const Surface nearest = surface(shape_, out.point.position);
@@ -264,12 +328,16 @@ class FaceContactPass final : public Pass<Real> {
 
   Collider collider_;
   double thickness_;
+  bool continuous_;
   std::vector<Triangle> faces_;
-  Pass<Real>* solver_;      ///< null: none with a target
-  std::vector<Held> held_;  ///< [faces]; empty without one
+  Pass<Real>* solver_;         ///< null: none with a target
+  std::vector<Held> held_;     ///< [pieces]; empty without one
+  std::vector<Corners> safe_;  ///< [pieces] m, of edges; remember_sides()
   Shape shape_;  ///< at the end of the step, grown by the thickness unless it is a body's
   Vec3 center_ = Vec3::Zero();
-  double reach_ = 0;  ///< m, from its centre to its farthest point
+  double reach_ = 0;                      ///< m, from its centre to its farthest point
+  std::optional<BodyFeatures> features_;  ///< of a body of triangles
+  Eigen::Matrix3d to_body_ = Eigen::Matrix3d::Identity();
   RigidMotion<double> motion_;
 };
 

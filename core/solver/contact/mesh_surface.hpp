@@ -1,6 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "core/model/collider.hpp"
 #include "core/model/triangle_mesh.hpp"
@@ -8,10 +11,24 @@
 
 namespace taut {
 
+/// Where a particle was in a body's frame when it was looked up, and what that says of places
+/// nearby. It is right as long as the body keeps its shape, however it moves.
+struct Seen {
+  Vec3 at = Vec3::Zero();
+  double distance = 0;  ///< m, of what is outside, at least; 0: nothing is known
+  TriangleMesh::Nearby nearby;
+
+  /// Whether that says that `now` is at least `reach` from the surface.
+  bool tells_clear(const Vec3& now, double reach) const {
+    const double spare = distance - reach;
+    return spare > 0 && (now - at).squaredNorm() < spare * spare;
+  }
+};
+
 /// A body of triangles at one moment, as surfaces.hpp has the closed forms, for one point at a
 /// time: it looks the point up in the body's tree. Asked in Real, answered in double. Remembers the
 /// last place, for the questions of one contact are about the same point: copied, not shared, by
-/// whoever asks.
+/// whoever asks. A particle's Seen spares it most walks in the tree; answers are the same bits.
 template <class Real>
 struct MeshSurface {
   using Shape = MeshBody;
@@ -28,15 +45,26 @@ struct MeshSurface {
         axes(body.rotation.toRotationMatrix()),
         thin(body.sides == MeshBody::Sides::both) {}
 
+  /// What follows is about the particle that has seen this; null: about any point.
+  void ask_about(Seen* seen) {
+    seen_ = seen;
+    known_ = false;
+  }
+
+  /// Where its particle has hardly moved since it was looked up in the tree [m].
+  std::optional<double> distance_if_known(const Vector& x) const {
+    const Vec3 p = local(x);
+    if (!seen_->nearby.know(p)) return {};
+    return look_up(x, p).distance;
+  }
   bool clear(const Vector& x, Real thickness) const {
-    return far(local(x), static_cast<double>(thickness)) ||
-           at(x).distance >= static_cast<double>(thickness);
+    return distance_at_least(x, static_cast<double>(thickness)) >= static_cast<double>(thickness);
   }
   /// By twice the rounding of distances in Real.
   bool beyond(const Vector& x, Real way2, Real thickness) const {
     const double reach =
         static_cast<double>(thickness) + 1.001 * std::sqrt(static_cast<double>(way2));
-    return far(local(x), reach) || at(x).distance >= reach;
+    return distance_at_least(x, reach) >= reach;
   }
   bool misses(const Vector& from, const Vector& to) const {
     const Vec3 a = local(from), b = local(to);
@@ -59,10 +87,6 @@ struct MeshSurface {
 
   /// In the body's frame.
   Vec3 local(const Vector& x) const { return axes.transpose() * (world(x) - center); }
-  /// Of what is outside [m]: exact where it has been looked up, else that of the box around it.
-  double distance_at_least(const Vector& x) const {
-    return knows(x) ? place_.distance : mesh->box().exteriorDistance(local(x));
-  }
 
  private:
   static Vec3 world(const Vector& x) {
@@ -73,25 +97,45 @@ struct MeshSurface {
              static_cast<Real>(normal.z())},
             static_cast<Real>(offset)};
   }
-  /// Outside of the box around it by so much; quick.
-  bool far(const Vec3& p, double reach) const {
-    return mesh->box().squaredExteriorDistance(p) > reach * reach;
-  }
   bool knows(const Vector& x) const {
     return known_ && x.x == asked_.x && x.y == asked_.y && x.z == asked_.z;
   }
-  const NearestPlace& at(const Vector& x) const {
-    if (knows(x)) return place_;
+  /// Exact where it is below `reach`.
+  double distance_at_least(const Vector& x, double reach) const {
+    if (knows(x)) return place_.distance;
+    const Vec3 p = local(x);
+    if (seen_ && seen_->tells_clear(p, reach)) return std::numeric_limits<double>::infinity();
+    const double of_box = mesh->box().exteriorDistance(p);
+    if (of_box > reach) {
+      if (seen_) {
+        seen_->at = p;
+        seen_->distance = of_box - kRounding * mesh->reach();
+      }
+      return of_box;
+    }
+    return look_up(x, p).distance;
+  }
+  const NearestPlace& at(const Vector& x) const { return knows(x) ? place_ : look_up(x, local(x)); }
+  const NearestPlace& look_up(const Vector& x, const Vec3& p) const {
     asked_ = x;
-    place_ = mesh->nearest(local(x));
+    known_ = true;
+    if (!seen_) {
+      place_ = mesh->nearest(p);
+    } else {
+      place_ = mesh->nearest(p, seen_->nearby);
+      seen_->at = p;
+      seen_->distance =
+          (thin ? std::abs(place_.distance) : place_.distance) - kRounding * mesh->reach();
+    }
     if (thin && place_.distance < 0) {
       place_.distance = -place_.distance;
       place_.normal = -place_.normal;
     }
-    known_ = true;
     return place_;
   }
 
+  static constexpr double kRounding = 1e-10;  ///< far beyond that of coordinates
+  Seen* seen_ = nullptr;
   mutable bool known_ = false;
   mutable Vector asked_{};
   mutable NearestPlace place_;

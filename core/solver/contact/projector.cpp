@@ -1,5 +1,7 @@
 #include "core/solver/contact/projector.hpp"
 
+#include <bit>
+#include <optional>
 #include <vector>
 
 #include "core/solver/contact/mesh_surface.hpp"
@@ -75,42 +77,68 @@ class ProjectorOf final : public Projector<Real> {
   Contact<Real, SurfaceOf> contact_{};
 };
 
-/// Where a particle was in a body's frame, and how far from its surface at least.
-struct Seen {
-  Vec3 at = Vec3::Zero();
-  double distance = 0;  ///< m; 0: nothing is known
-};
+/// Four floats or two doubles, of the narrowest instruction set; kept apart from other files'
+/// lanes.
+struct NearBody;
+template <class Real>
+using Few = Lanes<Real, 16 / sizeof(Real), NearBody>;
 
-/// A body of triangles in a substep. A particle that was at distance d from the surface is at d - s
-/// at least when it has moved by s against the body: it remembers d and where that was, and hardly
-/// any particle is looked up in every sweep.
+/// A body of triangles in a substep.
 template <class Real>
 struct BodyContact {
   Contact<Real, MeshSurface> contact;
   SphereSurface<Real> around;  ///< all of it
-  double rounding;             ///< m, far beyond that of coordinates
+  Vec3T<Real> center;          ///< m, of its frame
+  Vec3T<Real> axes[3];         ///< of its frame in the world
+  Real rounding;               ///< m, far beyond that of coordinates in Real
   bool continuous;
 
+  /// Whether particles may touch: those in the sphere around the body that are not known to be
+  /// clear by where they were seen, in the body's frame, and how far from it. Quick.
+  template <class T>
+  [[gnu::always_inline]] auto may_touch(const Vec3T<T>& x, const Vec3T<T>& previous,
+                                        const Vec3T<T>& seen_at, T seen_distance) const {
+    using std::sqrt;
+    const T way2 = continuous ? squared_norm(x - contact.motion(previous)) : T(0);
+    const SphereSurface<T> sphere{spread_out<T>(around.center), T(around.radius), {}};
+    const Vec3T<T> out = x - spread_out<T>(center);
+    const Vec3T<T> moved =
+        Vec3T<T>{dot(spread_out<T>(axes[0]), out), dot(spread_out<T>(axes[1]), out),
+                 dot(spread_out<T>(axes[2]), out)} -
+        seen_at;
+    const T spare = seen_distance - T(contact.thickness + rounding) - T(1.01) * sqrt(way2);
+    const auto clear = spare > T(0) && squared_norm(moved) < spare * spare;
+    return !sphere.beyond(x, way2, T(contact.thickness)) && !clear;
+  }
+
   /// Whether x, which began the substep at `previous`, has been moved.
-  bool project(Vec3T<Real>& x, const Vec3T<Real>& previous, Seen& seen) const {
-    const Real thickness = contact.thickness;
-    const Real way2 = continuous ? squared_norm(x - contact.motion(previous)) : Real(0);
-    if (around.beyond(x, way2, thickness)) return false;
-    const Vec3 at = contact.surface.local(x);
-    const double reach =
-        static_cast<double>(thickness) + 1.01 * std::sqrt(static_cast<double>(way2));
-    if (seen.distance - (at - seen.at).norm() > reach + rounding) return false;
-    const Contact<Real, MeshSurface> asked = contact;
-    const bool near = continuous ? asked.template near<true>(x, previous)
-                                 : asked.template near<false>(x, previous);
-    seen = {at, near ? 0 : asked.surface.distance_at_least(x)};
+  bool project(Vec3T<Real>& x, const Vec3T<Real>& previous, Seen& seen) {
+    contact.surface.ask_about(&seen);
+    if (const auto moved = project_where_known(x, previous)) return *moved;
+    const bool near = continuous ? contact.template near<true>(x, previous)
+                                 : contact.template near<false>(x, previous);
     if (!near) return false;
-    return continuous ? asked.project_continuous(x, previous, true)
-                      : asked.project(x, previous, true);
+    return continuous ? contact.project_continuous(x, previous, true)
+                      : contact.project(x, previous, true);
+  }
+
+ private:
+  /// The same numbers for a particle that has hardly moved and cannot have passed through.
+  std::optional<bool> project_where_known(Vec3T<Real>& x, const Vec3T<Real>& previous) {
+    const auto distance = contact.surface.distance_if_known(x);
+    if (!distance) return {};
+    const Vec3T<Real> from = contact.motion(previous);
+    if (continuous) {
+      const double way = 1.001 * std::sqrt(static_cast<double>(squared_norm(x - from)));
+      if (*distance < static_cast<double>(contact.thickness / 2) + way) return {};
+    }
+    if (*distance >= static_cast<double>(contact.thickness)) return false;
+    return contact.push(x, from, contact.surface.nearest(x), true);
   }
 };
 
-/// One particle after the other, beside the lanes: each walks in the tree for itself.
+/// Particles in lanes as long as they are clear; then one after the other, for each walks in the
+/// tree for itself.
 template <class Real>
 class MeshProjector final : public Projector<Real> {
  public:
@@ -120,7 +148,6 @@ class MeshProjector final : public Projector<Real> {
     body_.continuous = continuous;
     const TriangleMesh& mesh = *std::get<MeshBody>(collider.shape).mesh;
     body_.around.radius = static_cast<Real>(1.001 * mesh.box().diagonal().norm() / 2);
-    body_.rounding = 1e-6 * mesh.reach();
   }
 
   void begin(double t, double dt) override {
@@ -129,35 +156,57 @@ class MeshProjector final : public Projector<Real> {
     body_.contact.surface = MeshSurface<Real>(body);
     body_.contact.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
     body_.around.center = vec3t<Real>(body.center + body.rotation * body.mesh->box().center());
+    body_.center = vec3t<Real>(body.center);
+    const Eigen::Matrix3d axes = body.rotation.toRotationMatrix();
+    for (Eigen::Index k = 0; k < 3; ++k) body_.axes[k] = vec3t<Real>(Vec3(axes.col(k)));
+    body_.rounding = static_cast<Real>(1e-5 * (body.mesh->reach() + body.center.norm()));
   }
 
   void project(const ParticleSpan<Real>& span, std::size_t blocks,
                ThreadPool& pool) const override {
     queued_in_ = &pool;
-    seen_.resize(span.parts() * (span.sheet.lanes > 1 ? span.sheet.stride : kLanes));
+    const std::size_t length =
+        span.parts() * (span.sheet.lanes > 1 ? span.sheet.stride : 4 * kLanes);
+    seen_.resize(length);
+    seen_at_.resize(length);
+    seen_distance_.resize(length);
     pool.queue(
         blocks,
         [this, span](std::size_t begin, std::size_t end) {
-          with_lanes<Real, Real, Real>(span, [&](Real, auto of_layout) {
-            constexpr int lanes = of_layout;
-            const auto one = [&](std::size_t place, bool present) {
-              if (!present) return;
-              Vec3T<Real> x = load_vec3<Real, lanes>(span.x + place);
-              Seen& seen = seen_[lanes == kPackedLanes ? place / 4 : place];
-              if (body_.project(x, load_vec3<Real, lanes>(span.previous + place), seen))
-                store_vec3<Real, lanes>(span.x + place, x);
-            };
-            visit_particles<Real, lanes>(span, span.part_of_block(begin), span.part_of_block(end),
-                                         one);
+          with_lanes<Few<Real>, Few<Real>, Real>(span, [&](auto t, auto of_layout) {
+            visit<decltype(t), of_layout>(span, span.part_of_block(begin), span.part_of_block(end));
           });
         },
         span.particles >= ThreadPool::kWorthSharing);
   }
 
  private:
+  template <class T, int lanes>
+  void visit(const ParticleSpan<Real>& span, std::size_t begin, std::size_t end) const {
+    BodyContact<Real> body = body_;
+    const auto one = [&](std::size_t place, const auto& present) {
+      const auto near = present && body.may_touch(load_vec3<T, lanes>(span.x + place),
+                                                  load_vec3<T, lanes>(span.previous + place),
+                                                  load_vec3<T, lanes>(seen_at_.data() + place),
+                                                  load<T>(seen_distance_.data() + place));
+      for (unsigned left = bits(near); left != 0; left &= left - 1) {
+        const std::size_t at = place + static_cast<std::size_t>(std::countr_zero(left));
+        Vec3T<Real> x = load_vec3<Real, lanes>(span.x + at);
+        Seen& seen = seen_[at];
+        if (body.project(x, load_vec3<Real, lanes>(span.previous + at), seen))
+          store_vec3<Real, lanes>(span.x + at, x);
+        store_vec3<Real, lanes>(seen_at_.data() + at, vec3t<Real>(seen.at));
+        seen_distance_[at] = static_cast<Real>(seen.distance);
+      }
+    };
+    visit_particles<T, lanes>(span, begin, end, one);
+  }
+
   Collider collider_;
   BodyContact<Real> body_{};
-  mutable std::vector<Seen> seen_;  ///< by place
+  // By place of x, as x lies in memory; the last two are seen_ for the lanes.
+  mutable std::vector<Seen> seen_;
+  mutable std::vector<Real> seen_at_, seen_distance_;
   mutable ThreadPool* queued_in_ = nullptr;
 };
 

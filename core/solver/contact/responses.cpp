@@ -1,5 +1,8 @@
 #include "core/solver/contact/responses.hpp"
 
+#include <set>
+#include <utility>
+
 #include "core/model/index.hpp"
 #include "core/solver/contact/face_contact.hpp"
 #include "core/solver/contact/projector.hpp"
@@ -230,6 +233,30 @@ void add_response(const Collider& collider, const Scene& scene, const Layout& la
   }
 }
 
+/// Faces and edges that are kept out of the collider. A face keeps its own sides out of the closed
+/// forms, and leaves them to the edges at a body of triangles.
+std::vector<Triangle> pieces_of(const Scene& scene, const Collider& collider,
+                                const ContactSettings& settings) {
+  if (!settings.edges || std::holds_alternative<Plane>(collider.shape)) return {};
+  std::set<std::pair<int, int>> edges;
+  for (const Link& link : scene.links)
+    if (link.family == Family::structural && link.rest > kSeamRest)
+      edges.insert(std::minmax(link.a, link.b));
+  const bool faces_have_sides = settings.faces && !std::holds_alternative<MeshBody>(collider.shape);
+  for (const Triangle& face : scene.mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto side = std::minmax(face[k], face[(k + 1) % 3]);
+      if (faces_have_sides)
+        edges.erase(side);
+      else
+        edges.insert(side);
+    }
+  std::vector<Triangle> pieces;
+  if (settings.faces) pieces = scene.mesh.triangles;
+  for (const auto& [a, b] : edges) pieces.push_back({a, b, b});
+  return pieces;
+}
+
 }  // namespace
 
 template <class Real>
@@ -243,10 +270,10 @@ ContactPasses<Real> make_contact(const Scene& scene, const Layout& layout,
   if (scene.self_collision && settings.self == SelfCollisionMethod::octree)
     passes.sweep.push_back(std::make_unique<OctreePass<Real>>(scene));
   for (const Collider& collider : scene.colliders)
-    if (settings.faces && !std::holds_alternative<Plane>(collider.shape) &&
-        !scene.mesh.triangles.empty())
-      passes.sweep.push_back(std::make_unique<FaceContactPass<Real>>(collider, scene.thickness,
-                                                                     scene.mesh.triangles, solver));
+    if (auto pieces = pieces_of(scene, collider, settings); !pieces.empty())
+      passes.sweep.push_back(std::make_unique<FaceContactPass<Real>>(
+          collider, scene.thickness, settings.response == Response::continuous, std::move(pieces),
+          solver));
   for (const Collider& collider : scene.colliders)
     add_response(collider, scene, layout, settings, solver != nullptr, pool, passes);
   return passes;

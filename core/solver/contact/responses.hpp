@@ -23,7 +23,7 @@ enum class SelfCollisionMethod { grid, octree, off };
 
 struct ContactSettings {
   Response response = Response::continuous;
-  bool faces = false;  ///< faces are kept out, too, not only vertices
+  bool edges = false, faces = false;  ///< are kept out, too, not only vertices
   SelfCollisionMethod self = SelfCollisionMethod::grid;
   Simd simd = Simd::scalar;
 };

@@ -65,11 +65,30 @@ struct Contact {
     return push(x, from, tangent, near);
   }
 
+  /// Moves x, where it is deep, out by that half-space, against its slip from `from`. Coulomb: the
+  /// tangential correction is at most mu times the normal one, and no more than the slip itself.
+  template <class T, class Normal, class Mask>
+  [[gnu::always_inline]] auto push(Vec3T<T>& x, const Vec3T<T>& from,
+                                   const Tangent<T, Normal>& tangent, const Mask& where) const {
+    const Normal& normal = tangent.normal;
+    const T depth = tangent.offset + T(thickness) - dot(normal, x);
+    const auto deep = where && depth > T(0);
+    Vec3T<T> out = add_along(x, depth, normal);
+    if (friction != 0) {
+      const Vec3T<T> slip = across(out - from, normal);
+      const T length = norm(slip), most = T(friction) * depth;
+      const auto sticks = length <= most || !deep;  // where it is not deep, nothing is used
+      out = out - select(sticks, T(1), most / select(sticks, T(1), length)) * slip;
+    }
+    x = select(deep, out, x);
+    return deep;
+  }
+
   /// Whether one vertex is inside, has passed through since `previous` (continuous), or is `held`:
   /// then by which half-space.
   bool touched(const Vec3T<Real>& x, const Vec3T<Real>& previous, bool continuous, bool held,
                Tangent<Real>& tangent) const {
-    bool inside = held || !clear(x);
+    bool inside = held || !apart(x);
     if constexpr (requires { surface.entry(x, x); }) {
       if (continuous) {
         const Vec3T<Real> from = motion(previous);
@@ -102,23 +121,12 @@ struct Contact {
     return tangent;
   }
 
-  /// Coulomb: the tangential correction is at most mu times the normal one, and no more than the
-  /// slip itself.
-  template <class T, class Normal, class Mask>
-  [[gnu::always_inline]] auto push(Vec3T<T>& x, const Vec3T<T>& from,
-                                   const Tangent<T, Normal>& tangent, const Mask& where) const {
-    const Normal& normal = tangent.normal;
-    const T depth = tangent.offset + T(thickness) - dot(normal, x);
-    const auto deep = where && depth > T(0);
-    Vec3T<T> out = add_along(x, depth, normal);
-    if (friction != 0) {
-      const Vec3T<T> slip = across(out - from, normal);
-      const T length = norm(slip), most = T(friction) * depth;
-      const auto sticks = length <= most || !deep;  // where it is not deep, nothing is used
-      out = out - select(sticks, T(1), most / select(sticks, T(1), length)) * slip;
-    }
-    x = select(deep, out, x);
-    return deep;
+  /// clear(), exact.
+  bool apart(const Vec3T<Real>& x) const {
+    if constexpr (requires { surface.apart(x, thickness); })
+      return surface.apart(x, thickness);
+    else
+      return clear(x);
   }
 };
 

@@ -272,6 +272,14 @@ struct AnyBoxSurface {
     const T reach = T(far) + thickness;
     return squared_norm(out) >= reach * reach || largest(excess(turned(out))) >= thickness;
   }
+  /// clear(), and also where x is over an edge or a corner and only less than that beyond each of
+  /// its sides.
+  bool apart(const Vec3T<Real>& x, Real thickness) const {
+    const Vec3T<Real> past = excess(local(x));
+    const Vec3T<Real> out{greater(past.x, Real(0)), greater(past.y, Real(0)),
+                          greater(past.z, Real(0))};
+    return clear(x, thickness) || (largest(past) > 0 && squared_norm(out) >= thickness * thickness);
+  }
   /// Farther than the way beyond one side.
   template <class T>
   [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {

@@ -53,13 +53,18 @@ Motion tumbling(const Vec3& pivot) {
 
 const Vec3 kHalf(0.3, 0.2, 0.25);
 
-/// How far a motion on the triangles may be from that on the box after a quarter of a second [m].
-/// Three solvers look again in each iteration at whom a collider may hold. A box counts who is over
-/// its edges and less than the thickness beyond each of its sides, triangles who is less than the
-/// thickness away: the same fixed point, another way there, and these stop on their way.
-double within(const std::string& solver) {
-  if (solver.starts_with("implicit")) return 0.02;
-  return solver.starts_with("pd") || solver.starts_with("admm") ? 2e-5 : 1e-9;
+/// How far apart motions on the same box are whose starts differ by a rounding error [m]: nothing
+/// of what a solver makes of an iteration that has not converged, in which rounding chooses who
+/// touches.
+double spread(const Scene& scene, const std::string& solver, const State& want) {
+  double most = 0;
+  for (int n = 1; n <= 8; ++n) {
+    Scene moved = scene;
+    for (std::size_t i = 0; i < moved.start.x.size(); ++i)
+      moved.start.x[i].y() += 1e-15 * std::sin(static_cast<double>(i) * n);
+    most = std::max(most, apart(simulate(moved, solver, kQuarterSecond), want));
+  }
+  return most;
 }
 
 TEST(BodyContact, ABoxOfTrianglesIsTheBoxInEverySolver) {
@@ -70,10 +75,11 @@ TEST(BodyContact, ABoxOfTrianglesIsTheBoxInEverySolver) {
       const Motion motion = moves ? tumbling({0.1, 0, 0}) : Motion{};
       scene.colliders = {{Box{{0, 0.02, 0}, kHalf, turned}, motion, 0.4}};
       const State want = simulate(scene, solver, kQuarterSecond);
+      const double within = solver.starts_with("implicit") ? 2 * spread(scene, solver, want) : 0;
       scene.colliders = {
           {MeshBody{box_of_triangles(kHalf).mesh(), {0, 0.02, 0}, turned}, motion, 0.4}};
-      EXPECT_LE(apart(simulate(scene, solver, kQuarterSecond), want), within(solver))
-          << solver << ' ' << moves;
+      EXPECT_LE(apart(simulate(scene, solver, kQuarterSecond), want), std::max(1e-9, within))
+          << solver << ", spread " << within << ' ' << moves;
       scene.colliders.clear();
       EXPECT_GT(apart(simulate(scene, solver, kQuarterSecond), want), 0.05) << solver;
     }
@@ -179,8 +185,8 @@ double deepest_of_faces(const Scene& scene, const State& state) {
 }
 
 // Vertices l apart that lie on both sides of a ridge of half-angle a keep themselves out of it, and
-// their chord is (l/2) cos a deep, 39 mm here; with faces the ridge keeps out of the cloth, but for
-// what the last sweep of the links, or the last iteration of a solve, leaves.
+// their chord is (l/2) cos a deep, 39 mm here; with faces or edges the ridge keeps out of the
+// cloth, but for what the last sweep of the links, or the last iteration of a solve, leaves.
 TEST(BodyContact, ARidgePokesThroughVerticesAndNotThroughFaces) {
   const Triangles roof{
       {{-0.8, -0.8, -1}, {0.8, -0.8, -1}, {0, 0, -1}, {-0.8, -0.8, 1}, {0.8, -0.8, 1}, {0, 0, 1}},
@@ -194,7 +200,28 @@ TEST(BodyContact, ARidgePokesThroughVerticesAndNotThroughFaces) {
     ASSERT_TRUE(roof.mesh()->closed() && roof.mesh()->volume() > 0);
     const double alone = deepest_of_faces(scene, simulate(scene, with(solver, "faces=off"), 96));
     EXPECT_NEAR(alone, std::sqrt(0.5) / 18, 2e-3) << solver;
-    EXPECT_LE(deepest_of_faces(scene, simulate(scene, with(solver, "faces=on"), 96)), 2.5e-3)
+    for (const char* faces : {"faces=on", "faces=edges"})
+      EXPECT_LE(deepest_of_faces(scene, simulate(scene, with(solver, faces), 96)), 2.5e-3)
+          << solver << ' ' << faces;
+  }
+}
+
+// The tip of a pyramid under the middle of a face, its edges beside those of the face: with
+// vertices alone, or with edges, the face falls on it and is pierced.
+TEST(BodyContact, ATipIsKeptOutOfAFaceByFacesAlone) {
+  Scene scene = hanging_sheet(2, 2);
+  for (std::vector<Vec3>* places : {&scene.mesh.rest, &scene.start.x})
+    for (Vec3& x : *places) x = Vec3(x.x(), 0.3, x.y());
+  Vec3 middle = Vec3::Zero();
+  for (const int v : scene.mesh.triangles[0]) middle += scene.start.x[to_index(v)] / 3;
+  scene.pins.clear();
+  scene.thickness = 0.005;
+  scene.colliders = {
+      {.shape = MeshBody{pyramid(0.4, 0.25).mesh(), {middle.x(), 0, middle.z()}}, .friction = 1}};
+  for (const char* solver : {"jakobsen:precision=double", "implicit", "vbd:precision=double"}) {
+    EXPECT_GT(deepest_of_faces(scene, simulate(scene, with(solver, "faces=off"), 12)), 1e-2)
+        << solver;
+    EXPECT_LT(deepest_of_faces(scene, simulate(scene, with(solver, "faces=on"), 12)), 5e-3)
         << solver;
   }
 }

@@ -1,0 +1,169 @@
+#include <set>
+#include <utility>
+
+#include "core/model/index.hpp"
+#include "core/model/triangle_mesh.hpp"
+#include "experiments/metrics/metric.hpp"
+
+namespace taut {
+
+namespace {
+
+struct StraightEdge {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< m
+};
+
+/// The edges of a solid in its own frame: what a thread has to pass to get through it between two
+/// of its vertices.
+std::vector<StraightEdge> solid_edges(const Shape& shape) {
+  if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return {{capsule->from, capsule->to}};
+  std::vector<StraightEdge> edges;
+  if (const Box* box = std::get_if<Box>(&shape))
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double u : {-1.0, 1.0})
+        for (const double v : {-1.0, 1.0}) {
+          Vec3 end = box->half_extents;
+          end[(axis + 1) % 3] *= u;
+          end[(axis + 2) % 3] *= v;
+          Vec3 start = end;
+          start[axis] = -start[axis];
+          edges.push_back({start, end});
+        }
+  if (const MeshBody* body = std::get_if<MeshBody>(&shape)) {
+    std::set<std::pair<int, int>> known;
+    for (const Triangle& t : body->mesh->triangles())
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const auto side = std::minmax(t[k], t[(k + 1) % 3]); known.insert(side).second)
+          edges.push_back({body->mesh->vertices()[to_index(side.first)],
+                           body->mesh->vertices()[to_index(side.second)]});
+  }
+  return edges;
+}
+
+/// How often an edge, whose ends go straight from one place to another, passes through one that
+/// does not move: the volume of the tetrahedron between them is a polynomial of second degree in
+/// the share of the way, and where it is 0 they are in one plane.
+int times_through(const StraightEdge& before, const StraightEdge& now, const StraightEdge& fixed) {
+  const Vec3 along = fixed.to - fixed.from;
+  const Vec3 a0 = before.from - fixed.from, a1 = now.from - before.from;
+  const Vec3 b0 = before.to - before.from, b1 = now.to - now.from - b0;
+  const double c = along.dot(a0.cross(b0)), d = along.dot(a0.cross(b1) + a1.cross(b0)),
+               e = along.dot(a1.cross(b1));
+  const auto meet_at = [&](double share) {
+    if (!(share > 0 && share <= 1)) return 0;
+    const Vec3 a = a0 + share * a1, b = b0 + share * b1, normal = along.cross(b);
+    const double twice_area2 = normal.squaredNorm();
+    if (twice_area2 == 0) return 0;
+    const double on_fixed = a.cross(b).dot(normal) / twice_area2,
+                 on_moving = a.cross(along).dot(normal) / twice_area2;
+    return static_cast<int>(on_fixed >= 0 && on_fixed < 1 && on_moving >= 0 && on_moving < 1);
+  };
+  if (e == 0) return d == 0 ? 0 : meet_at(-c / d);
+  const double discriminant = d * d - 4 * e * c;
+  if (discriminant <= 0) return 0;
+  const double half = -(d + std::copysign(std::sqrt(discriminant), d)) / 2;
+  return meet_at(half / e) + (half == 0 ? 0 : meet_at(c / half));
+}
+
+/// Links that are no shortcut across faces, and sides of faces, of which one vertex is free.
+std::vector<std::pair<int, int>> cloth_edges(const Scene& scene) {
+  std::set<std::pair<int, int>> edges;
+  for (const Link& link : scene.links)
+    if (link.family == Family::structural && link.rest > kSeamRest)
+      edges.insert(std::minmax(link.a, link.b));
+  for (const Triangle& t : scene.mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+  std::erase_if(edges, [&](const auto& edge) {
+    return is_pinned(scene, edge.first) && is_pinned(scene, edge.second);
+  });
+  return {edges.begin(), edges.end()};
+}
+
+class Edges final : public Metric {
+ public:
+  static constexpr ValueSpec kValues[] = {
+      {"edge.passages", kErrorCount,
+       "how often an edge of the cloth goes through the axis of a capsule or an edge of a box or a "
+       "body of triangles, returns included: a thread over a rod between two of its vertices; "
+       "their "
+       "ways are straight from substep to substep, in the collider's own frame",
+       false, Window::run, "passages of edges"},
+  };
+  static bool measures(const Scene& scene) {
+    return !cloth_edges(scene).empty() && std::ranges::any_of(scene.colliders, has_edges);
+  }
+  static constexpr bool kFollowsPath = true;
+  explicit Edges(const Scene& scene) : edges_(cloth_edges(scene)) {
+    for (const Collider& collider : scene.colliders)
+      if (has_edges(collider)) colliders_.emplace_back(collider);
+  }
+
+  void observe_within(const Snapshot& m) override { observe(m); }
+  void observe(const Snapshot& m) override {
+    for (Followed& collider : colliders_) {
+      std::vector<Vec3> now;
+      now.reserve(m.state.x.size());
+      for (const Vec3& x : m.state.x) now.push_back(collider.local(x, m.t));
+      if (m.step > 0 || !collider.last.empty()) count(collider, now);
+      collider.last = std::move(now);
+    }
+  }
+  std::vector<double> finish() override { return {static_cast<double>(passages_)}; }
+  std::vector<double> now(const Snapshot&) const override { return {Summary::kNone}; }
+
+ private:
+  static bool has_edges(const Collider& c) {
+    return std::holds_alternative<Capsule>(c.shape) || std::holds_alternative<Box>(c.shape) ||
+           std::holds_alternative<MeshBody>(c.shape);
+  }
+
+  /// A collider in the frame in which it does not move, and the cloth there at the last time.
+  struct Followed {
+    explicit Followed(const Collider& c) : collider(c), edges(solid_edges(c.shape)) {
+      for (const StraightEdge& edge : edges) box.extend(edge.from).extend(edge.to);
+    }
+    /// Where the collider's points would be at the start: x without its motion and, of boxes and
+    /// bodies, their place.
+    Vec3 local(const Vec3& x, double t) const {
+      const Motion& motion = collider.motion;
+      const Vec3 start =
+          motion.rotation(t).conjugate() * (x - motion.displacement(t) - motion.pivot) +
+          motion.pivot;
+      if (const Box* b = std::get_if<Box>(&collider.shape))
+        return b->rotation.conjugate() * (start - b->center);
+      if (const MeshBody* b = std::get_if<MeshBody>(&collider.shape))
+        return b->rotation.conjugate() * (start - b->center);
+      return start;
+    }
+    Collider collider;
+    std::vector<StraightEdge> edges;
+    Eigen::AlignedBox3d box;
+    std::vector<Vec3> last;  ///< empty: nothing yet
+  };
+
+  void count(const Followed& collider, const std::vector<Vec3>& now) {
+    std::vector<int> near;
+    for (const auto& [a, b] : edges_) {
+      const StraightEdge is{now[to_index(a)], now[to_index(b)]},
+          was{collider.last[to_index(a)], collider.last[to_index(b)]};
+      Eigen::AlignedBox3d way(is.from);
+      way.extend(is.to).extend(was.from).extend(was.to);
+      if (!way.intersects(collider.box)) continue;
+      for (const StraightEdge& fixed : collider.edges) {
+        Eigen::AlignedBox3d around(fixed.from);
+        if (around.extend(fixed.to).intersects(way)) passages_ += times_through(was, is, fixed);
+      }
+    }
+  }
+
+  std::vector<std::pair<int, int>> edges_;
+  std::vector<Followed> colliders_;
+  int passages_ = 0;
+};
+
+}  // namespace
+
+TAUT_METRIC(edges, Edges, "How often edges of the cloth go through those of a collider",
+            "roots of the volume between two edges along their way");
+
+}  // namespace taut

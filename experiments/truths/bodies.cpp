@@ -1,0 +1,222 @@
+// Section 7: bodies of triangles, and what faces=edges keeps out of colliders.
+#include "experiments/truths/bodies.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/reference/closed_forms.hpp"
+#include "experiments/truths/truth.hpp"
+
+namespace taut {
+
+namespace {
+
+class Random {
+ public:
+  double within(double bound) { return std::uniform_real_distribution<>(-bound, bound)(engine_); }
+  Vec3 point(double bound) {
+    const double x = within(bound), y = within(bound);
+    return {x, y, within(bound)};
+  }
+
+ private:
+  std::mt19937_64 engine_{20};
+};
+
+/// A level sheet of 13 x 13 that is about to fall on what is below y = 0.2, moving sideways.
+Scene falling_sheet() {
+  Scene s = under_gravity(bare::sheet(13, 13, {.structural = true, .shear = true}));
+  for (std::size_t i = 0; i < s.start.x.size(); ++i) {
+    const Vec3& x = s.mesh.rest[i];
+    s.start.x[i] = {x.x() - 0.47, 0.26, -x.y() - 0.48};
+    s.start.v[i] = {0.1, -0.4, 0.05};
+  }
+  s.mesh.rest = s.start.x;
+  s.thickness = 0.005;
+  return s;
+}
+
+/// Along x above y = 0, vertices `spacing` apart, none of them at x = 0 [m].
+Scene thread(int n, double spacing, double height, double offset) {
+  std::vector<Vec3> x;
+  std::vector<Link> links;
+  for (int i = 0; i < n; ++i) {
+    x.emplace_back((i - (n - 1) / 2.0) * spacing + offset, height, 0);
+    if (i > 0) links.push_back({i - 1, i, spacing});
+  }
+  return under_gravity(bare::scene(x, std::vector<double>(to_index(n), 1e-3), links));
+}
+
+/// Of the highest chord of the thread over x = 0 [m]; it may hang down on both sides, and swing.
+double height_over_origin(const State& state) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < state.x.size(); ++i) {
+    const Vec3 &a = state.x[i - 1], &b = state.x[i];
+    if ((a.x() <= 0) == (b.x() <= 0)) continue;
+    highest = std::max(highest, a.y() - a.x() / (b.x() - a.x()) * (b.y() - a.y()));
+  }
+  return highest;
+}
+
+}  // namespace
+
+TAUT_TRUTH(box_of_triangles, 7, 11,
+           "a box of 12 triangles is the box: distance, normal, first hit, and cloth that falls on "
+           "it",
+           "closed forms of a box") {
+  const Vec3 half(0.3, 0.2, 0.45);
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.2, Vec3(1, 2, 3).normalized()));
+  const MeshBody body{.mesh = box_of_triangles(half), .rotation = turned};
+  const Box box{Vec3::Zero(), half, turned};
+  if (findings.wants(kStatic)) {
+    Random random;
+    double distance = 0, normal = 0, hit = 0;
+    for (int n = 0; n < 1000000; ++n) {
+      const Vec3 p = random.point(0.8), q = random.point(0.8);
+      const Surface want = surface(box, p), got = surface(body, p);
+      distance = std::max(distance, std::abs(got.distance - want.distance));
+      const Vec3 from = turned.conjugate() * p, to = turned.conjugate() * q;
+      Vec3 gaps = half - from.cwiseAbs();
+      std::sort(gaps.begin(), gaps.end());
+      const bool tie = want.distance < 0 && gaps[1] - gaps[0] < 1e-9;
+      if (!tie && std::abs(want.distance) > 1e-3)
+        normal = std::max(normal, (got.normal - want.normal).norm());
+      const auto first = body.mesh->first_hit(from, to);
+      if (!first || want.distance < 0) continue;
+      // where it says that the path comes in, the path is on the box
+      hit = std::max(hit, std::abs(surface(box, p + first->share * (q - p)).distance));
+    }
+    findings.below("closed form", "distance on a million segments from the box's", "m", distance,
+                   1e-12);
+    findings.below("closed form", "normal from the box's", "1", normal, 1e-12);
+    findings.below("closed form", "distance of first hits from the box", "m", hit, 1e-12);
+  }
+  Scene s = falling_sheet();
+  for (const std::string solver :
+       {"jakobsen:precision=double", "xpbd:precision=double", "mass-spring", "vbd:precision=double",
+        "avbd:precision=double", "implicit", "pd", "admm"}) {
+    const auto fallen_on = [&](const Shape& shape) {
+      s.colliders = {{shape, {}, 0.4}};
+      return Simulation(s, solver, 16).state().x;
+    };
+    s.colliders = {{body, {}, 0.4}};
+    if (!can_run(findings, solver, s)) continue;
+    findings.below(solver, "distance after 0.25 s from a sheet on the box", "m",
+                   max_distance(fallen_on(body), fallen_on(box)), 1e-9);
+  }
+}
+
+TAUT_TRUTH(hook, 7, 12,
+           "a thread across a rod between its vertices falls through it with vertices alone, and "
+           "never with edges",
+           "the rod is thinner than the thread's links are long") {
+  constexpr double kSpacing = 0.03, kRod = 0.002;
+  const std::vector<Vec3> square{
+      {-kRod, -kRod, 0}, {kRod, -kRod, 0}, {kRod, kRod, 0}, {-kRod, kRod, 0}};
+  for (const std::string solver :
+       {"jakobsen:precision=double", "xpbd:precision=double", "mass-spring:substeps=64",
+        "vbd:substeps=4,precision=double", "avbd:precision=double", "implicit:substeps=4",
+        "pd:substeps=4", "admm:substeps=4"})
+    for (const auto& [what, rod] :
+         {std::pair("rod", Shape(Capsule{{0, 0, -0.3}, {0, 0, 0.3}, kRod})),
+          std::pair("rod of triangles", Shape(MeshBody{.mesh = prism(square, 0.3)}))})
+      for (const std::string faces : {"off", "edges"}) {
+        Random random;
+        int through = 0, runs = 0;
+        for (int n = 0; n < 12; ++n) {
+          Scene s = thread(12, kSpacing, 0.05 + random.within(0.02), random.within(0.3) * kSpacing);
+          s.start.v.assign(s.start.x.size(), Vec3(0, -1, 0));
+          s.damping = 2;
+          s.thickness = 0.002;
+          s.stiffness = {1e4, 1e4, 1e4};
+          if (solver.starts_with("jakobsen") || solver.starts_with("avbd")) s.stiffness = kRigid;
+          s.colliders = {{rod, {}, 2}};
+          const std::string text = with(solver, "faces=" + faces);
+          if (n == 0 && !can_run(findings, text, s)) break;
+          ++runs;
+          through += height_over_origin(Simulation(s, text, 8).state()) < 0;
+        }
+        if (runs > 0)
+          findings.equal(solver,
+                         "of 12 threads fall through a " + std::string(what) + ", faces=" + faces,
+                         "1", through, faces == "off" ? 12 : 0, 0);
+      }
+}
+
+TAUT_TRUTH(ridge, 7, 13,
+           "over a ridge of half-angle a between two vertices l apart a chord is (l/2) cos a deep; "
+           "not at all with edges",
+           "geometry") {
+  constexpr double kSpacing = 0.1;
+  const std::vector<Vec3> roof{{-0.8, -0.8, 0}, {0.8, -0.8, 0}, {0, 0, 0}};
+  for (const std::string solver : {"jakobsen:precision=double", "xpbd:precision=double", "implicit",
+                                   "vbd:precision=double,iterations=200,start=inertia"})
+    for (const std::string faces : {"off", "edges"}) {
+      Scene s = thread(4, kSpacing, 0.02, 0);
+      s.damping = 2;
+      s.stiffness = {1e4, 1e4, 1e4};
+      if (solver.starts_with("jakobsen")) s.stiffness = kRigid;
+      s.colliders = {{MeshBody{.mesh = prism(roof, 1)}, {}, 2}};
+      const std::string text = with(solver, "faces=" + faces);
+      if (!can_run(findings, text, s)) continue;
+      const double depth = -height_over_origin(Simulation(s, text, 128).state()) * std::sqrt(0.5);
+      const double chord = kSpacing / 2 * std::sqrt(0.5);
+      if (faces == "off")
+        findings.equal(solver, "depth of the chord, vertices alone", "m", depth, chord,
+                       0.01 * chord);
+      else
+        findings.below(solver, "depth of the chord, faces=edges", "m", std::max(0.0, depth),
+                       0.02 * chord);
+    }
+}
+
+TAUT_TRUTH(capstan_of_triangles, 7, 14,
+           "a light rope over a cylinder of 960 flat sides holds up to the ratio of its vertices, "
+           "and slides beyond",
+           "Euler, Eytelwein; balance of every node") {
+  const int n = 24, below = 4;
+  const double mu = 0.3, radius = 0.5, angle = std::numbers::pi / n;
+  const double l = 2 * radius * std::sin(angle / 2);
+  const double ratio = reference::capstan_ratio(mu, std::numbers::pi, angle);
+  std::vector<Vec3> polygon;
+  // Sides whose middles are on the circle. Few of them hold more: a vertex that slides along one
+  // comes to where the rope pulls it back.
+  constexpr int kSides = 960;
+  for (int k = 0; k < kSides; ++k) {
+    const double side = 2 * std::numbers::pi / kSides, at = (k + 0.5) * side;
+    polygon.emplace_back(radius / std::cos(side / 2) * Vec3(std::cos(at), std::sin(at), 0));
+  }
+  const auto cylinder = prism(polygon, 1);
+  const auto rope = [&](double heavy) {
+    std::vector<Vec3> x;
+    std::vector<Link> rods;
+    std::vector<double> mass;
+    for (int i = -below; i <= n + below; ++i) {
+      const double phi = std::clamp(i, 0, n) * angle;
+      const double down = std::max({0, -i, i - n}) * l;
+      x.push_back(radius * Vec3(-std::cos(phi), std::sin(phi), 0) - Vec3(0, down, 0));
+      mass.push_back(i == -below ? 1 : i == n + below ? heavy : 2e-4);
+      const int at = i + below;
+      if (at > 0) rods.push_back({at - 1, at, l});
+    }
+    Scene s = under_gravity(bare::scene(x, mass, rods));
+    s.stiffness = {1e4, 1e4, 1e4};
+    s.damping = 4;
+    s.colliders = {{MeshBody{.mesh = cylinder}, {}, mu}};
+    s.dt = 1.0 / 128;
+    return s;
+  };
+  for (const std::string solver : {"implicit", "mass-spring:substeps=64"}) {
+    if (!can_run(findings, solver, rope(1))) continue;
+    const auto speed = [&](double share) {
+      const Scene s = rope(share * ratio);
+      return Simulation(s, solver, 256).v(static_cast<int>(s.start.x.size()) - 1).norm();
+    };
+    findings.below(solver, "speed of the heavy end after 2 s at 0.98 of the ratio", "m/s",
+                   speed(0.98), 2e-3);
+    findings.holds(solver, "the heavy end slides at 1.02 of the ratio", speed(1.02) > 0.01);
+  }
+}
+
+}  // namespace taut

@@ -1,0 +1,118 @@
+// Edges of a cloth on edges of a body: where they pass through each other, by a look at thousands
+// of moments; and what pieces remember, which must not hide what a fresh look sees.
+#include "core/solver/contact/body_features.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/bodies.hpp"
+
+namespace taut::body_features_test {
+namespace {
+
+class Random {
+ public:
+  double within(double bound) { return std::uniform_real_distribution<>(-bound, bound)(engine_); }
+  Vec3 point(double bound) {
+    const double x = within(bound), y = within(bound);
+    return {x, y, within(bound)};
+  }
+  Corners edge(double bound) {
+    const Vec3 a = point(bound), b = point(bound);
+    return {a, b, b};
+  }
+
+ private:
+  std::mt19937_64 engine_{99};
+};
+
+/// Shares of pq and of the fixed edge where they are nearest, were they lines: least squares.
+Eigen::Vector2d nearest(const Vec3& p, const Vec3& q, const FixedEdge& edge) {
+  Eigen::Matrix<double, 3, 2> ways;
+  ways << q - p, -edge.along;
+  return ways.colPivHouseholderQr().solve(edge.from - p);
+}
+
+TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
+  Random random;
+  int crossed = 0, checked = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Corners before = random.edge(1), now = random.edge(1);
+    const Vec3 from = random.point(1);
+    const FixedEdge edge{from, random.point(1) - from};
+    constexpr int kMoments = 4000;
+    std::optional<double> first;
+    double side = 0, margin = 1;
+    for (int k = 0; k <= kMoments && !first; ++k) {
+      const double share = k / double{kMoments};
+      const Vec3 p = before[0] + share * (now[0] - before[0]),
+                 q = before[1] + share * (now[1] - before[1]);
+      const double volume = edge.along.cross(p - edge.from).dot(q - p);
+      if (k > 0 && (volume > 0) != (side > 0)) {
+        const Eigen::Vector2d at = nearest(p, q, edge);
+        const double inside =
+            std::min({at.x(), 1 - at.x(), at.y(), 1 - at.y()});  // negative: beside an edge
+        margin = std::min(margin, std::abs(inside));
+        if (inside > 0) first = share;
+      }
+      side = volume;
+    }
+    if (margin < 1e-2) continue;  // the moments are too coarse to tell
+    ++checked;
+    const auto met = first_crossing(before, now, edge);
+    ASSERT_EQ(met.has_value(), first.has_value()) << n;
+    if (!met) continue;
+    ++crossed;
+    // the normal leads back to where the edge came from
+    const double share = std::max(0.0, *first - 2.0 / kMoments);
+    const Vec3 p = before[0] + share * (now[0] - before[0]),
+               q = before[1] + share * (now[1] - before[1]);
+    const Eigen::Vector2d at = nearest(p, q, edge);
+    const Vec3 apart = p + at.x() * (q - p) - edge.from - at.y() * edge.along;
+    if (apart.norm() > 1e-5) {
+      EXPECT_GT(apart.dot(met->first.normal), 0) << n;
+    }
+    EXPECT_NEAR(met->first.normal.dot(edge.along), 0, 1e-12) << n;
+  }
+  EXPECT_GT(crossed, 100);
+  EXPECT_GT(checked, 3000);
+}
+
+TEST(BodyFeatures, WhatPiecesRememberHidesNothing) {
+  const auto mesh = torus(0.3, 0.12, 16, 10, 0.02).mesh();
+  constexpr double kThickness = 0.005;
+  for (const bool edge : {true, false}) {
+    Random random;
+    int pushed = 0, same = 0;
+    BodyFeatures remembering(kThickness, 1);
+    Vec3 at(0.3, 0.15, 0);
+    Corners before{at, at + Vec3(0.05, 0, 0.02), at + Vec3(0.01, 0.02, 0.05)};
+    if (edge) before[2] = before[1];
+    for (int n = 0; n < 20000; ++n) {
+      Corners now = before;
+      const double step = n % 100 == 0 ? 0.1 : 0.003;
+      const Vec3 all = random.point(step);
+      for (Vec3& x : now) x += all + random.point(step / 10);
+      if (now[0].norm() > 0.5)
+        for (Vec3& x : now) x *= 0.9;
+      if (edge) now[2] = now[1];
+      BodyFeatures anew(kThickness, 1);
+      const Corners* const path = edge && n % 2 == 0 ? &before : nullptr;
+      const Separation got = remembering.out_of(*mesh, 0, edge, now, path),
+                       want = anew.out_of(*mesh, 0, edge, now, path);
+      const bool far_inside = want.length > 2 * kThickness && !want.has_passed;
+      if (!far_inside) {
+        ASSERT_GE(got.length, want.length) << n;
+      }
+      same += got.length == want.length && got.normal == want.normal;
+      pushed += got.length > 0;
+      before = now;
+    }
+    EXPECT_GT(pushed, 50) << edge;
+    EXPECT_GT(same, 15000) << edge << ": from far inside a fresh look may see other ones";
+  }
+}
+
+}  // namespace
+}  // namespace taut::body_features_test
