@@ -239,6 +239,9 @@ ResolvedSettings contact_settings(const Scene& scene, const Params& params,
     lines.emplace_back("body of triangles",
                        "each triangle a hull 0.06 m thick on both of its sides "
                        "(BT_SOFTBODY_TRIANGLE_EXTRUSION), whatever the body's sides are");
+  if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.frames != nullptr; }))
+    lines.emplace_back("body that deforms",
+                       "contact knows the velocity of the body as a whole, not of its surface");
   return lines;
 }
 

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "bullet_ref/bullet_solver.hpp"
+#include "core/model/body_frames.hpp"
 #include "core/model/triangle_mesh.hpp"
 
 namespace taut {
@@ -92,8 +93,7 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above, const Slab& slab)
 class TriangleShape {
  public:
   explicit TriangleShape(const TriangleMesh& mesh) {
-    for (const Vec3& x : mesh.vertices())
-      for (const double c : x) vertices_.push_back(static_cast<btScalar>(c));
+    place(mesh.vertices());
     for (const Triangle& t : mesh.triangles()) indices_.insert(indices_.end(), t.begin(), t.end());
     btIndexedMesh part;
     part.m_numTriangles = static_cast<int>(mesh.triangles().size());
@@ -109,7 +109,24 @@ class TriangleShape {
   }
   btBvhTriangleMeshShape& shape() { return *shape_; }
 
+  /// Moves the vertices, and refits the tree. Bullet's tree has whole numbers for its boxes, of
+  /// those bounds with which it is made or refitted.
+  void refit(const std::vector<Vec3>& x) {
+    place(x);
+    btVector3 least, most;
+    array_.calculateAabbBruteForce(least, most);
+    shape_->refitTree(least, most);
+    shape_->recalcLocalAabb();
+  }
+
  private:
+  void place(const std::vector<Vec3>& x) {
+    vertices_.resize(3 * x.size());
+    auto at = vertices_.begin();
+    for (const Vec3& p : x)
+      for (const double c : p) *at++ = static_cast<btScalar>(c);
+  }
+
   std::vector<btScalar> vertices_;
   std::vector<int> indices_;
   btTriangleIndexVertexArray array_;
@@ -172,19 +189,22 @@ struct RigidColliders::Body {
         body(std::get_if<MeshBody>(&collider.shape)
                  ? std::make_unique<TriangleShape>(*std::get<MeshBody>(collider.shape).mesh)
                  : nullptr),
+        frames(collider.frames),
         sides(body ? std::get<MeshBody>(collider.shape).sides : MeshBody::Sides::out),
         shape(body ? nullptr : make_shape(collider.shape, slab)),
         rigid(btRigidBody::btRigidBodyConstructionInfo(
             0, nullptr, body ? static_cast<btCollisionShape*>(&body->shape()) : shape.get())) {
     rigid.setFriction(static_cast<btScalar>(collider.friction));
     rigid.setRestitution(0);
-    if (!motion.at_rest()) {
+    if (moves()) {
       rigid.setCollisionFlags(rigid.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
       rigid.setActivationState(DISABLE_DEACTIVATION);
     }
     rigid.setWorldTransform(at(0));
     rigid.setInterpolationWorldTransform(at(0));
   }
+
+  bool moves() const { return frames || !motion.at_rest(); }
 
   btTransform at(double t) const {
     return transform_of(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
@@ -206,9 +226,10 @@ struct RigidColliders::Body {
   RigidPose start;
   Motion motion;
   bool is_plane;
-  double follows;                       ///< m, of a slab
-  std::unique_ptr<TriangleShape> body;  ///< null: another shape
-  MeshBody::Sides sides;                ///< of a body, which Bullet does not know
+  double follows;                            ///< m, of a slab
+  std::unique_ptr<TriangleShape> body;       ///< null: another shape
+  std::shared_ptr<const BodyFrames> frames;  ///< of a body that deforms
+  MeshBody::Sides sides;                     ///< of a body, which Bullet does not know
   std::unique_ptr<btCollisionShape> shape;
   btRigidBody rigid;
 };
@@ -230,10 +251,20 @@ void RigidColliders::follow(double t, const Vec3& cloth) {
 
 void RigidColliders::move(double from, double to) {
   for (const auto& body : bodies_) {
-    if (body->motion.at_rest()) continue;
+    if (!body->moves()) continue;
     body->rigid.setInterpolationWorldTransform(body->at(from));
     body->rigid.setWorldTransform(body->at(to));
+    if (body->frames) deform(*body, to);
   }
+}
+
+/// Bullet's soft bodies keep a hull of every triangle that they have met, as it was then, for as
+/// long as the pair of bodies lasts: it begins anew.
+void RigidColliders::deform(Body& body, double t) {
+  body.body->refit(body.frames->at(t));
+  world_.updateSingleAabb(&body.rigid);
+  world_.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(
+      body.rigid.getBroadphaseHandle(), world_.getDispatcher());
 }
 
 std::size_t RigidColliders::bytes() const {
@@ -252,7 +283,8 @@ std::vector<Collider> RigidColliders::read_back(double t) const {
     const Vec3 moved = from_bullet(now.getOrigin()) - body->motion.displacement(t);
     const Vec3 origin = pivot + turned * (moved - pivot);
     Collider collider{.motion = body->motion,
-                      .friction = static_cast<double>(body->rigid.getFriction())};
+                      .friction = static_cast<double>(body->rigid.getFriction()),
+                      .frames = body->frames};
     const btCollisionShape* shape = body->rigid.getCollisionShape();
     if (const auto* triangles = dynamic_cast<const btBvhTriangleMeshShape*>(shape)) {
       collider.shape = MeshBody{triangles_of(*triangles), origin, rotation, body->sides};

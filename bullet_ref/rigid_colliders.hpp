@@ -14,7 +14,8 @@ namespace taut {
 /// A scene's colliders as Bullet's rigid bodies, in the scene's order: a ball as btSphereShape, a
 /// capsule as btCapsuleShape (along its own y), a box as btBoxShape, a plane as the top of a
 /// btBoxShape slab (btStaticPlaneShape tunnels and lets the cloth rest 0.10 m too high). Boxes have
-/// shape margin 0; a sphere's and a capsule's is its radius. Bodies that move are kinematic.
+/// shape margin 0; a sphere's and a capsule's is its radius. Bodies that move are kinematic; one
+/// that deforms is a btBvhTriangleMeshShape that is refitted as it moves.
 class RigidColliders {
  public:
   /// Adds the bodies to the world, which must outlive this object. Slabs are centred below the
@@ -41,6 +42,7 @@ class RigidColliders {
 
  private:
   struct Body;
+  void deform(Body&, double t);
   btDiscreteDynamicsWorld& world_;
   std::vector<std::unique_ptr<Body>> bodies_;
 };

@@ -9,6 +9,7 @@
 #include "core/io/document.hpp"
 #include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
+#include "core/model/body_frames.hpp"
 #include "core/model/crossings.hpp"
 #include "core/model/index.hpp"
 #include "core/model/text.hpp"
@@ -113,7 +114,7 @@ Collider read_collider(Section& section, const std::filesystem::path& folder) {
   if (Box* box = std::get_if<Box>(&collider.shape)) box->rotation = read_rotation(section);
   if (MeshBody* body = std::get_if<MeshBody>(&collider.shape)) {
     body->rotation = read_rotation(section);
-    body->mesh = read_body(section, folder, body->sides);
+    read_body(section, folder, collider);
   }
   read_keys(section, "collider", collider);
   const Vec3 pivot = std::visit([](const auto& shape) { return middle(shape); }, collider.shape);
@@ -433,6 +434,25 @@ void judge_path(const Value& item, Section& root, const Collider& collider, cons
   }
 }
 
+/// A body that goes farther than its own size within a time step is somewhere else, and not moved.
+void judge_frames(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
+  if (!collider.frames) return;
+  const auto& places = collider.frames->places;
+  const double size = std::get<MeshBody>(collider.shape).mesh->box().diagonal().norm();
+  const double in_a_step = std::min(1.0, scene.dt * collider.frames->fps);
+  for (std::size_t k = 1; k < places.size(); ++k)
+    for (std::size_t i = 0; i < places[k].size(); ++i) {
+      const double way = in_a_step * (places[k][i] - places[k - 1][i]).norm();
+      if (way <= size) continue;
+      root.diagnostics().report(
+          item.place, "the body jumps: from frame " + std::to_string(k - 1) + " to frame " +
+                          std::to_string(k) + " vertex " + std::to_string(i) + " makes " +
+                          as_typed(way) +
+                          " m within one time step, more than the size of the body");
+      return;
+    }
+}
+
 /// Length of the shortest link between neighbours [m]; 0 if there is none.
 double spacing(const Scene& scene) {
   double least = 0;
@@ -465,6 +485,7 @@ void check_contact(Section& root, const FileKeys& said, Scene& scene) {
   for (std::size_t k = 0; k < items.size() && k < scene.colliders.size(); ++k) {
     judge_start(*items[k], root, scene.colliders[k], scene);
     judge_path(*items[k], root, scene.colliders[k], scene);
+    judge_frames(*items[k], root, scene.colliders[k], scene);
     judge_thin(*items[k], root, scene.colliders[k], scene);
   }
   judge_sizes(root, said, scene);

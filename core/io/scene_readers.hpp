@@ -38,10 +38,10 @@ void read_keys(Section& section, std::string_view of, Part& part) {
 bool read_cloth(Section&, const std::filesystem::path& folder, const Fabric*, const FileKeys&,
                 Scene&);
 
-/// Reads the file of a [[collider]] that is a mesh, relative to `folder`, with 'scale' and 'sides'.
-/// Null, and reported with file and line, if it is no body.
-std::shared_ptr<const TriangleMesh> read_body(Section&, const std::filesystem::path& folder,
-                                              MeshBody::Sides);
+/// Reads the files of a [[collider]] that is a mesh, relative to `folder`: 'file' with 'scale', and
+/// 'frames' with 'fps', the first of which is then its shape. Its mesh is null, and what is wrong
+/// is reported with file and line, if it is no body.
+void read_body(Section&, const std::filesystem::path& folder, Collider&);
 
 /// The vertices that a value names: a vertex number, a pair [i, j], the name of an edge or corner
 /// of a grid ("top", "bottom-left"), a box {min, max} or a ball {center, radius} around rest

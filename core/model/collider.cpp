@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/model/body_frames.hpp"
+#include "core/model/deforming_body.hpp"
 #include "core/model/triangle_mesh.hpp"
 
 namespace taut {
@@ -103,9 +105,20 @@ Vec3 Motion::moved(const Vec3& start, double t) const {
   return pivot + rotation(t) * (start - pivot) + displacement(t);
 }
 
+namespace {
+
+std::shared_ptr<const TriangleMesh> deformed(const TriangleMesh& mesh, const BodyFrames& frames,
+                                             double t) {
+  auto copy = std::make_shared<TriangleMesh>(mesh);
+  copy->refit(frames.at(t));
+  return copy;
+}
+
+}  // namespace
+
 Shape shape_at(const Collider& collider, double t) {
   const Motion& motion = collider.motion;
-  if (motion.at_rest()) return collider.shape;
+  if (collider.at_rest()) return collider.shape;
   return std::visit(Overload{[&](Plane plane) -> Shape {
                                const Vec3 on = motion.moved(plane.offset * plane.normal, t);
                                plane.normal = motion.rotation(t) * plane.normal;
@@ -129,9 +142,31 @@ Shape shape_at(const Collider& collider, double t) {
                              [&](MeshBody body) -> Shape {
                                body.center = motion.moved(body.center, t);
                                body.rotation = motion.rotation(t) * body.rotation;
+                               if (collider.frames)
+                                 body.mesh = deformed(*body.mesh, *collider.frames, t);
                                return body;
                              }},
                     collider.shape);
+}
+
+std::vector<Vec3> carried(const Collider& collider, double t, double h,
+                          const std::vector<Vec3>& points) {
+  std::vector<Vec3> moved;
+  moved.reserve(points.size());
+  if (collider.frames) {
+    DeformingBody body(collider);
+    body.move(t, t + h);
+    for (const Vec3& x : points) {
+      const Vec3 at = body.local_before(x);
+      moved.push_back(body.world(body.motion_of_before(body.before().nearest(at), at)(at)));
+    }
+    return moved;
+  }
+  const Motion& m = collider.motion;
+  const Eigen::Quaterniond turn = m.rotation(t + h) * m.rotation(t).conjugate();
+  for (const Vec3& x : points)
+    moved.push_back(m.pivot + m.displacement(t + h) + turn * (x - m.pivot - m.displacement(t)));
+  return moved;
 }
 
 Surface surface(const Shape& shape, const Vec3& p) {

@@ -10,6 +10,7 @@
 namespace taut {
 
 class TriangleMesh;
+struct BodyFrames;
 
 /// Solid below the plane { x : normal . x = offset }.
 struct Plane {
@@ -73,15 +74,22 @@ struct Motion {
              double t) const;  ///< where the point that starts at `start` is at time t
 };
 
-/// A rigid obstacle.
+/// An obstacle: rigid, but for a body of triangles with frames, which deforms in its own frame.
 struct Collider {
   Shape shape;  ///< at t = 0
   Motion motion;
-  double friction = 0;  ///< Coulomb coefficient, >= 0
+  double friction = 0;                            ///< Coulomb coefficient, >= 0
+  std::shared_ptr<const BodyFrames> frames = {};  ///< of a MeshBody's vertices; null: rigid
+
+  bool at_rest() const { return !frames && motion.at_rest(); }
 };
 
 /// Shape at time t [s].
 Shape shape_at(const Collider&, double t);
+
+/// Where points that are there at time t would be at t + h if they went with the collider [m, s]:
+/// where it deforms, with the place of its surface that is nearest to them at time t.
+std::vector<Vec3> carried(const Collider&, double t, double h, const std::vector<Vec3>&);
 
 /// Distance from p to the surface, negative inside, and its gradient: both exact, also inside a box
 /// and past its edges and corners. Where the gradient is not unique (a ball's centre, a

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/model/body_frames.hpp"
 #include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
 #include "core/model/triangle_mesh.hpp"
@@ -52,7 +53,9 @@ class Bytes {
     }
     add(c.motion);
     add("collider", c);
+    if (c.frames) add_later(kFramesKey, [&](Bytes& b) { b.add(*c.frames); });
   }
+  void add(const BodyFrames& f) { add(f.places), add(f.fps); }
   void add(const Bending& b) { add(b.warp), add(b.weft), add("bending", b); }
   void add(const Wind& w) { add("wind", w); }
   void add(const SelfCollision& s) { add("self_collision", s); }
@@ -73,13 +76,17 @@ class Bytes {
   void add(std::string_view section, const Part& part) {
     const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
       if (!key.later) return add(value);
-      if (!key.counts(value, initial)) return;
-      Bytes bytes(keys_);
-      bytes.add(text_.size());
-      bytes.add(value);
-      later_.emplace_back(key.path, bytes.text_);
+      if (key.counts(value, initial)) add_later(key.path, [&](Bytes& b) { b.add(value); });
     };
     each_key(section, part, visit, keys_);
+  }
+  /// What came later and is there: with its name and its place among the others.
+  template <class AddValue>
+  void add_later(std::string_view key, const AddValue& add_value) {
+    Bytes bytes(keys_);
+    bytes.add(text_.size());
+    add_value(bytes);
+    later_.emplace_back(key, bytes.text_);
   }
   std::string all() const {
     std::string text = text_;

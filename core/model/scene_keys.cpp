@@ -163,6 +163,12 @@ const SceneKey kKeys[] = {
           "mesh: OBJ file, relative to the scene; vertices that coincide are one"),
     other("collider.scale", "number", "1", "1e-6 to 1e6", "1", "0.01",
           "mesh: metres per unit of its file"),
+    other(kFramesKey, "string", "", "", "none: it is rigid", "\"walker.npy\"",
+          "mesh: NumPy array [frames, vertices, 3], relative to the scene, in the file's unit and "
+          "frame: where the file's vertices are; the first frame is at t = 0, between two they go "
+          "straight, after the last they rest; velocity, spin and path move the whole"),
+    other("collider.fps", "number", "1/s", "above 0, at most 1e6", "needed with `frames`", "30",
+          "mesh: frames in a second"),
     vector("collider.center", &MeshBody::center, "m", Range::within(kFar), "[0, -1, 0]",
            "mesh: where its file's origin is"),
     choice("collider.sides", &MeshBody::sides, "out|both", "\"both\"",

@@ -21,6 +21,9 @@ namespace taut {
 /// Largest coordinate, size or displacement that a scene may hold [m].
 inline constexpr double kFar = 1e6;
 
+/// The key of the frames of a body, which came later: no value, but part of a scene's content.
+inline constexpr std::string_view kFramesKey = "collider.frames";
+
 /// What a number may be. Non-finite numbers are never allowed.
 struct Range {
   double min = -std::numeric_limits<double>::max();

@@ -31,6 +31,44 @@ bool meets(const Eigen::AlignedBox3d& box, double larger, const Vec3& middle, co
   return true;
 }
 
+Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).cross(c - a).normalized();
+}
+
+double angle_at(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a;
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+/// The angle-weighted normal of the triangles round a corner of one of them, from that one on
+/// across their edges: to one side, and to the other where they leave a gap.
+Vec3 normal_round(int triangle, std::size_t which, std::span<const Vec3> vertices,
+                  std::span<const Triangle> triangles,
+                  std::span<const std::array<std::int32_t, 3>> across,
+                  std::span<const Vec3> normals) {
+  const auto place = [](int index) { return static_cast<std::size_t>(index); };
+  const int corner = triangles[place(triangle)][which];
+  const auto corner_of = [&](int t) {
+    const Triangle& all = triangles[place(t)];
+    return all[0] == corner ? 0u : all[1] == corner ? 1u : 2u;
+  };
+  const auto share = [&](int t) {
+    const std::size_t k = corner_of(t);
+    const auto x = [&](std::size_t n) { return vertices[place(triangles[place(t)][n % 3])]; };
+    return Vec3(angle_at(x(k), x(k + 1), x(k + 2)) * normals[place(t)]);
+  };
+  Vec3 sum = share(triangle);
+  for (const std::size_t edge : {2u, 0u}) {
+    std::size_t seen = 1;
+    for (int t = across[place(triangle)][(which + edge) % 3]; t >= 0 && seen < triangles.size();
+         t = across[place(t)][(corner_of(t) + edge) % 3], ++seen) {
+      if (t == triangle) return sum;
+      sum += share(t);
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 TriangleMesh::TriangleMesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
@@ -51,10 +89,16 @@ TriangleMesh::TriangleMesh(std::vector<Vec3> vertices, std::vector<Triangle> tri
   make_normals();
 }
 
+/// Angles, of which corners' normals are made, are most of the cost, and few places are at corners:
+/// those of a surface that has been refitted are made when they are asked for.
 void TriangleMesh::refit(std::vector<Vec3> vertices) {
   vertices_ = std::move(vertices);
   make_boxes();
-  make_normals();
+  corner_normals_.clear();
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const int n = static_cast<int>(t);
+    normals_[t] = normal_of(corner(n, 0), corner(n, 1), corner(n, 2));
+  }
 }
 
 void TriangleMesh::join_edges() {
@@ -132,12 +176,10 @@ void TriangleMesh::make_normals() {
     const auto& [a, b, c] = triangles_[t];
     const std::array<Vec3, 3> x{vertices_[to_place(a)], vertices_[to_place(b)],
                                 vertices_[to_place(c)]};
-    normals_[t] = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 u = x[(k + 1) % 3] - x[k], v = x[(k + 2) % 3] - x[k];
-      const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
-      corner_normals_[to_place(triangles_[t][k])] += angle * normals_[t];
-    }
+    normals_[t] = normal_of(x[0], x[1], x[2]);
+    for (std::size_t k = 0; k < 3; ++k)
+      corner_normals_[to_place(triangles_[t][k])] +=
+          angle_at(x[k], x[(k + 1) % 3], x[(k + 2) % 3]) * normals_[t];
   }
 }
 
@@ -184,7 +226,9 @@ NearestPlace TriangleMesh::seen_from(const Vec3& p, int triangle) const {
     return {height, normal, triangle};
   Vec3 pseudo = normal;
   if (place.feature == Feature::corner)
-    pseudo = corner_normals_[to_place(triangles_[to_place(triangle)][place.which])];
+    pseudo = corner_normals_.empty()
+                 ? normal_round(triangle, place.which, vertices_, triangles_, across_, normals_)
+                 : corner_normals_[to_place(triangles_[to_place(triangle)][place.which])];
   else if (const auto beyond = across_[to_place(triangle)][place.which]; beyond >= 0)
     pseudo += normals_[to_place(beyond / 3)];
   const double length = out.norm();

@@ -84,14 +84,8 @@ ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, cons
       y_[i] += h * keep * from.v[i] + h * h * acceleration[i];
     else
       y_[i] = pin_position(scene, static_cast<int>(i), t + h);
-  for (const Collider& c : scene.colliders) {
-    const Motion& m = c.motion;
-    const Eigen::Quaterniond turn = m.rotation(t + h) * m.rotation(t).conjugate();
-    Obstacle& obstacle = colliders_.emplace_back(Obstacle{shape_at(c, t + h), c.friction, {}});
-    for (const Vec3& x : from.x)
-      obstacle.from.push_back(m.pivot + m.displacement(t + h) +
-                              turn * (x - m.pivot - m.displacement(t)));
-  }
+  for (const Collider& c : scene.colliders)
+    colliders_.push_back({shape_at(c, t + h), c.friction, carried(c, t, h, from.x)});
   if (rigid_) find_implied(scene, k);
 }
 

@@ -203,13 +203,12 @@ class StepError::Work {
     for (double& k : hardness_) k *= kContactHardness;
     shapes_.clear();
     carried_.clear();
+    Points start;
+    for (const std::size_t i : moving_) start.push_back(from.x[i]);
     for (const Collider& c : scene_.colliders) {
-      const Motion& m = c.motion;
-      const Eigen::Quaterniond turn = m.rotation(t + h) * m.rotation(t).conjugate();
       shapes_.push_back(shape_at(c, t + h));
-      for (const std::size_t i : moving_)
-        carried_.push_back(m.pivot + m.displacement(t + h) +
-                           turn * (from.x[i] - m.pivot - m.displacement(t)));
+      const Points with_it = carried(c, t, h, start);
+      carried_.insert(carried_.end(), with_it.begin(), with_it.end());
     }
     touches_.assign(carried_.size(), {});
     new_touches_ = true;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/model/body_frames.hpp"
 #include "core/model/index.hpp"
 
 namespace taut {
@@ -103,6 +104,23 @@ double imparted(const Motion& motion, double reach) {
   return speed;
 }
 
+/// The same of a body that deforms.
+double imparted(const BodyFrames& frames) {
+  const auto& places = frames.places;
+  double sum = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    double most = 0;
+    for (std::size_t i = 0; i < places[k].size(); ++i) {
+      const Vec3 before = k > 0 ? Vec3(places[k][i] - places[k - 1][i]) : Vec3(Vec3::Zero());
+      const Vec3 after =
+          k + 1 < places.size() ? Vec3(places[k + 1][i] - places[k][i]) : Vec3(Vec3::Zero());
+      most = std::max(most, (after - before).norm() * frames.fps);
+    }
+    sum += most;
+  }
+  return sum;
+}
+
 double diameter(const std::vector<Vec3>& points) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : points) box.extend(x);
@@ -118,7 +136,10 @@ double motion_speed(const Scene& scene) {
     speed += imparted(motion, reach);
   };
   for (const auto& [vertices, motion] : scene.pin_motions) add(motion);
-  for (const Collider& collider : scene.colliders) add(collider.motion);
+  for (const Collider& collider : scene.colliders) {
+    add(collider.motion);
+    if (collider.frames) speed += imparted(*collider.frames);
+  }
   return speed;
 }
 

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "core/model/body_frames.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/scene_keys.hpp"
@@ -67,14 +68,21 @@ Json json_of(const Collider& collider) {
     one["vertices"] = json_of(body->mesh->vertices());
     one["triangles"] = body->mesh->triangles();
   }
+  if (collider.frames) {
+    Json& frames = one["frames"] = Json::array();
+    for (const std::vector<Vec3>& x : collider.frames->places) frames.push_back(json_of(x));
+    one["fps"] = collider.frames->fps;
+  }
   one.update(json_of("collider", collider));
   one["motion"] = json_of(collider.motion);
   return one;
 }
 
 /// Each knows what was there before it, too; beyond() names what came with it.
-constexpr std::string_view kProtocols[] = {"taut-solver/1", "taut-solver/2", "taut-solver/3"};
-constexpr std::string_view kFormats[] = {"taut-scene/1", "taut-scene/2", "taut-scene/3"};
+constexpr std::string_view kProtocols[] = {"taut-solver/1", "taut-solver/2", "taut-solver/3",
+                                           "taut-solver/4"};
+constexpr std::string_view kFormats[] = {"taut-scene/1", "taut-scene/2", "taut-scene/3",
+                                         "taut-scene/4"};
 constexpr double kLargestInteger = 2147483647;
 
 /// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
@@ -192,10 +200,14 @@ std::vector<std::string> beyond(int version, const Scene& scene) {
     if (scene.bending) all.emplace_back("bending stiffness");
     if (!scene.releases.empty()) all.emplace_back("pins that let go");
     if (std::ranges::any_of(scene.links, is_seam)) all.emplace_back("a seam");
-    for (std::string& key : later_keys(scene)) all.push_back(std::move(key));
+    for (std::string& key : later_keys(scene))
+      if (key != kFramesKey) all.push_back(std::move(key));
   }
   if (version < 3 && is_there(scene, std::type_identity<MeshBody>()))
     all.emplace_back("a body of triangles");
+  const auto deforms = [](const Collider& c) { return c.frames != nullptr; };
+  if (version < 4 && std::ranges::any_of(scene.colliders, deforms))
+    all.emplace_back("a body that deforms");
   return all;
 }
 
@@ -228,7 +240,7 @@ std::string scene_file(const Scene& scene) {
              scene.self_collision ? json_of("self_collision", *scene.self_collision) : Json()}};
   file.update(json_of("forces", scene));
   file.update(json_of("cloth", scene));
-  for (int version : {1, 2})
+  for (int version : {1, 2, 3})
     if (!beyond(version, scene).empty()) file["format"] = kFormats[version];
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
   if (!scene.releases.empty()) {

@@ -84,7 +84,8 @@ class Edges final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {"edge.passages", kErrorCount,
        "how often an edge of the cloth goes through the axis of a capsule or an edge of a box or a "
-       "body of triangles, returns included: a thread over a rod between two of its vertices; "
+       "rigid body of triangles, returns included: a thread over a rod between two of its "
+       "vertices; "
        "their "
        "ways are straight from substep to substep, in the collider's own frame",
        false, Window::run, "passages of edges"},
@@ -113,8 +114,9 @@ class Edges final : public Metric {
 
  private:
   static bool has_edges(const Collider& c) {
-    return std::holds_alternative<Capsule>(c.shape) || std::holds_alternative<Box>(c.shape) ||
-           std::holds_alternative<MeshBody>(c.shape);
+    return !c.frames &&
+           (std::holds_alternative<Capsule>(c.shape) || std::holds_alternative<Box>(c.shape) ||
+            std::holds_alternative<MeshBody>(c.shape));
   }
 
   /// A collider in the frame in which it does not move, and the cloth there at the last time.

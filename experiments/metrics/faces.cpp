@@ -220,22 +220,32 @@ class Faces final : public Metric {
   void count_passages(const Collider& collider, const Snapshot& m) {
     const auto was_there = std::get<MeshBody>(shape_at(collider, last_t_)),
                is_there = std::get<MeshBody>(shape_at(collider, m.t));
-    const TriangleMesh& mesh = *is_there.mesh;
+    const TriangleMesh &mesh = *is_there.mesh, &before_it = *was_there.mesh;
+    const double farther = longest_way(before_it, mesh);
     std::set<int> near;
     for (const Triangle& face : faces_) {
       const Corners before = in_frame(was_there, corners(face, last_)),
                     now = in_frame(is_there, corners(face, m.state));
       Eigen::AlignedBox3d way;
       for (std::size_t c = 0; c < 3; ++c) way.extend(before[c]).extend(now[c]);
+      way.min().array() -= farther;
+      way.max().array() += farther;
       near.clear();
       mesh.in_box(way, [&](int triangle) {
         for (const int v : mesh.triangles()[to_index(triangle)]) near.insert(v);
       });
       for (const int v : near) {
-        const Vec3& p = mesh.vertices()[to_index(v)];
-        passages_ += passes(before, now, p, p);
+        passages_ +=
+            passes(before, now, before_it.vertices()[to_index(v)], mesh.vertices()[to_index(v)]);
       }
     }
+  }
+  /// Of a vertex in the body's frame [m]; 0: it is rigid.
+  static double longest_way(const TriangleMesh& from, const TriangleMesh& to) {
+    double longest = 0;
+    for (std::size_t v = 0; &from != &to && v < to.vertices().size(); ++v)
+      longest = std::max(longest, (to.vertices()[v] - from.vertices()[v]).norm());
+    return longest;
   }
   /// How often the place goes through the face while all go straight: six times the volume between
   /// them is a cubic in the share of the way, and 0 where they are in one plane.

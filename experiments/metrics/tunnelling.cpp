@@ -1,4 +1,5 @@
 
+#include "core/model/deforming_body.hpp"
 #include "core/model/triangle_mesh.hpp"
 #include "experiments/metrics/metric.hpp"
 
@@ -155,12 +156,17 @@ class BodyTracker {
   BodyTracker(Collider collider, std::size_t vertices)
       : collider_(std::move(collider)),
         body_(std::get<MeshBody>(collider_.shape)),
+        deforming_(collider_.frames ? std::make_unique<DeformingBody>(collider_) : nullptr),
         last_(vertices),
-        in_(vertices),
+        entered_(vertices),
         inside_(vertices),
         through_(vertices) {}
 
-  void place(double t) { body_ = std::get<MeshBody>(shape_at(collider_, t)); }
+  void place(double t) {
+    if (deforming_) deforming_->move(t_, t);
+    body_ = deforming_ ? deforming_->body() : std::get<MeshBody>(shape_at(collider_, t));
+    t_ = t;
+  }
   void start(std::size_t k, const Vec3& world) {
     last_[k] = local(world);
     settle(k);
@@ -172,14 +178,15 @@ class BodyTracker {
     last_[k] = to;
     int passages = 0;
     double left_at = -1;  // of an edge, which belongs to two triangles
-    for (const MeshHit& hit : body_.mesh->hits(from, to)) {
+    for (const MeshHit& hit :
+         deforming_ ? deforming_->hits(from, to) : body_.mesh->hits(from, to)) {
       const Vec3& normal = body_.mesh->normal(hit.triangle);
       if (is_thin()) {
-        if (hit.share > left_at) passages += pass(k);
+        if (hit.share > left_at + 1e-12) passages += pass(k);
         left_at = hit.share;
       } else if (hit.inward && !inside_[k]) {
         inside_[k] = true;
-        in_[k] = normal;
+        entered_[k] = hit.triangle;
       } else if (!hit.inward && inside_[k]) {
         passages += leave(k, normal);
       }
@@ -202,7 +209,7 @@ class BodyTracker {
   /// What rounding left out of its way.
   void settle(std::size_t k) {
     inside_[k] = contains(last_[k]);
-    if (inside_[k]) in_[k] = nearest(last_[k]).normal;
+    if (inside_[k]) entered_[k] = nearest(last_[k]).triangle;
   }
   int pass(std::size_t k) {
     through_[k] = !through_[k];
@@ -210,12 +217,15 @@ class BodyTracker {
   }
   int leave(std::size_t k, const Vec3& out) {
     inside_[k] = false;
-    return in_[k].dot(out) < 0 ? pass(k) : 0;
+    return body_.mesh->normal(entered_[k]).dot(out) < 0 ? pass(k) : 0;
   }
 
   Collider collider_;
-  MeshBody body_;                ///< at the last time
-  std::vector<Vec3> last_, in_;  ///< [free vertices], in the body's frame
+  MeshBody body_;                             ///< at the last time
+  std::unique_ptr<DeformingBody> deforming_;  ///< null: it is rigid
+  double t_ = 0;                              ///< s, the last time
+  std::vector<Vec3> last_;                    ///< [free vertices] in the body's frame
+  std::vector<int> entered_;  ///< [free vertices], of those inside: the triangle where they came in
   std::vector<bool> inside_, through_;
 };
 

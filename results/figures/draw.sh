@@ -8,4 +8,4 @@ taut=$here/../../taut
 ours=jakobsen:substeps=1,order=mesh,iterations=
 
 mkdir -p "$folder"
-"$taut" render ball --solver ${ours}16 --solver bullet:iterations=16 --at 1 --size 1280x720 -o "$folder/ball.png"
+"$taut" render cape --solver ${ours}16 --solver bullet:iterations=16 --solver pd --at 1 --size 1920x720 -o "$folder/cape.png"

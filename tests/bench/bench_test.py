@@ -13,7 +13,7 @@ for name, row in rows.items():
     assert not row.get("error_occurred"), (name, row)
     kind = name.split("/")[0]
     counters = {"projection": ["projection"], "iteration": ["iteration", "sweeps"], "contact": ["sweep", "in_sweep", "in_step", "touching"], "threads": ["two_threads"],
-                "body": ["read_s", "make_s", "refit_s", "nearest_at_1cm_s", "nearest_anywhere_s", "first_hit_s"]}[kind]
+                "body": ["read_s", "make_s", "refit_s", "nearest_at_1cm_s", "nearest_anywhere_s", "first_hit_s", "first_hit_deforming_s"]}[kind]
     for counter in counters:
         assert math.isfinite(row[counter]), (name, counter)
     if kind == "projection" and "threads" not in name:

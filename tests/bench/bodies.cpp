@@ -9,6 +9,8 @@
 #include <string>
 
 #include "core/io/mesh_io.hpp"
+#include "core/model/body_frames.hpp"
+#include "core/model/deforming_body.hpp"
 #include "tests/bench/bench.hpp"
 
 namespace taut::bench {
@@ -54,6 +56,15 @@ std::string as_obj(const Triangles& body) {
   return text;
 }
 
+/// A body whose vertices go a few centimetres a second.
+Collider leaning(const Triangles& body) {
+  auto frames = std::make_shared<BodyFrames>();
+  frames->fps = 1;
+  frames->places = {body.vertices, body.vertices};
+  for (Vec3& x : frames->places[1]) x += Vec3(0.02 * x.y(), 0.03, 0.01 * x.x());
+  return {.shape = MeshBody{body.mesh()}, .frames = frames};
+}
+
 void body(benchmark::State& state) {
   const Triangles ball = ball_of_triangles(1, static_cast<int>(state.range(0)));
   const Questions questions;
@@ -61,7 +72,9 @@ void body(benchmark::State& state) {
   const double count = static_cast<double>(ball.triangles.size()),
                asked = static_cast<double>(questions.near.size());
   const std::string text = as_obj(ball);
+  DeformingBody deforming(leaning(ball));
   double read = 0, make = 0, refit = 0, near = 0, anywhere = 0, hit = 0, rounds = 0;
+  double moving_hit = 0;
   for (auto _ : state) {
     read += seconds([&] { benchmark::DoNotOptimize(parse_body_obj("ball.obj", text)); });
     make += seconds([&] { benchmark::DoNotOptimize(TriangleMesh(ball.vertices, ball.triangles)); });
@@ -76,6 +89,11 @@ void body(benchmark::State& state) {
       for (const Vec3& p : questions.near)
         benchmark::DoNotOptimize(mesh.first_hit(1.1 * p, 0.9 * p));
     });
+    deforming.move(0, 0.1);
+    moving_hit += seconds([&] {
+      for (const Vec3& p : questions.near)
+        benchmark::DoNotOptimize(deforming.first_hit(1.1 * p, 0.9 * p));
+    });
     ++rounds;
   }
   state.counters["triangles"] = count;
@@ -85,6 +103,7 @@ void body(benchmark::State& state) {
   state.counters["nearest_at_1cm_s"] = near / rounds / asked;
   state.counters["nearest_anywhere_s"] = anywhere / rounds / asked;
   state.counters["first_hit_s"] = hit / rounds / asked;
+  state.counters["first_hit_deforming_s"] = moving_hit / rounds / asked;
   state.counters["bytes"] = static_cast<double>(mesh.bytes());
 }
 

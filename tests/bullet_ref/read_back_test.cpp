@@ -8,6 +8,7 @@
 #include <array>
 #include <numbers>
 
+#include "core/model/body_frames.hpp"
 #include "tests/bullet_ref/differences.hpp"
 #include "tests/support/bodies.hpp"
 
@@ -73,6 +74,30 @@ TEST(BulletReadBack, SoDoesTheDeformableBody) {
   const Scene scene = everything();
   EXPECT_EQ(differences(scene, read_back(*bullet(scene, "bullet-deformable")), 1e-13),
             std::vector<std::string>{});
+}
+
+TEST(BulletReadBack, ABodyThatDeformsIsWhereItsFramesAre) {
+  for (const char* text : {"bullet:substeps=2", "bullet-deformable"}) {
+    Scene scene = sheet(5, 5);
+    const Triangles body = torus(0.3, 0.1, 7, 5);
+    auto frames = std::make_shared<BodyFrames>();
+    frames->fps = 20;
+    for (int k = 0; k < 4; ++k) {
+      auto& x = frames->places.emplace_back(body.vertices);
+      for (Vec3& p : x) p = (1 + 0.3 * k) * p + 0.2 * k * Vec3(p.y(), 1, p.x());
+    }
+    scene.colliders = {{.shape = MeshBody{body.mesh(), {3, 0.2, 0.7}}, .frames = frames}};
+    const auto solver = bullet(scene, text);
+    for (const int steps : {3, 5}) {
+      for (int n = 0; n < steps; ++n) solver->step(n * scene.dt, scene.dt);
+      const Scene held = read_back(*solver);
+      const auto at_end = std::get<MeshBody>(shape_at(scene.colliders[0], steps * scene.dt));
+      const auto& mesh = *std::get<MeshBody>(held.colliders[0].shape).mesh;
+      ASSERT_EQ(mesh.vertices().size(), body.vertices.size());
+      for (std::size_t i = 0; i < body.vertices.size(); ++i)
+        EXPECT_NEAR((mesh.vertices()[i] - at_end.mesh->vertices()[i]).norm(), 0, 1e-6) << text;
+    }
+  }
 }
 
 TEST(BulletReadBack, WithoutFacesItHoldsAllElse) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/model/body_frames.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/triangle_mesh.hpp"
@@ -97,7 +98,7 @@ TEST(Hello, RefusesWhatNoParameterCanBe) {
   for (const char* name : {"cmd", "timeout", "a b", "1a", ""})
     EXPECT_NE(refused_param(integer(0, 0, 1), name), "") << name;
   Json other = hello_with("n", integer(0, 0, 1));
-  other["protocol"] = "taut-solver/4";
+  other["protocol"] = "taut-solver/5";
   EXPECT_NE(refusal([&] { read_hello(other); }), "");
 }
 
@@ -108,11 +109,15 @@ struct Knowing {
 struct KnowingBodies {
   static constexpr const char* kProtocol = "taut-solver/3";
 };
+struct KnowingFrames {
+  static constexpr const char* kProtocol = "taut-solver/4";
+};
 
 TEST(Hello, SaysWhichProtocolTheProgramSpeaks) {
   for (const auto& [protocol, spoken] : {std::pair{taut_solver::protocol_of<FromBefore>(), 1},
                                          {taut_solver::protocol_of<Knowing>(), 2},
-                                         {taut_solver::protocol_of<KnowingBodies>(), 3}})
+                                         {taut_solver::protocol_of<KnowingBodies>(), 3},
+                                         {taut_solver::protocol_of<KnowingFrames>(), 4}})
     EXPECT_EQ(read_hello({{"protocol", protocol}, {"name", "p"}, {"version", "2"}})->version_spoken,
               spoken);
 }
@@ -271,6 +276,17 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
                                         {"triangles", {{0, 1, 2}}},
                                         {"friction", 0.75},
                                         {"motion", motion}}));
+  scene.colliders.back().frames = std::make_shared<const BodyFrames>(BodyFrames{
+      .places = {triangle->vertices(), {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 3, 0)}}, .fps = 24});
+  EXPECT_EQ(beyond(1, scene),
+            (std::vector<std::string>{"a body of triangles", "a body that deforms"}));
+  EXPECT_EQ(beyond(3, scene), std::vector<std::string>{"a body that deforms"});
+  EXPECT_TRUE(beyond(4, scene).empty());
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/4");
+  EXPECT_EQ(file["colliders"][3]["fps"], 24);
+  EXPECT_EQ(file["colliders"][3]["frames"],
+            (Json{{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}, {{0, 0, 1}, {1, 0, 0}, {0, 3, 0}}}));
   scene.colliders.pop_back();
   file = parse_json(scene_file(scene));
   const auto expect = [&](const char* key, const Json& value) {

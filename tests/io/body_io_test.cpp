@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
@@ -140,6 +141,102 @@ TEST_F(BodyFiles, AClothThatStartsInsideIsRefusedOrMovedOut) {
   const Scene moved = scene(inside, "start_inside = \"resolve\"\nthickness = 0.01\n");
   for (const Vec3& x : moved.start.x)
     EXPECT_GE(surface(moved.colliders[0].shape, x).distance, 0.01 - 1e-12);
+}
+
+/// A NumPy array of the tetrahedron's frames, each moved by a vector.
+std::string npy(const std::vector<Vec3>& moved, const std::string& type = "<f8",
+                const std::string& shape = "", const std::string& order = "False") {
+  const std::string real = shape.empty() ? "(" + std::to_string(moved.size()) + ", 4, 3)" : shape;
+  std::string header =
+      "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + real + ", }";
+  header.resize(117, ' ');
+  header += '\n';
+  std::string text("\x93NUMPY\1\0", 8);
+  text += {static_cast<char>(header.size()), '\0'};
+  text += header;
+  for (const Vec3& by : moved)
+    for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+      for (const double c : Vec3(x + by)) {
+        const auto single = static_cast<float>(c);
+        if (type == "<f4")
+          text.append(reinterpret_cast<const char*>(&single), sizeof single);
+        else
+          text.append(reinterpret_cast<const char*>(&c), sizeof c);
+      }
+  return text;
+}
+
+const std::string kWalking = "file = \"b.obj\"\nframes = \"w.npy\"\nfps = 2\n";
+
+TEST_F(BodyFiles, FramesMoveTheVertices) {
+  write("b.obj", kTetrahedron);
+  for (const char* type : {"<f4", "<f8"}) {
+    write("w.npy", npy({{0, 0, 0}, {1, 0, 0}, {1, 0, 0.5}}, type));
+    const Scene s = scene(kWalking + "scale = 2\ncenter = [1, 2, 3]\nvelocity = [0, 0, 4]\n");
+    const Collider& collider = s.colliders.at(0);
+    const auto at_start = std::get<MeshBody>(collider.shape),
+               later = std::get<MeshBody>(shape_at(collider, 0.25)),
+               at_end = std::get<MeshBody>(shape_at(collider, 9));
+    EXPECT_EQ(at_start.mesh->vertices()[1], Vec3(2, 0, 0));
+    EXPECT_EQ(later.mesh->vertices()[1], Vec3(3, 0, 0));
+    EXPECT_EQ(later.center, Vec3(1, 2, 4));
+    EXPECT_EQ(at_end.mesh->vertices()[3], Vec3(2, 0, 3));
+  }
+}
+
+TEST_F(BodyFiles, FramesArePartOfTheContent) {
+  write("b.obj", kTetrahedron);
+  write("w.npy", npy({{0, 0, 0}, {1, 0, 0}}));
+  const std::string rigid = content(scene("file = \"b.obj\"\n")), moves = content(scene(kWalking));
+  EXPECT_NE(moves, rigid);
+  EXPECT_NE(content(scene(kWalking + "center = [1, 0, 0]\n")), moves);
+  EXPECT_NE(content(scene("file = \"b.obj\"\nframes = \"w.npy\"\nfps = 3\n")), moves);
+  write("w.npy", npy({{0, 0, 0}, {1, 0, 0}}, "<f4"));  // the same numbers
+  EXPECT_EQ(content(scene(kWalking)), moves);
+  write("w.npy", npy({{0, 0, 0}, {1, 0, 1e-6}}));
+  EXPECT_NE(content(scene(kWalking)), moves);
+}
+
+TEST_F(BodyFiles, WhatIsWrongWithFramesIsNamed) {
+  write("b.obj", kTetrahedron);
+  const auto says = [&](const std::string& file) {
+    write("w.npy", file);
+    return errors(kWalking);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(says(npy({{0, 0, 0}, {1, 0, 0}})), "");
+  EXPECT_SAYS(errors("file = \"b.obj\"\nframes = \"none.npy\"\nfps = 2\n"),
+              "x.toml:8:10: 'frames'");
+  EXPECT_SAYS(errors("file = \"b.obj\"\nframes = \"b.obj\"\nfps = 2\n"), "ends in .npy");
+  EXPECT_SAYS(says("something else"), "begins with");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {1, 0, 0}}, "<i8")), "positions are float32 or float64");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {1, 0, 0}}, "<f8", "(2, 12)")), "[frames, vertices, 3]");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {1, 0, 0}}, "<f8", "(2, 4, 3)", "True")), "Fortran");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {1, 0, 0}}, "<f8", "(3, 4, 3)")), "after 2 whole frames");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, "<f8", "(4, 3, 3)")),
+              "w.npy: has 3 vertices in a frame, and 'file' has 4");
+  EXPECT_SAYS(says(npy({{0, 0, 0}})), "w.npy: has one frame");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {0, nan, 0}})), "w.npy: frame 1: vertex 0 is not finite");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {2e6, 0, 0}})), "reaches farther");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {200, 0, 0}})), "from frame 0 to frame 1 vertex 0 makes 6.25 m");
+  std::string flat = npy({{0, 0, 0}, {0, 0, 0}});
+  flat.replace(flat.size() - 8, 8, 8, '\0');  // the last z
+  EXPECT_SAYS(says(flat), "frame 1: the triangle of vertices 0, 1 and 3 has no area");
+  std::string inside_out = npy({{0, 0, 0}, {0, 0, 0}});
+  inside_out.back() = static_cast<char>(0xbf);  // -1
+  EXPECT_SAYS(says(inside_out), "frame 1: it encloses no volume, or is turned inside out");
+}
+
+TEST_F(BodyFiles, FramesNeedARateAndARateFrames) {
+  write("b.obj", kTetrahedron);
+  write("w.npy", npy({{0, 0, 0}, {1, 0, 0}}));
+  const std::string frames = "file = \"b.obj\"\nframes = \"w.npy\"\n";
+  EXPECT_SAYS(errors(frames), "'fps'");
+  EXPECT_SAYS(errors("file = \"b.obj\"\nfps = 2\n"), "x.toml:8:7: 'fps'");
+  for (const char* fps : {"0", "-1", "nan", "\"x\""})
+    EXPECT_SAYS(errors(frames + "fps = " + fps + "\n"), "x.toml:9:7: 'fps'");
+  const std::string all = errors("file = \"none.obj\"\nframes = \"none.npy\"\nfps = 0\n");
+  for (const char* part : {"none.obj", "none.npy", "'fps'"}) EXPECT_SAYS(all, part);
 }
 
 }  // namespace

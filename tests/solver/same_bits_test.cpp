@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "core/model/body_frames.hpp"
 #include "core/solver/layout/colour_batches.hpp"
 #include "core/solver/layout/interleaved_sheet.hpp"
 #include "core/solver/simd/kernels_impl.hpp"
@@ -103,8 +104,20 @@ TEST(SameBits, OfTethersForEveryInstructionSet) {
       }
 }
 
-/// A plane, balls, a capsule, and a turned box and a torus of triangles that rise and spin, where
-/// the sheet falls past them.
+/// A torus of triangles that grows.
+Collider growing(const Vec3& center) {
+  const Triangles body = torus(0.15, 0.06, 12, 8);
+  auto frames = std::make_shared<BodyFrames>();
+  frames->fps = 20;
+  for (int k = 0; k < 9; ++k) {
+    auto& x = frames->places.emplace_back(body.vertices);
+    for (Vec3& p : x) p = (1 + 0.1 * k) * p + 0.02 * k * Vec3(p.y(), 1, p.x());
+  }
+  return {.shape = MeshBody{body.mesh(), center}, .friction = 0.3, .frames = frames};
+}
+
+/// A plane, balls, a capsule, and a turned box and tori of triangles that rise, spin and grow,
+/// where the sheet falls past them.
 std::vector<Collider> obstacles(const Scene& scene) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& x : scene.start.x) middle += x / static_cast<double>(scene.start.x.size());
@@ -121,7 +134,8 @@ std::vector<Collider> obstacles(const Scene& scene) {
           Collider{Capsule{middle + Vec3(-0.3, -0.2, 0.1), middle + Vec3(0.1, -0.1, -0.1), 0.1},
                    motion, 0.2},
           Collider{MeshBody{torus(0.2, 0.08, 12, 8).mesh(), middle + Vec3(0.1, -0.2, -0.2)}, motion,
-                   0.2}};
+                   0.2},
+          growing(middle + Vec3(-0.1, -0.1, -0.2))};
 }
 
 TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {

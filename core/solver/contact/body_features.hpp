@@ -128,6 +128,11 @@ class BodyFeatures {
     return best;
   }
 
+  /// The body is another one: what was near need not be.
+  void forget() {
+    for (Near& near : near_) near.reach = 0;
+  }
+
   /// Of an edge: from the one that it had to leave last, however far it is; none where they are no
   /// longer across each other.
   std::optional<Separation> out_of_last(const TriangleMesh& mesh, std::size_t piece,

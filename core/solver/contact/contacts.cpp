@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/model/index.hpp"
+#include "core/solver/contact/deforming_contact.hpp"
 #include "core/solver/contact/mesh_surface.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/simd/contact.hpp"
@@ -17,11 +18,12 @@ class Contacts::Surface {
  public:
   virtual ~Surface() = default;
   virtual void begin(double t, double h) = 0;
-  /// Whether x is inside, or `held`; then `at`, but for its collider, is filled in.
+  /// Whether x is inside, or `held`; then `at`, but for its vertex and collider, is filled in.
   virtual bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
                        TouchingVertex& at) = 0;
   virtual bool turns() const = 0;
-  virtual Vec3 turned(const Vec3& force) const = 0;
+  /// The force on a vertex that it holds, from the last substep to this one.
+  virtual Vec3 turned(std::size_t vertex, const Vec3& force) const = 0;
 };
 
 namespace {
@@ -54,7 +56,6 @@ class SurfaceIn final : public Contacts::Surface {
     } else if (!contact_.touched(to, before, continuous_, held, tangent)) {
       return false;
     }
-    at.vertex = vertex;
     at.normal = point(tangent.normal);
     at.offset = tangent.offset + contact_.thickness;
     at.from = point(contact_.motion(before));
@@ -63,7 +64,7 @@ class SurfaceIn final : public Contacts::Surface {
   }
 
   bool turns() const override { return contact_.motion.moves; }
-  Vec3 turned(const Vec3& v) const override {
+  Vec3 turned(std::size_t, const Vec3& v) const override {
     const auto& turn = contact_.motion.turn;
     const Vec3T<double> f = vec3t<double>(v);
     return {dot(turn[0], f), dot(turn[1], f), dot(turn[2], f)};
@@ -77,8 +78,42 @@ class SurfaceIn final : public Contacts::Surface {
   std::vector<Seen> seen_;  ///< [vertices] of a body of triangles
 };
 
+class DeformingSurfaceIn final : public Contacts::Surface {
+ public:
+  DeformingSurfaceIn(const Collider& collider, double thickness, bool continuous,
+                     std::size_t vertices)
+      : contact_(collider, thickness), continuous_(continuous), touched_(vertices) {}
+
+  void begin(double t, double h) override { contact_.begin(t, h); }
+
+  bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
+               TouchingVertex& at) override {
+    const auto path = contact_.path(x, previous);
+    if (!held && contact_.beyond_all(path, contact_.reach(path, continuous_))) return false;
+    const auto touch = contact_.touch(path, contact_.nearest(path), continuous_, held);
+    if (!touch) return false;
+    touched_[vertex] = touch->triangle;
+    at.normal = touch->normal;
+    at.offset = touch->offset + contact_.thickness();
+    at.from = touch->from;
+    at.friction = contact_.friction();
+    return true;
+  }
+
+  bool turns() const override { return true; }
+  Vec3 turned(std::size_t vertex, const Vec3& force) const override {
+    return contact_.body().turned(touched_[vertex], force);
+  }
+
+ private:
+  DeformingContact contact_;
+  bool continuous_;
+  std::vector<int> touched_;  ///< [vertices]: the triangle at which each has touched last
+};
+
 std::unique_ptr<Contacts::Surface> make_surface(const Collider& c, double thickness,
                                                 bool continuous, std::size_t vertices) {
+  if (c.frames) return std::make_unique<DeformingSurfaceIn>(c, thickness, continuous, vertices);
   if (std::holds_alternative<Plane>(c.shape))
     return std::make_unique<SurfaceIn<PlaneSurface>>(c, thickness, continuous, vertices);
   if (std::holds_alternative<Ball>(c.shape))
@@ -107,7 +142,7 @@ void Contacts::begin(double t, double h) {
     surfaces_[k]->begin(t, h);
     if (!surface.turns()) continue;
     for (std::size_t f = k; f < forces_.size(); f += surfaces_.size())
-      if (forces_[f].holds()) forces_[f].rub = surface.turned(forces_[f].rub);
+      if (forces_[f].holds()) forces_[f].rub = surface.turned(f / surfaces_.size(), forces_[f].rub);
   }
 }
 
@@ -115,6 +150,7 @@ bool Contacts::touches(std::size_t vertex, std::size_t collider, const Vec3& x,
                        const Vec3& previous, TouchingVertex& at) {
   ContactForce& held = force(vertex, collider);
   if (!surfaces_[collider]->touches(vertex, x, previous, held.holds(), at)) return false;
+  at.vertex = vertex;
   at.collider = collider;
   held.rub = at.across(held.rub);
   return true;

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/model/deforming_body.hpp"
 #include "core/model/triangle.hpp"
 #include "core/solver/contact/body_features.hpp"
 #include "core/solver/contact/contacts.hpp"
@@ -18,8 +19,9 @@ namespace taut {
 ///     dx_i = w_i b_i s n / sum of w_j b_j^2,
 ///
 /// so that the point moves by s n and momentum changes along n alone. Continuous: an edge that has
-/// passed through a convex edge of a body or the axis of a capsule goes back to the side from which
-/// it came; where a substep ended before it was there, in the next.
+/// passed through a convex edge of a rigid body or the axis of a capsule goes back to the side from
+/// which it came; where a substep ended before it was there, in the next. At a body that deforms
+/// only where the substep ends counts.
 ///
 /// With a solver that has a target y, a piece keeps the force F at its point from sweep to sweep
 /// and from substep to substep, as long as Signorini and Coulomb ask for it, were the corners free
@@ -33,12 +35,13 @@ class FaceContactPass final : public Pass<Real> {
                   std::vector<Triangle> pieces, Pass<Real>* solver)
       : collider_(collider),
         thickness_(thickness),
-        continuous_(continuous),
+        continuous_(continuous && !collider.frames),
         faces_(std::move(pieces)),
         solver_(solver),
         held_(solver ? faces_.size() : 0) {
     if (std::holds_alternative<MeshBody>(collider.shape))
       features_.emplace(thickness, faces_.size());
+    if (collider_.frames) deforming_.emplace(collider_);
   }
 
   void restart() override {
@@ -53,7 +56,13 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   void begin(Particles<Real>& p, double t, double dt) override {
-    shape_ = shape_at(collider_, t + dt);
+    if (deforming_) {
+      deforming_->move(t, t + dt);
+      shape_ = deforming_->body();
+      features_->forget();
+    } else {
+      shape_ = shape_at(collider_, t + dt);
+    }
     motion_ = rigid_motion(collider_.motion, t, dt);
     if (Ball* ball = std::get_if<Ball>(&shape_)) {
       ball->radius += thickness_;
@@ -79,7 +88,7 @@ class FaceContactPass final : public Pass<Real> {
     if (continuous_) remember_sides(p);
     for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
       if (held_[f].holds()) {
-        held_[f].force = turned(held_[f].force);
+        held_[f].force = turned(held_[f], at_start(p, faces_[f], held_[f].weights));
         add_force(p.x, p, faces_[f], held_[f].weights, dt * dt * held_[f].force);
       }
   }
@@ -252,9 +261,27 @@ class FaceContactPass final : public Pass<Real> {
     return out;
   }
 
-  Vec3 turned(const Vec3& force) const {
-    if (!motion_.moves) return force;
-    const Vec3T<double> f = vec3t<double>(force);
+  /// Where a point of a face began the substep [m].
+  static Vec3 at_start(const Particles<Real>& p, const Triangle& face, const Vec3& weights) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c) sum += weights[to_axis(c)] * at(p.previous, face[c]);
+    return sum;
+  }
+  /// Where it would be if it had gone with the surface at `now` [m].
+  Vec3 carried(const Vec3& start, const Vec3& now) const {
+    if (!deforming_) return point(motion_(vec3t<double>(start)));
+    const Vec3 x = deforming_->local(now);
+    const PlaceMotion motion = deforming_->motion_of(deforming_->after().nearest(x), x);
+    return deforming_->world(motion(deforming_->local_before(start)));
+  }
+
+  /// The force of the last substep, which held the face at this place.
+  Vec3 turned(const Held& held, const Vec3& place) const {
+    if (deforming_)
+      return deforming_->turned(
+          deforming_->before().nearest(deforming_->local_before(place)).triangle, held.force);
+    if (!motion_.moves) return held.force;
+    const Vec3T<double> f = vec3t<double>(held.force);
     return {dot(motion_.turn[0], f), dot(motion_.turn[1], f), dot(motion_.turn[2], f)};
   }
 
@@ -272,18 +299,16 @@ class FaceContactPass final : public Pass<Real> {
             Held& held) const {
     const Vec3& weights = out.point.weights;
     double own = 0, of_held = 0;  // 1/kg
-    Vec3 previous = Vec3::Zero();
     for (std::size_t c = 0; c < 3; ++c) {
       const double w = static_cast<double>(p.w[index(face[c])]), b = weights[to_axis(c)];
       own += w * b * b;
       of_held += w * b * held.weights[to_axis(c)];
-      previous += b * at(p.previous, face[c]);
     }
     if (own == 0) return;  // all that could move it are pins
     TouchingVertex contact;
     contact.normal = out.normal;
     contact.offset = out.normal.dot(out.point.position) + out.length;
-    contact.from = point(motion_(vec3t<double>(previous)));
+    contact.from = carried(at_start(p, face, weights), out.point.position);
     contact.friction = collider_.friction;
     Vec3 free = out.point.position - dt * dt * of_held * held.force;
     ContactForce force;
@@ -298,16 +323,15 @@ class FaceContactPass final : public Pass<Real> {
 
   void push(Particles<Real>& p, const Triangle& face, const Separation& out) const {
     double sum = 0;
-    Vec3 previous = Vec3::Zero();
     for (std::size_t c = 0; c < 3; ++c) {
       const double b = out.point.weights[static_cast<Eigen::Index>(c)];
       sum += static_cast<double>(p.w[index(face[c])]) * b * b;
-      previous += b * at(p.previous, face[c]);
     }
     if (sum == 0) return;  // all that could move it are pins
     Vec3 correction = out.length * out.normal;
     if (collider_.friction > 0) {
-      Vec3 slip = out.point.position + correction - point(motion_(vec3t<double>(previous)));
+      const Vec3 start = at_start(p, face, out.point.weights);
+      Vec3 slip = out.point.position + correction - carried(start, out.point.position);
       slip -= out.normal.dot(slip) * out.normal;
       const double length = slip.norm(), most = collider_.friction * out.length;
       correction -= length <= most ? slip : Vec3(most / length * slip);
@@ -339,6 +363,7 @@ class FaceContactPass final : public Pass<Real> {
   std::optional<BodyFeatures> features_;  ///< of a body of triangles
   Eigen::Matrix3d to_body_ = Eigen::Matrix3d::Identity();
   RigidMotion<double> motion_;
+  std::optional<DeformingBody> deforming_;  ///< a collider that does
 };
 
 }  // namespace taut

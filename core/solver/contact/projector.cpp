@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/solver/contact/deforming_projector.hpp"
 #include "core/solver/contact/mesh_surface.hpp"
 #include "core/solver/simd/collide_impl.hpp"
 
@@ -224,6 +225,8 @@ std::unique_ptr<Projector<Real>> make_projector(const Collider& collider, double
   if (std::holds_alternative<Capsule>(collider.shape))
     return std::make_unique<ProjectorOf<Real, CapsuleSurface>>(
         collider, thickness, continuous ? kernel.capsule_continuous : kernel.capsule);
+  if (collider.frames)
+    return std::make_unique<DeformingProjector<Real>>(collider, thickness, continuous);
   if (std::holds_alternative<MeshBody>(collider.shape))
     return std::make_unique<MeshProjector<Real>>(collider, thickness, continuous);
   return std::make_unique<ProjectorOf<Real, BoxSurface>>(

@@ -7,7 +7,8 @@
 //           R"("name": "mine", "version": "1.0", "params": {"iterations":
 //              {"type": "integer", "min": 1, "max": 1000, "default": 8, "doc": "Sweeps"}})";
 //       // Optional: scenes with elastic links, bending and capsules are given to it, too; with
-//       // "taut-solver/3" also those with bodies of triangles.
+//       // "taut-solver/3" also those with bodies of triangles, with "taut-solver/4" also those
+//       // whose bodies deform.
 //       static constexpr const char* kProtocol = "taut-solver/2";
 //       // Why the scene would be misread; empty: it is not.
 //       static std::vector<std::string> cannot(const Json& scene, const Json& params);

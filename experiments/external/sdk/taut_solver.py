@@ -12,7 +12,7 @@
 
 Optional: protocol = "taut-solver/2", if the solver reads the scene's stiffness and bending and knows capsules: it is
 then given scenes with elastic links, bending stiffness and capsules, too; "taut-solver/3", if it knows bodies of
-triangles as well; summary, source; unmeasurable = "it computes on a GPU" (then no cost is published);
+triangles as well, "taut-solver/4", if bodies that deform; summary, source; unmeasurable = "it computes on a GPU" (then no cost is published);
 cannot(scene, params), a static method that gives the reasons why the scene would be misread; plan(), a
 list of {"pass", "items", "repeats", "bytes", "projections"}; settings(), a dict of texts.
 Standard output belongs to the protocol: print() goes to standard error here. MIT licence, as taut.

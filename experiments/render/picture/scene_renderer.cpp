@@ -123,7 +123,7 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Recor
     const auto at_cloth = widened(box_around(cloth_points(runs, {t}, false)), 0.1 * extent(scene));
     for (const Collider& collider : scene.colliders) {
       const std::vector<Vec3> solid = collider_points(collider, t);
-      if (collider.motion.at_rest() || at_cloth.intersects(box_around(solid)))
+      if (collider.at_rest() || at_cloth.intersects(box_around(solid)))
         points.insert(points.end(), solid.begin(), solid.end());
     }
   }

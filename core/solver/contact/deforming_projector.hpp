@@ -1,0 +1,87 @@
+#pragma once
+
+#include <vector>
+
+#include "core/solver/contact/deforming_contact.hpp"
+#include "core/solver/contact/projector.hpp"
+#include "core/solver/simd/collide_impl.hpp"
+
+namespace taut {
+
+/// Puts particles out of a body that deforms, one after the other.
+template <class Real>
+class DeformingProjector final : public Projector<Real> {
+ public:
+  DeformingProjector(const Collider& collider, double thickness, bool continuous)
+      : contact_(collider, thickness), continuous_(continuous) {}
+
+  void begin(double t, double dt) override {
+    if (queued_in_) queued_in_->finish();  // what is queued reads the body of the last substep
+    contact_.begin(t, dt);
+  }
+
+  void project(const ParticleSpan<Real>& span, std::size_t blocks,
+               ThreadPool& pool) const override {
+    queued_in_ = &pool;
+    seen_.resize(span.parts() * (span.sheet.lanes > 1 ? span.sheet.stride : kLanes));
+    pool.queue(
+        blocks,
+        [this, span](std::size_t begin, std::size_t end) {
+          with_lanes<Real, Real, Real>(span, [&](Real, auto of_layout) {
+            constexpr int lanes = of_layout;
+            const auto one = [&](std::size_t place, bool present) {
+              if (!present) return;
+              const auto x = load_vec3<Real, lanes>(span.x + place);
+              const auto previous = load_vec3<Real, lanes>(span.previous + place);
+              Vec3 at = point(x).template cast<double>();
+              Seen& seen = seen_[lanes == kPackedLanes ? place / 4 : place];
+              if (moved_out(at, point(previous).template cast<double>(), seen))
+                store_vec3<Real, lanes>(span.x + place, vec3t<Real>(at));
+            };
+            visit_particles<Real, lanes>(span, span.part_of_block(begin), span.part_of_block(end),
+                                         one);
+          });
+        },
+        span.particles >= ThreadPool::kWorthSharing);
+  }
+
+ private:
+  /// How far from the surface a particle was in the body's frame, and how far the surface had
+  /// drifted by then: it is so far away at least, less what both have moved since.
+  struct Seen {
+    Vec3 at = Vec3::Zero();
+    double distance = 0, drift = 0;  ///< m; distance 0: nothing is known
+  };
+
+  bool moved_out(Vec3& x, const Vec3& previous, Seen& seen) const {
+    const auto path = contact_.path(x, previous);
+    const double reach = contact_.reach(path, continuous_);
+    if (contact_.beyond_all(path, reach)) return false;
+    const double rounding = 1e-9 * contact_.body().after().reach();
+    const double since = (path.to - seen.at).norm() + contact_.drift() - seen.drift;
+    if (seen.distance - since > reach + rounding) return false;
+    const NearestPlace nearest = contact_.nearest(path);
+    seen = {path.to, nearest.distance, contact_.drift()};
+    const auto touch = contact_.touch(path, nearest, continuous_, false);
+    return touch && push(*touch, x);
+  }
+
+  /// Coulomb: against its slip by at most mu times its depth, and no more than the slip itself.
+  bool push(const DeformingContact::Touch& touch, Vec3& x) const {
+    const double depth = touch.offset + contact_.thickness() - touch.normal.dot(x);
+    if (!(depth > 0)) return false;
+    x += depth * touch.normal;
+    Vec3 slip = x - touch.from;
+    slip -= touch.normal.dot(slip) * touch.normal;
+    const double length = slip.norm(), most = contact_.friction() * depth;
+    x -= length <= most ? slip : Vec3(most / length * slip);
+    return true;
+  }
+
+  DeformingContact contact_;
+  bool continuous_;
+  mutable std::vector<Seen> seen_;  ///< by place
+  mutable ThreadPool* queued_in_ = nullptr;
+};
+
+}  // namespace taut
