@@ -10,6 +10,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/solver.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/metrics/reference.hpp"
 #include "tests/metrics/measured.hpp"

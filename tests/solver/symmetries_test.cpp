@@ -356,6 +356,8 @@ void compare(Scene scene, const std::string& solver, const Change& c) {
   if (!(far <= within)) return;
   for (const auto& [name, value] : was.record.values) {
     if (!sees_no(c, name)) continue;
+    // whether an edge that lies on one of a box passes through it is rounding's choice
+    if (within > 0 && name == "edge.passages") continue;
     const double now = is.record.value(name);
     const double want = value * factor(c, find_value(name).second->unit.si);
     if (std::isnan(want) && std::isnan(now)) continue;
