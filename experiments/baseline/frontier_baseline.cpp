@@ -1,6 +1,8 @@
 #include "experiments/baseline/frontier_baseline.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
@@ -27,6 +29,28 @@ std::optional<std::vector<Difference>> changes_of_frontiers(const Answer& now,
   const Answer before = answer_from_json(read_text(file), file.string());
   return differences(before.table("parameters"), now.table("parameters"), {"solver", "parameter"},
                      {"lacks", "symptom", "at_start", "from", "to", "good", "bad"}, kBracket);
+}
+
+FrontierCheck check_frontiers(const Answer& now, const std::string& solver, const fs::path& folder,
+                              bool update) {
+  const fs::path file = frontier_baseline(folder, solver);
+  if (update) {
+    keep_frontiers(now, file);
+    return {.news = file.string(), .changes = {}};
+  }
+  auto changes = changes_of_frontiers(now, file);
+  if (!changes)
+    return {
+        .end = CheckEnd::nothing, .news = solver + ": no baseline " + file.string(), .changes = {}};
+  FrontierCheck found{.news = std::to_string(now.table("parameters").rows.size()) +
+                              " frontiers compared with " + file.string() + ": " +
+                              std::to_string(changes->size()) + " differ",
+                      .changes = std::move(*changes)};
+  if (std::ranges::any_of(found.changes, &Difference::moved))
+    found.end = CheckEnd::moved;
+  else if (!found.changes.empty())
+    found.end = CheckEnd::nothing;
+  return found;
 }
 
 Table commands_of(const std::vector<ParameterFrontier>& found) {

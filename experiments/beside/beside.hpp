@@ -73,15 +73,17 @@ inline double iteration(const std::function<void()>& few, const std::function<vo
   return 1e9 * (least_many - least_few) / (kMany - kFew) / (Net::kSide * Net::kSide);
 }
 
-/// Answers each line of standard input with a measurement, until it ends: whoever asks takes turns.
+/// Answers each line of standard input with a measurement of a net that starts from rest, until it
+/// ends: whoever asks takes turns.
 /// `Sheet(net).step(iterations)` is a step of the code that is measured; `lowest()` [m] is how far
 /// down it is, which shows that it simulates the net.
 template <class Sheet>
 int serve() {
   const Net net;
-  Sheet few(net), many(net);
   for (int c; (c = std::getchar()) != EOF;) {
     if (c != '\n') continue;
+    Sheet few(net);
+    Sheet many(net);
     const double each = iteration([&] { few.step(kFew); }, [&] { many.step(kMany); });
     std::printf("%.17g %.17g\n", each, many.lowest());
     std::fflush(stdout);

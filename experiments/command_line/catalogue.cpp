@@ -132,13 +132,8 @@ void list_record(Answer& all) {
 void list_answers(Answer& all) {
   Table table{"answers", "answers of verbs", {{"verb"}, {"table"}, {"columns", "names"}}};
   for (const VerbEntry* verb : verbs())
-    for (const std::string& part : parts_of(verb->answer, ';')) {
-      const std::string text = part.substr(part.find_first_not_of(' '));
-      const std::size_t colon = text.find(": ");
-      const bool facts = colon == std::string::npos;
-      table.rows.push_back({verb->name, facts ? "facts" : text.substr(0, colon),
-                            facts ? text : text.substr(colon + 2)});
-    }
+    for (const AnswerPart& part : verb->answer)
+      table.rows.push_back({verb->name, part.of, part.names});
   all.add(std::move(table));
 }
 

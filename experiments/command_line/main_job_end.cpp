@@ -15,8 +15,21 @@
 
 namespace taut {
 
+namespace {
+
 void tell_part(int part, const std::string& what) {
   progress() << "part " << part << " of 6: " << what << '\n';
+}
+
+}  // namespace
+
+void tell_main_job(const std::vector<StudyCases>& studies) {
+  std::size_t all = 0;
+  for (const StudyCases& study : studies) all += study.cases.size();
+  progress() << "the main job: " << all << " cases of " << studies.size()
+             << " studies, then their costs, closed forms, baselines and films; about five minutes "
+                "on two idle cores, and it may be interrupted\n";
+  tell_part(1, "cases of the studies");
 }
 
 std::string end_main_job(const MainJob& job, const MainJobEnd& options) {

@@ -1,13 +1,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "experiments/results/session.hpp"
 #include "experiments/study/main_job.hpp"
 
 namespace taut {
 
-/// One of the main job's six parts on stderr, the first of them the cases.
-void tell_part(int part, const std::string& what);
+/// What the main job will do, on stderr, and that its first part begins.
+void tell_main_job(const std::vector<StudyCases>&);
 
 struct MainJobEnd {
   std::string preset, results;

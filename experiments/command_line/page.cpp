@@ -117,12 +117,15 @@ report::ReportInput input_of(PageRequest options) {
     throw InputError(options.studies[0] + ": no results folder to compare with " +
                      options.studies[1]);
   const std::string command = command_of(options);
+  std::vector<OtherScene> shown;
+  for (const std::string& scene : options.films) shown.push_back({scene});
+  if (options.studies.empty() && shown.empty())
+    for (const std::string& scene : shipped("scenes")) shown.push_back({scene, true});
   std::vector<std::string> maps = options.studies;
   if (options.studies.empty()) {
     const MainJob job = main_job();
     options.studies = job.studies;
     maps = job.maps;
-    if (options.films.empty()) options.films = shipped("scenes");
     if (options.preset.empty()) options.preset = job.preset;
   }
   if (!options.output.empty()) test_writable(options.output);
@@ -154,11 +157,12 @@ report::ReportInput input_of(PageRequest options) {
   if (options.preset.empty()) input.provenance.pop_back();
   add_findings(input, store, program);
   if (!options.model && options.media) {
-    std::set<std::string> scenes(options.films.begin(), options.films.end());
+    std::set<std::string> scenes;
+    for (const OtherScene& other : shown) scenes.insert(other.name);
     for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
     std::size_t filmed = 0;
-    const Countdown countdown("filmed scene");
-    film_scenes(input, options.films, std::filesystem::path(options.results) / "films",
+    const Countdown countdown("pictured scene");
+    film_scenes(input, shown, std::filesystem::path(options.results) / "films",
                 [&](const std::string& news) {
                   progress() << news << '\n';
                   countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());

@@ -35,6 +35,12 @@ enum ExitCode : int {
 /// Under what heading `taut --help` shows a verb, in this order.
 enum class VerbGroup { studies, one_case, cost, trust, extremes };
 
+/// Names in an answer: of its facts (`of` is "facts"), or of the columns of a table.
+struct AnswerPart {
+  std::string_view of;
+  std::string_view names;  ///< "cases ran"; "*": names that depend on what was asked for
+};
+
 /// How `taut VERB` introduces itself: one per file in experiments/cli, found by its TAUT_VERB
 /// line.
 struct VerbEntry {
@@ -42,9 +48,8 @@ struct VerbEntry {
   VerbGroup group = VerbGroup::studies;
   std::string_view summary;  ///< one line
   std::string_view example;  ///< one or more full command lines, shown below --help
-  /// What --json has, by name: its facts, then each table with its columns, "cases ran; probes:
-  /// value status". "*": names that depend on what was asked for. "": no answer (answer.hpp).
-  std::string_view answer;
+  /// What --json has; empty: no answer (answer.hpp).
+  std::vector<AnswerPart> answer;
   /// Adds options to the verb's parser and returns what to do once they are parsed. It may throw
   /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr. nullptr: it has
   /// verbs and does nothing by itself.

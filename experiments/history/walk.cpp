@@ -335,10 +335,9 @@ class Walker {
   bool choose_cost(const Build& last) {
     const TwoBuilds* most = nullptr;
     const std::vector<TwoBuilds> found = time(0, line_[0], 1, last);
-    const bool wall = asked_.bisect.starts_with("wall");
     for (const TwoBuilds& one : found) {
-      if (!one.failure.empty() ||
-          !(wall ? beyond_both(one.wall, one.wall_control) : beyond_both(one.cpu, one.cpu_control)))
+      if (!one.failure.empty() || !(of_wall() ? beyond_both(one.wall, one.wall_control)
+                                              : beyond_both(one.cpu, one.cpu_control)))
         continue;
       if (!most || std::abs(cost_of(one)) > std::abs(cost_of(*most))) most = &one;
     }
@@ -348,9 +347,10 @@ class Walker {
     if (of_solver()) only_ = timed_;
     return true;
   }
+  bool of_wall() const { return asked_.bisect == "wall.per_step"; }
   /// Logarithm of what a build costs over the first one.
   double cost_of(const TwoBuilds& one) const {
-    return std::log((asked_.bisect.starts_with("wall") ? one.wall : one.cpu).mid);
+    return std::log((of_wall() ? one.wall : one.cpu).mid);
   }
 
   /// Whether a commit is no longer as the first one: its value beyond the tolerance, its cost more

@@ -53,30 +53,32 @@ class Builder {
   Json build() {
     Json winners = json_of_winners(input_, refs_);
     const Answer answer = answer_of(input_, compared_, refs_);
+    std::vector<Chart> charts;
+    for (const QuotedScene& quoted : compared_.scenes)
+      std::ranges::move(scene_charts(input_, quoted.question.scene), std::back_inserter(charts));
+    for (const Figure& figure : figures_of(charts)) add_figure(drawn_, "scenes", figure, refs_);
     Json scenes = Json::array();
     for (const QuotedScene& quoted : compared_.scenes) scenes.push_back(scene(quoted));
     for (const SceneMedia& media : input_.media)
       if (!compared_.quoted(media.scene)) scenes.push_back(filmed_scene(media));
     Json cost, differences;
-    if (input_.bench) cost = json_of_cost(input_, refs_, charts_, tables_);
+    if (input_.bench) cost = json_of_cost(input_, refs_, drawn_, tables_);
     if (input_.differences) differences = json_of(*input_.differences, refs_, tables_);
-    Json steps = json_of_steps(input_, refs_, charts_, tables_);
+    Json steps = json_of_steps(input_, refs_, drawn_, tables_);
     Json limits = json_of_limits(input_, refs_, tables_);
     Json history = json_of_history(input_, refs_);
     Json method = this->method();
     Json cases = this->cases();
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
-    Json model{{"schema", "taut-report/6"},
-               {"meta", meta(cases.size())},
-               {"solvers", solvers()},
-               {"statuses", statuses()},
-               {"metrics", metrics()}};
+    Json model{{"schema", "taut-report/7"}, {"meta", meta(cases.size())}, {"solvers", solvers()},
+               {"statuses", statuses()},    {"shades", shades()},         {"metrics", metrics()}};
     add_if(model, "winners", std::move(winners));
     model["answer"] = parse_json(to_json(answer));
     for (const auto& [term, meaning] : terms_of(quoted_and_timed(), input_.vectors))
       model["terms"].push_back({{"term", term}, {"meaning", meaning}});
     add_if(model, "scenes", std::move(scenes));
-    add_if(model, "charts", std::move(charts_));
+    add_if(model, "charts", std::move(drawn_.charts));
+    add_if(model, "figures", std::move(drawn_.figures));
     add_if(model, "maps", std::move(maps_));
     add_if(model, "films", std::move(films_));
     add_if(model, "steps", std::move(steps));
@@ -232,6 +234,14 @@ class Builder {
     return all;
   }
 
+  Json shades() const {
+    Json all;
+    for (const StretchShade& shade : stretch_shades())
+      all.push_back(
+          {{"end", json_number(shade.end)}, {"share", shade.share}, {"text", shade.text}});
+    return all;
+  }
+
   Json metrics() const {
     Json all = Json::object();
     for (const auto& [name, q] : refs_.quantities())
@@ -253,8 +263,8 @@ class Builder {
       if (info.name == name) one["summary"] = info.summary;
     for (const SceneMedia& media : input_.media)
       if (media.scene == name) add_media(one, media);
-    for (const Chart& chart : scene_charts(input_, name))
-      add_by_id(one, "charts", json_of(chart, refs_), charts_);
+    for (const Json& chart : drawn_.charts)
+      if (chart["scene"] == name) one["charts"].push_back(chart["id"]);
     if (!one.contains("film")) add_series(one, name);
     std::map<std::string, int> names;
     for (const StatusMap& map : scene_maps(input_, name)) {
@@ -320,7 +330,7 @@ class Builder {
     }
     for (auto& [value, chart] : charts) {
       add_floor(chart);
-      add_by_id(scene, "charts", json_of(chart, refs_), charts_);
+      add_by_id(scene, "charts", json_of(chart, refs_), drawn_.charts);
     }
   }
 
@@ -369,7 +379,8 @@ class Builder {
   const ReportInput& input_;
   ComparedSolvers compared_;
   CaseList refs_;
-  Json charts_, maps_, films_;
+  DrawnCharts drawn_;
+  Json maps_, films_;
   Answer tables_{"report", ""};
   std::map<std::string, std::string> film_of_;  ///< by short key of the case
   std::size_t budget_ = 6'000'000;              ///< bytes of pictures in a page

@@ -5,6 +5,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/study/study.hpp"
 
 namespace taut {
@@ -135,6 +136,18 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
         });
     });
   if (!wrong.empty()) throw InputError(wrong);
+}
+
+Study at_time_steps(Study study, const std::vector<std::string>& steps) {
+  if (steps.empty()) return study;
+  const auto is_step = [](const std::string& setting) { return setting.starts_with("time.dt="); };
+  std::erase_if(study.settings, is_step);
+  std::erase_if(study.axes, [](const StudyAxis& axis) { return axis.name == "time.dt"; });
+  StudyAxis axis{.name = "time.dt", .values = {}};
+  for (const std::string& step : steps) axis.values.push_back('"' + step + '"');
+  study.axes.insert(study.axes.begin(), std::move(axis));
+  study.name += " dt=" + join(steps, ",");
+  return study;
 }
 
 Study of_build(Study study, const std::string& build) {

@@ -113,6 +113,10 @@ struct StudyScene {
 /// Throws InputError if what follows the colon is no list of key=value, each key once.
 StudyScene parse_scene(const std::string& text);
 
+/// The study at these time steps ("1/64") in place of its own, under a name that says so: its own
+/// results stay as planned. Without any it is as it was.
+Study at_time_steps(Study, const std::vector<std::string>& steps);
+
 /// The study with its external programs called a build of this name ("": as they are): their
 /// results are addressed by it, in place of what is known of their files. Throws InputError as
 /// parse_solver() does.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/system/distinct.hpp"
@@ -31,6 +33,14 @@ Cell cell(const Record& record, const std::string& value) {
 }
 
 }  // namespace
+
+std::string ends_of(const std::vector<Record>& records) {
+  std::map<Status::Kind, std::size_t> ends;
+  for (const Record& r : records) ++ends[r.status.kind];
+  return std::to_string(records.size()) + " cases: " + join(ends, ", ", [](const auto& end) {
+           return std::string(to_string(end.first)) + " " + std::to_string(end.second);
+         });
+}
 
 Table table_of(const Study& study, const Store& store, const std::string& value,
                const std::string& name) {

@@ -21,11 +21,12 @@ constexpr double kLongestBuild = 600, kLongestAnswer = 120;  // s
 /// Public code of a method that we have, too.
 struct PublicCode {
   std::string_view name, adapter;
-  std::string_view mark;      ///< a file of its checkout that no other one has
-  std::string_view includes;  ///< folders of the checkout, "a|b"; "." is itself
-  std::string_view sources;   ///< files of the checkout that the adapter needs, "a|b"
-  std::string_view ours;      ///< our solver of the method, at the same stiffness
-  std::string_view differs;   ///< what it does differently
+  std::string_view mark;        ///< a file of its checkout that no other one has
+  std::string_view includes;    ///< folders of the checkout, "a|b"; "." is itself
+  std::string_view sources;     ///< files of the checkout that the adapter needs, "a|b"
+  std::string_view ours;        ///< our solver of the method, at the same stiffness
+  std::string_view differs;     ///< what it does differently
+  std::string_view flags = "";  ///< of the compiler, beside those of all, "a|b"
 };
 
 constexpr PublicCode kKnown[] = {
@@ -45,7 +46,20 @@ constexpr PublicCode kKnown[] = {
      "PositionBasedDynamics/MathFunctions.cpp",
      "xpbd:substeps=1,precision=float,structural=0.0001,shear=0.0001",
      "float, its projection called link after link in their order; without its own controller, "
-     "which adds virtual calls"}};
+     "which adds virtual calls"},
+    {"avbd-demo3d", "avbd_demo3d.cpp", "source/manifold.cpp", "source",
+     "source/collide.cpp|source/force.cpp|source/joint.cpp|source/manifold.cpp|source/rigid.cpp|"
+     "source/sim_world.cpp|source/solver.cpp|source/spring.cpp",
+     "avbd:substeps=1,precision=float",
+     "float, rigid bodies that turn: six unknowns each; lists of pointers and virtual calls; its "
+     "springs have no multiplier"},
+    {"admm-elastic", "admm_elastic.cpp", "src/SpringEnergyTerm.hpp",
+     "src|deps/mclscene/include|deps/mcloptlib/include", "src/Solver.cpp|src/ExplicitForce.cpp",
+     "admm:substeps=1,precision=double",
+     "double, a virtual call and allocations for each term; one factor of x, y and z "
+     "together, "
+     "three times as large; links and stiff pins are terms of ours",
+     "-fopenmp"}};
 
 const PublicCode& known(const std::filesystem::path& checkout) {
   for (const PublicCode& one : kKnown)
@@ -92,6 +106,7 @@ void build(const PublicCode& code, const std::filesystem::path& checkout,
                                  "-I" + (data / "beside" / "linux").string(),
                                  "-isystem",
                                  "/usr/include/eigen3"};
+  for (const std::string& flag : parts_of(code.flags)) words.push_back(flag);
   for (const std::string& folder : parts_of(code.includes))
     words.push_back("-I" + (checkout / folder).string());
   words.push_back((data / "beside" / code.adapter).string());

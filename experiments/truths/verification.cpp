@@ -141,6 +141,29 @@ CheckedTruth::CheckedTruth(const TruthEntry& truth, std::vector<Finding> found, 
       seconds(used),
       findings(std::move(found)) {}
 
+VerdictCounts verdicts_of(const std::vector<CheckedTruth>& truths) {
+  VerdictCounts counts{.truths = truths.size()};
+  for (const CheckedTruth& truth : truths) {
+    bool broken = false;
+    for (const Finding& f : truth.findings) {
+      ++counts.of[static_cast<std::size_t>(f.verdict)];
+      ++counts.findings;
+      broken = broken || f.verdict == TruthVerdict::broken;
+    }
+    counts.broken_truths += broken;
+  }
+  return counts;
+}
+
+std::string VerdictCounts::text() const {
+  std::string all = std::to_string(truths) + " truths, " + std::to_string(findings) +
+                    " numbers: " + std::to_string(of[0]) + " passed, " + std::to_string(of[1]) +
+                    " deviate as explained, " + std::to_string(of[2]) + " not applicable, " +
+                    std::to_string(of[3]) + " broken";
+  if (broken_truths > 0) all += " in " + std::to_string(broken_truths) + " truths";
+  return all;
+}
+
 std::string place_of(const TruthEntry& truth) {
   return std::to_string(truth.section) + "." + std::to_string(truth.row);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,18 @@ struct Verification {
   std::vector<CheckedTruth> truths;
   std::vector<JudgedAssertion> assertions;
 };
+/// How many findings there are of each verdict.
+struct VerdictCounts {
+  std::size_t truths = 0, findings = 0, broken_truths = 0;
+  std::array<std::size_t, 4> of{};  ///< by TruthVerdict
+  std::size_t operator[](TruthVerdict verdict) const {
+    return of[static_cast<std::size_t>(verdict)];
+  }
+  /// "118 truths, 3420 numbers: 3301 passed, ..."
+  std::string text() const;
+};
+VerdictCounts verdicts_of(const std::vector<CheckedTruth>&);
+
 /// `assertions_first`: people see these, not the truths.
 Answer answer_of(const Verification&, bool assertions_first = false);
 /// Throws InputError: it is no such answer.

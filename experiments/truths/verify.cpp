@@ -12,6 +12,7 @@
 #include "experiments/system/files.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/system/run_all.hpp"
+#include "experiments/truths/assertions/assertions.hpp"
 
 namespace taut {
 
@@ -57,6 +58,10 @@ std::vector<const TruthEntry*> truths_in_order() {
   std::vector<const TruthEntry*> all(truths().begin(), truths().end());
   std::ranges::sort(all, {}, [](const TruthEntry* t) { return std::pair(t->section, t->row); });
   return all;
+}
+
+bool is_asserted(const TruthEntry& truth) {
+  return std::ranges::count(assertions(), truth.name, &Assertion::truth) > 0;
 }
 
 Verification verify(const VerifyRequest& request) {

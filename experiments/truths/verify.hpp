@@ -20,6 +20,8 @@ struct VerifyRequest {
 
 /// All truths, by section and row.
 std::vector<const TruthEntry*> truths_in_order();
+/// Whether an assertion of a publication rests on it.
+bool is_asserted(const TruthEntry&);
 
 /// Checks the truths and judges the assertions that rest on them. A truth whose process crashes,
 /// hangs or eats memory is broken. Throws InputError of a shipped scene that is missing.

@@ -102,6 +102,11 @@ TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
   EXPECT_EQ(media.rms_strain.size(), 2u);
   EXPECT_EQ(media.rms_strain[0].size(), media.t.size());
   EXPECT_EQ(media.mp4, render_media(scene, runs, quick()).mp4);
+  MediaOptions still = quick();
+  still.still = true;
+  const Media picture = render_media(scene, runs, still);
+  EXPECT_EQ(picture.mp4, "");
+  EXPECT_EQ(picture.poster, media.poster);
   // the cloth moves all the time: each frame is another picture
   std::ofstream(folder_ / "film.mp4", std::ios::binary) << media.mp4;
   std::istringstream frames(output_of("ffmpeg -v error -i " + (folder_ / "film.mp4").string() +
@@ -273,11 +278,11 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   const double size = extent(*make_case({small, {}, "jakobsen"}).scene);
   /// Half a second to cross its own size; at the limit, and just above it.
   const std::pair<double, double> thrown[] = {{4, 0.5}, {2, 1}, {4.01, 0.25}, {8.01, 0.125}};
-  std::vector<std::string> others;
+  std::vector<OtherScene> others;
   for (const auto& [speed, expected] : thrown) {
-    others.push_back((scratch.path() / ("thrown" + shortest(speed) + ".toml")).string());
-    write_file(others.back(), cloth + "velocity = [0, 0, " + shortest(speed * size) +
-                                  "]\n[time]\ndt = \"1/16\"\nduration = 4\n");
+    others.push_back({(scratch.path() / ("thrown" + shortest(speed) + ".toml")).string()});
+    write_file(others.back().name, cloth + "velocity = [0, 0, " + shortest(speed * size) +
+                                       "]\n[time]\ndt = \"1/16\"\nduration = 4\n");
   }
   report::ReportInput input;
   input.studies = {{"one", "?", {}, 0, {}}};

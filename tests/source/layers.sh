@@ -50,7 +50,7 @@ owners='
 BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/(.*\.cpp|bullet_solver\.hpp)
 pybind11/|Python.h      | ^experiments/python/.*
 toml\+\+                | ^core/io/document\.cpp
-Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp
+Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp|^tests/beside/stubs/
 nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
 SQLiteCpp/|sqlite3      | ^experiments/results/database\.[ch]pp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp

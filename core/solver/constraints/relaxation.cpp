@@ -45,14 +45,11 @@ class GaussSeidelPass final : public Pass<Real> {
     for (const DistanceConstraint<Real>& c : constraints_) {
       Real* const a = x + 4 * c.a;
       Real* const b = x + 4 * c.b;
-      Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+      Vec3T<Real> x1 = point_at(a);
+      Vec3T<Real> x2 = point_at(b);
       project_distance<kind>(x1, x2, c.rest, c.share_a, c.share_b);
-      a[0] = x1.x;
-      a[1] = x1.y;
-      a[2] = x1.z;
-      b[0] = x2.x;
-      b[1] = x2.y;
-      b[2] = x2.z;
+      put_point(a, x1);
+      put_point(b, x2);
     }
   }
 
@@ -82,16 +79,13 @@ class CompliantGaussSeidelPass final : public Pass<Real> {
       const CompliantConstraint<Real>& c = constraints_[i];
       Real* const a = x + 4 * c.a;
       Real* const b = x + 4 * c.b;
-      Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+      Vec3T<Real> x1 = point_at(a);
+      Vec3T<Real> x2 = point_at(b);
       move_ends(x1, x2, c.share_a, c.share_b, [&](Real length2) {
         return compliant_excess(length2, c.rest, c.share, multipliers_[i]);
       });
-      a[0] = x1.x;
-      a[1] = x1.y;
-      a[2] = x1.z;
-      b[0] = x2.x;
-      b[1] = x2.y;
-      b[2] = x2.z;
+      put_point(a, x1);
+      put_point(b, x2);
     }
   }
 

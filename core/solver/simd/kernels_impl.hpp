@@ -245,14 +245,11 @@ template <class T, bool equal, class Real, class Number, class Shares, class Exc
                                                  const Shares& shares, const Excess& excess_of) {
   if constexpr (kWidth<T> == 1) {
     Real *a = particle(x, batch.a[g]), *b = particle(x, batch.b[g]);
-    Vec3T<Real> x1{a[0], a[1], a[2]}, x2{b[0], b[1], b[2]};
+    Vec3T<Real> x1 = point_at<Real>(a);
+    Vec3T<Real> x2 = point_at<Real>(b);
     move_ends(x1, x2, shares(g), shares(kLanes + g), excess_of);
-    a[0] = x1.x;
-    a[1] = x1.y;
-    a[2] = x1.z;
-    b[0] = x2.x;
-    b[1] = x2.y;
-    b[2] = x2.z;
+    put_point(a, x1);
+    put_point(b, x2);
     return;
   } else {
     T x1[4], x2[4], delta[4], squared[4];

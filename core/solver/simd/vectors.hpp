@@ -13,6 +13,18 @@ struct Vec3T {
   T x, y, z;
 };
 
+/// The point of three numbers that stand one after the other.
+template <class T>
+[[gnu::always_inline]] inline Vec3T<T> point_at(const T* at) {
+  return {at[0], at[1], at[2]};
+}
+template <class T>
+[[gnu::always_inline]] inline void put_point(T* at, const Vec3T<T>& p) {
+  at[0] = p.x;
+  at[1] = p.y;
+  at[2] = p.z;
+}
+
 template <class T>
 [[gnu::always_inline]] inline Vec3T<T> operator+(const Vec3T<T>& a, const Vec3T<T>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};

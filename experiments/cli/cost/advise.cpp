@@ -141,15 +141,15 @@ TAUT_VERB(advise) = {
         "  taut advise --study trade --preset quick\n"
         "Exit: 0 found; 3 found, solvers not searched; 4 not reached; 6 the best does not repeat "
         "bit for bit",
-    .answer =
-        "best error cost again control same_bits confirmed certainty command searched seconds "
-        "patience complete file cheapest cheapest_cost nearest quick_cost; "
-        "solvers: solver setting error cost times peak_bytes note; "
-        "kept: value limit best; "
-        "without: effect share cost fits; "
-        "refused: setting why; "
-        "not_done: solver what; "
-        "tried: setting error quick_cost refused; "
-        "searched: scene solver tried cpu cut_off; "
-        "missing: why",
+    .answer = {{"facts",
+                "best error cost again control same_bits confirmed certainty command searched "
+                "seconds patience complete file cheapest cheapest_cost nearest quick_cost"},
+               {"solvers", "solver setting error cost times peak_bytes note"},
+               {"kept", "value limit best"},
+               {"without", "effect share cost fits"},
+               {"refused", "setting why"},
+               {"not_done", "solver what"},
+               {"tried", "setting error quick_cost refused"},
+               {"searched", "scene solver tried cpu cut_off"},
+               {"missing", "why"}},
     .bind = taut::bind_verb<taut::verb::advise::add_options, taut::verb::advise::run>};

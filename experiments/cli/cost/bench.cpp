@@ -157,12 +157,12 @@ TAUT_VERB(bench) = {
         "regression "
         "--against before\n  taut bench effects\n  taut bench scaling\n  "
         "taut bench --beside ../ShapeOp",
-    .answer =
-        "machine host build times; "
-        "scenes: scene control verdict; "
-        "recommended: scene target solver setting error cost times answer; "
-        "cases: scene case solver cost cpu wall peak_bytes error status times verdict remark; "
-        "samples: scene case round cpu wall; "
-        "iterations: code each sweeps differs; "
-        "against: case ratio control verdict wall wall_control",
+    .answer = {{"facts", "machine host build times"},
+               {"scenes", "scene control verdict"},
+               {"recommended", "scene target solver setting error cost times answer"},
+               {"cases",
+                "scene case solver cost cpu wall peak_bytes error status times verdict remark"},
+               {"samples", "scene case round cpu wall"},
+               {"iterations", "code each sweeps differs"},
+               {"against", "case ratio control verdict wall wall_control"}},
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};

@@ -125,8 +125,8 @@ TAUT_VERB(bench_effects) = {
     .example =
         "taut bench effects\n  taut bench effects ball box --sizes 64,128\n  "
         "taut bench effects hang --copies 16",
-    .answer =
-        "effects_N: scene effects vertices cost times_hang times_hang_per_second times_links_alone "
-        "times_hang_touching_nothing times_one_copy; "
-        "samples: scene side what value",
+    .answer = {{"effects_N",
+                "scene effects vertices cost times_hang times_hang_per_second times_links_alone "
+                "times_hang_touching_nothing times_one_copy"},
+               {"samples", "scene side what value"}},
     .bind = taut::bind_verb<taut::verb::effects::add_options, taut::verb::effects::run>};

@@ -54,10 +54,10 @@ TAUT_VERB(scaling) = {
     .example =
         "taut bench scaling\n  taut bench scaling --error 0.5%\n  taut bench scaling --preset "
         "quick --limit 5\n  taut plot scaling --preset quick",
-    .answer =
-        "sizes: setting vertices run cpu wall cpu_per_vertex stretch.rms plan_bytes_per_vertex "
-        "peak_bytes status; "
-        "exponents: setting cpu wall memory; "
-        "skipped: setting why; "
-        "samples: setting vertices cpu wall",
+    .answer = {{"sizes",
+                "setting vertices run cpu wall cpu_per_vertex stretch.rms plan_bytes_per_vertex "
+                "peak_bytes status"},
+               {"exponents", "setting cpu wall memory"},
+               {"skipped", "setting why"},
+               {"samples", "setting vertices cpu wall"}},
     .bind = taut::bind_verb<taut::verb::scaling::add_options, taut::verb::scaling::run>};

@@ -85,10 +85,10 @@ TAUT_VERB(converge) = {
     .group = VerbGroup::cost,
     .summary = "Error over iterations inside one step, against the exact step",
     .example = "taut converge chain --solver jakobsen --solver admm --at 0.5 -o figures",
-    .answer =
-        "scene settings at from dt picture; "
-        "points: solver iterations residual stretch gap distance cpu; "
-        "solvers: solver structural shear bend contraction floor moved exact_residual exact; "
-        "reached: solver below iterations cpu; "
-        "unsupported: solver why",
+    .answer = {{"facts", "scene settings at from dt picture"},
+               {"points", "solver iterations residual stretch gap distance cpu"},
+               {"solvers",
+                "solver structural shear bend contraction floor moved exact_residual exact"},
+               {"reached", "solver below iterations cpu"},
+               {"unsupported", "solver why"}},
     .bind = taut::bind_verb<taut::verb::convergence::add_options, taut::verb::convergence::run>};

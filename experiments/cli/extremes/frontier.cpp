@@ -43,21 +43,17 @@ FrontierQuestion question_of(const Options& options, const std::string& solver) 
   return question;
 }
 
-/// Both ends of one solver; the second search finds most of its cases stored.
 BothFrontiers find(const FrontierQuestion& question, const std::vector<KeptAnswer>& limits,
                    const Options& options, Store& store) {
   store.begin_session("taut frontier " + make_case(question.at(question.range.from)).id);
-  Progress progress;
-  const CampaignOptions how{.jobs = options.jobs,
-                            .progress = [&](const CampaignProgress& t, const Record* record) {
-                              if (record) progress.show(t, record);
-                            }};
-  BothFrontiers found{.stable = find_frontier(question, store, how), .acceptable = {}};
-  if (found.stable.frontier.kind == Frontier::Kind::not_answered) return found;
-  found.acceptable = find_frontier(question, store, how, [&](const Case&, const Record& record) {
-    return completed(record.status) ? beyond(record, limits) : describe(record.status);
-  });
-  return found;
+  Progress shown;
+  return find_both(question, store,
+                   {.jobs = options.jobs,
+                    .progress =
+                        [&](const CampaignProgress& campaign, const Record* record) {
+                          if (record) shown.show(campaign, record);
+                        }},
+                   [&](const Case&, const Record& record) { return beyond(record, limits); });
 }
 
 int run_each(const Options& options) {
@@ -100,22 +96,12 @@ int run_each(const Options& options) {
 
 /// Compares with what the baseline has of this solver, or puts this answer in its place.
 int check_or_update(const Options& options, const std::string& solver, const Answer& now) {
-  const auto file = frontier_baseline(options.baselines, solver);
-  if (options.update) {
-    keep_frontiers(now, file);
-    progress() << file.string() << '\n';
-    return kPass;
-  }
-  const auto changes = changes_of_frontiers(now, file);
-  if (!changes) {
-    std::cerr << solver << ": no baseline " << printable(file.string()) << '\n';
-    return kNothing;
-  }
-  for (const Difference& change : *changes) std::cerr << printable(change.text) << '\n';
-  progress() << now.table("parameters").rows.size() << " frontiers compared with " << file.string()
-             << ": " << changes->size() << " differ\n";
-  if (std::ranges::any_of(*changes, &Difference::moved)) return kRegression;
-  return changes->empty() ? kPass : kNothing;
+  const FrontierCheck found = check_frontiers(now, solver, options.baselines, options.update);
+  for (const Difference& change : found.changes) std::cerr << printable(change.text) << '\n';
+  progress() << printable(found.news) << '\n';
+  return found.end == CheckEnd::passed  ? kPass
+         : found.end == CheckEnd::moved ? kRegression
+                                        : kNothing;
 }
 
 /// Every parameter of one or two solvers.
@@ -218,11 +204,13 @@ TAUT_VERB(frontier) = {
         "  taut frontier --all jakobsen bullet\n"
         "Exit: 0 found; 1 a frontier of --all moved; 4 nothing was answered or compared",
     .answer =
-        "of kind stable acceptable theory looked_for cases ran picture unstable growth above; "
-        "probes: value status step case; "
-        "frontiers: solver stable stable_end acceptable acceptable_end; "
-        "parameters: solver parameter unit good bad symptom at_start theory law lacks from to "
-        "downwards cases beyond_scene beyond_solver; "
-        "beyond: solver parameter override; "
-        "commands: solver parameter command",
+        {{"facts",
+          "of kind stable acceptable theory looked_for cases ran picture unstable growth above"},
+         {"probes", "value status step case"},
+         {"frontiers", "solver stable stable_end acceptable acceptable_end"},
+         {"parameters",
+          "solver parameter unit good bad symptom at_start theory law lacks from to downwards "
+          "cases beyond_scene beyond_solver"},
+         {"beyond", "solver parameter override"},
+         {"commands", "solver parameter command"}},
     .bind = taut::bind_verb<taut::verb::frontier::add_options, taut::verb::frontier::run>};

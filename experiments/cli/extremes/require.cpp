@@ -1,11 +1,7 @@
-#include <chrono>
-#include <cmath>
-
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/render/picture/figure.hpp"
-#include "experiments/report/chart/wording.hpp"
+#include "experiments/render/film/case_pictures.hpp"
 #include "experiments/require/requirement_answer.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
@@ -33,32 +29,11 @@ std::size_t full_bytes(const Requirement& found, const Store& store) {
   return record ? bytes_of(record->step_cost) : 0;
 }
 
-/// One model's cloth at its end, under its own camera.
-Image panel(const CaseSpec& spec, const std::string& title, const Store& store) {
-  const Case one = make_case(spec);
-  RecordedRun run = recorded_run(*one.scene, store.motion(one.key));
-  run.title = title;
-  run.settings = report::brief_settings(one.choice.canonical());
-  run.colour = kInk;
-  const auto layout = PageLayout::page(800, 720, 1);
-  SceneRendererOptions look;
-  look.width = layout.panel_width;
-  look.height = layout.panel_height;
-  look.quality = RenderQuality::video();
-  look.from = look.to = one.scene->duration();
-  const std::vector<RecordedRun> runs{std::move(run)};
-  return compose(SceneRenderer(*one.scene, runs, look), layout, {one.scene->duration()});
-}
-
-/// The full and the smallest model side by side; "": no time, or no renderer.
+/// The picture's name; "": there is no renderer.
 std::string draw(const Requirement& found, const Store& store, const fs::path& file) {
   try {
-    const Image full = panel(found.full.spec, "full model", store),
-                smallest = panel(found.smallest->spec, "smallest model", store);
-    Image both(full.width() + smallest.width(), full.height());
-    both.paste(full, 0, 0);
-    both.paste(smallest, full.width(), 0);
-    write_png(file, both);
+    draw_side_by_side({{found.full.spec, "full model"}, {found.smallest->spec, "smallest model"}},
+                      store, file);
     return file.string();
   } catch (const InputError& error) {
     std::cerr << "no picture: " << error.what() << '\n';
@@ -172,13 +147,13 @@ TAUT_VERB(require) = {
         "taut require flag\n  taut require ball jakobsen:faces=on --keep shape:2% --keep "
         "stretch.max:0.5%\n  taut require my/scene.toml bullet --json\n"
         "Exit: 0 found; 3 stopped by --patience; 6 the smallest model does not repeat bit for bit",
-    .answer =
-        "key scene solver can_go required kept chaotic horizon bytes smallest file verified "
-        "time_left control picture cases ran seconds patience complete; "
-        "answers: name shown value tolerance noise order unit; "
-        "effects: name change * time bytes verdict may_go; "
-        "not_kept: what; "
-        "not_done: what; "
-        "trials: effect change done within why bytes work_per_step steps scene solver *; "
-        "scenes: scene chaotic kept can_go required time_left",
+    .answer = {{"facts",
+                "key scene solver can_go required kept chaotic horizon bytes smallest file "
+                "verified time_left control picture cases ran seconds patience complete"},
+               {"answers", "name shown value tolerance noise order unit"},
+               {"effects", "name change * time bytes verdict may_go"},
+               {"not_kept", "what"},
+               {"not_done", "what"},
+               {"trials", "effect change done within why bytes work_per_step steps scene solver *"},
+               {"scenes", "scene chaotic kept can_go required time_left"}},
     .bind = taut::bind_verb<taut::verb::requiring::add_options, taut::verb::requiring::run>};

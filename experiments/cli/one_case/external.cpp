@@ -71,9 +71,7 @@ TAUT_VERB(external_probe) = {
     .name = "external probe",
     .summary = "Says in sentences whether a program may be scored, and what is wrong with it",
     .example = "taut external probe 'python3 mine.py'\nExit: 0 it may be scored; 1 it may not",
-    .answer =
-        "passed; "
-        "checks: verdict check said",
+    .answer = {{"facts", "passed"}, {"checks", "verdict check said"}},
     .bind = taut::bind_verb<taut::verb::external_program::add_options_probe,
                             taut::verb::external_program::probe>};
 

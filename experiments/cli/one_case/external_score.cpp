@@ -82,7 +82,7 @@ TAUT_VERB(external_score) = {
     .example =
         "taut external score hang blender.pc2 --fps 24 --series blender.csv\n  taut external "
         "score hang houdini.pc2 --scale 0.01 --z-up --solver jakobsen --picture hang.png",
-    .answer =
-        "status steps dt vertices links projections digest key step vertex picture *; "
-        "read: what how",
+    .answer = {{"facts",
+                "status steps dt vertices links projections digest key step vertex picture *"},
+               {"read", "what how"}},
     .bind = taut::bind_verb<taut::verb::score::add_options, taut::verb::score::run>};

@@ -32,17 +32,16 @@ TAUT_VERB(list) = {.name = "list",
                        "Names scenes, solvers with parameters, metrics, studies, keys, fabrics, "
                        "assertions",
                    .example = "taut list solvers\n  taut list jakobsen",
-                   .answer =
-                       "solvers: name summary source; "
-                       "parameters: solver name default unit allowed help; "
-                       "scenes: name vertices links dt duration summary; "
-                       "metrics: name summary source; "
-                       "values: metric name unit in_series help; "
-                       "studies: name presets question scenes solvers; "
-                       "keys: key type unit range default example help; "
-                       "study_keys: key help; "
-                       "fabrics: name mass warp weft drape source licence; "
-                       "record: key column type help; "
-                       "assertions: source name summary verdict because truth; "
-                       "answers: verb table columns",
+                   .answer = {{"solvers", "name summary source"},
+                              {"parameters", "solver name default unit allowed help"},
+                              {"scenes", "name vertices links dt duration summary"},
+                              {"metrics", "name summary source"},
+                              {"values", "metric name unit in_series help"},
+                              {"studies", "name presets question scenes solvers"},
+                              {"keys", "key type unit range default example help"},
+                              {"study_keys", "key help"},
+                              {"fabrics", "name mass warp weft drape source licence"},
+                              {"record", "key column type help"},
+                              {"assertions", "source name summary verdict because truth"},
+                              {"answers", "verb table columns"}},
                    .bind = taut::bind_verb<taut::verb::list::add_options, taut::verb::list::run>};

@@ -92,8 +92,7 @@ TAUT_VERB(plan) = {
     .summary =
         "Shows the passes of a step, what they visit and hold in memory, and what set-up costs",
     .example = "taut plan ball jakobsen:iterations=1,substeps=15",
-    .answer =
-        "key bytes projections set_up; "
-        "passes: pass items repeats bytes projections; "
-        "unsupported: why",
+    .answer = {{"facts", "key bytes projections set_up"},
+               {"passes", "pass items repeats bytes projections"},
+               {"unsupported", "why"}},
     .bind = taut::bind_verb<taut::verb::planning::add_options, taut::verb::planning::run>};

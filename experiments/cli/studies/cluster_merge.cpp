@@ -71,10 +71,9 @@ TAUT_VERB(cluster_merge) = {
     .example =
         "taut cluster merge results/cluster/iterations\n"
         "  taut cluster merge results/shard1 results/shard2 --out results/runs",
-    .answer =
-        "cases there merged store; "
-        "missing: case; "
-        "foreign: case; "
-        "conflicts: case",
+    .answer = {{"facts", "cases there merged store"},
+               {"missing", "case"},
+               {"foreign", "case"},
+               {"conflicts", "case"}},
     .bind =
         taut::bind_verb<taut::verb::cluster_merge::add_options, taut::verb::cluster_merge::run>};

@@ -28,9 +28,8 @@ TAUT_VERB(cluster_status) = {
     .name = "cluster status",
     .summary = "Done and failed cases of every shard, and the command that starts the rest",
     .example = "taut cluster status results/cluster/iterations",
-    .answer =
-        "cases done start again; "
-        "shards: shard state cases done host started; "
-        "failed: shard case status",
+    .answer = {{"facts", "cases done start again"},
+               {"shards", "shard state cases done host started"},
+               {"failed", "shard case status"}},
     .bind =
         taut::bind_verb<taut::verb::cluster_status::add_options, taut::verb::cluster_status::run>};

@@ -103,6 +103,6 @@ TAUT_VERB(cluster_submit) = {
     .example =
         "taut cluster submit iterations --on slurm --hours 2\n  taut cluster submit "
         "my/study.toml --on parallel --sshlogin a,b --shards 8 --dry-run",
-    .answer = "folder cases shards minutes",
+    .answer = {{"facts", "folder cases shards minutes"}},
     .bind =
         taut::bind_verb<taut::verb::cluster_submit::add_options, taut::verb::cluster_submit::run>};

@@ -29,8 +29,8 @@ void add_options(CLI::App& app, Options& options) {
                  "folders A and B: what differs");
   add_stored(app, options.preset, options.results);
   app.add_option("--film", options.films,
-                 "Also films this scene (name or path), which no study ran; none and no STUDY: all "
-                 "shipped scenes")
+                 "Also films this scene (name or path), which no study ran; none and no STUDY: a "
+                 "picture of every shipped scene")
       ->allow_extra_args(false);
   app.add_flag("--no-media", options.no_media, "Without pictures and videos");
   add_json(app, options.model,

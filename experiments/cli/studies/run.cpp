@@ -36,19 +36,6 @@ std::string command_line(const Options& options) {
   return text;
 }
 
-/// The study at these time steps, under a name that says so: its own results stay as planned.
-Study at_time_steps(Study study, const std::vector<std::string>& steps) {
-  if (steps.empty()) return study;
-  const auto is_step = [](const std::string& setting) { return setting.starts_with("time.dt="); };
-  std::erase_if(study.settings, is_step);
-  std::erase_if(study.axes, [](const StudyAxis& axis) { return axis.name == "time.dt"; });
-  StudyAxis axis{.name = "time.dt", .values = {}};
-  for (const std::string& step : steps) axis.values.push_back('"' + step + '"');
-  study.axes.insert(study.axes.begin(), std::move(axis));
-  study.name += " dt=" + join(steps, ",");
-  return study;
-}
-
 std::vector<Study> load_studies(const Options& options) {
   std::vector<Study> studies;
   read_all(options.studies, [&](const std::string& name) {
@@ -94,15 +81,8 @@ Answer answer_of(const CampaignProgress& campaign, const std::vector<Study>& stu
 void print_studies(const std::vector<Study>& studies, const Store& store) {
   for (const Study& study : studies) {
     const std::vector<Record> records = collect(study, store).records;
-    std::map<Status::Kind, std::size_t> ends;
-    for (const Record& r : records) ++ends[r.status.kind];
     const std::string unequal = report::unequal_work(records);
-    progress() << study.name << ": " << records.size() << " cases: "
-               << join(ends, ", ",
-                       [](const auto& end) {
-                         return std::string(to_string(end.first)) + " " +
-                                std::to_string(end.second);
-                       })
+    progress() << study.name << ": " << ends_of(records)
                << (unequal.empty() ? "" : "; unequal work: " + unequal) << '\n';
   }
 }
@@ -152,15 +132,7 @@ int run(Options options) {
   tell_remarks(remarks_of(cases));
   Store store(options.out);
   store.prepare();
-  if (bare && !options.no_report) {
-    std::size_t all = 0;
-    for (const StudyCases& study : cases) all += study.cases.size();
-    progress()
-        << "the main job: " << all << " cases of " << cases.size()
-        << " studies, then their costs, closed forms, baselines and films; five to six minutes on "
-           "two idle cores, and it may be interrupted\n";
-    tell_part(1, "cases of the studies");
-  }
+  if (bare && !options.no_report) tell_main_job(cases);
   const CampaignProgress campaign = run_missing(cases, store, command_line(options),
                                                 {.jobs = options.jobs,
                                                  .limits = options.limits,
@@ -232,9 +204,8 @@ TAUT_VERB(run) = {.name = "run",
                       "  taut run default-setting --table stretch.rms --table stretch.max\n"
                       "  taut run default-setting --dt 1/30 --dt 1/60 --table stretch.rms\n"
                       "  taut run my/study.toml --shard 1/4 --out results/shard1",
-                  .answer =
-                      "results store cases ran stored; "
-                      "statuses: status cases; "
-                      "failure_map: solver *; "
-                      "*: setting *",
+                  .answer = {{"facts", "results store cases ran stored"},
+                             {"statuses", "status cases"},
+                             {"failure_map", "solver *"},
+                             {"*", "setting *"}},
                   .bind = taut::bind_verb<taut::verb::run::add_options, taut::verb::run::run>};

@@ -104,9 +104,8 @@ TAUT_VERB(baseline_update) = {
     .name = "baseline update",
     .summary = "Takes what is different as the new baseline",
     .example = "taut baseline update regression --why \"contacts are continuous\"",
-    .answer =
-        "cases; "
-        "findings: study kind case change command solver scene value before now",
+    .answer = {{"facts", "cases"},
+               {"findings", "study kind case change command solver scene value before now"}},
     .bind =
         taut::bind_verb<taut::verb::baseline::add_update_options, taut::verb::baseline::update>};
 
@@ -114,7 +113,6 @@ TAUT_VERB(baseline_diff) = {
     .name = "baseline diff",
     .summary = "Shows what an update would change (exit 1: something)",
     .example = "taut baseline diff regression",
-    .answer =
-        "cases; "
-        "findings: study kind case change command solver scene value before now",
+    .answer = {{"facts", "cases"},
+               {"findings", "study kind case change command solver scene value before now"}},
     .bind = taut::bind_verb<taut::verb::baseline::add_options, taut::verb::baseline::diff>};

@@ -98,12 +98,11 @@ TAUT_VERB(check) = {
         "Exit: 0 nothing moved; 1 a value or status moved, or it got slower; 3 cases were not "
         "run;\n      4 nothing compared, or the baseline does not match the "
         "study;\n      5 another toolchain under --strict-env",
-    .answer =
-        "cases values; "
-        "studies: study verdict cases values moved mismatched not_run; "
-        "findings: study kind case change command solver scene value before now; "
-        "not_run: study case; "
-        "mismatches: study solver kind number first change; "
-        "moved: study solver value cases less more largest relative judged case; "
-        "speed: case ratio control verdict wall wall_control",
+    .answer = {{"facts", "cases values"},
+               {"studies", "study verdict cases values moved mismatched not_run"},
+               {"findings", "study kind case change command solver scene value before now"},
+               {"not_run", "study case"},
+               {"mismatches", "study solver kind number first change"},
+               {"moved", "study solver value cases less more largest relative judged case"},
+               {"speed", "case ratio control verdict wall wall_control"}},
     .bind = taut::bind_verb<taut::verb::check::add_options, taut::verb::check::check>};

@@ -139,8 +139,7 @@ TAUT_VERB(doctor) = {
     .group = VerbGroup::trust,
     .summary = "Versions, precision, cores, load: what can be trusted here?",
     .example = "taut doctor",
-    .answer =
-        "timing_trusted; "
-        "findings: name value good; "
-        "fingerprints: solver digest layer",
+    .answer = {{"facts", "timing_trusted"},
+               {"findings", "name value good"},
+               {"fingerprints", "solver digest layer"}},
     .bind = taut::bind_verb<taut::verb::doctor::add_options, taut::verb::doctor::run>};

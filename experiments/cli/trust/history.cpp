@@ -116,11 +116,10 @@ TAUT_VERB(history) = {
         "--bisect stretch.rms\n"
         "Exit: 0 nothing changed; 1 the last build differs from the one before; 3 builds have no "
         "results;\n      4 nothing was compared",
-    .answer =
-        "builds gaps cases compared steps value_steps last_stepped named; "
-        "steps: step cases relative build made subject before case solver value was is; "
-        "builds: build made subject cases shared steps gap; "
-        "rows: case first last builds steps; "
-        "values: build made case value status; "
-        "ratios: case before now host clock ratio control",
+    .answer = {{"facts", "builds gaps cases compared steps value_steps last_stepped named"},
+               {"steps", "step cases relative build made subject before case solver value was is"},
+               {"builds", "build made subject cases shared steps gap"},
+               {"rows", "case first last builds steps"},
+               {"values", "build made case value status"},
+               {"ratios", "case before now host clock ratio control"}},
     .bind = taut::bind_verb<taut::verb::history::add_options, taut::verb::history::history>};

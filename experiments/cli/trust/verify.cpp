@@ -2,11 +2,9 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/baseline/assertion_baseline.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/results/store.hpp"
-#include "experiments/system/data.hpp"
-#include "experiments/system/files.hpp"
-#include "experiments/truths/assertions/assertions.hpp"
 
 namespace taut::verb::verify {
 
@@ -29,71 +27,46 @@ std::vector<const TruthEntry*> choose(const Options& options) {
     if (solver != "reference") parse_solver(solver);
   std::vector<const TruthEntry*> chosen = truths_in_order();
   std::erase_if(chosen, [&](const TruthEntry* truth) {
-    const bool asserted = std::ranges::count(assertions(), truth->name, &Assertion::truth) > 0;
     const bool named = options.names.empty() || std::ranges::count(options.names, truth->name) > 0;
     const bool within = options.section == 0 || truth->section == options.section;
-    return (options.assertions && !asserted) || !named || !within;
+    return (options.assertions && !is_asserted(*truth)) || !named || !within;
   });
   return chosen;
 }
 
-int summary(const std::vector<CheckedTruth>& truths) {
-  std::size_t counts[4] = {}, broken_truths = 0, findings = 0;
-  for (const CheckedTruth& truth : truths) {
-    bool broken = false;
-    for (const Finding& f : truth.findings) {
-      ++counts[static_cast<std::size_t>(f.verdict)];
-      ++findings;
-      broken = broken || f.verdict == TruthVerdict::broken;
-    }
-    broken_truths += broken;
-  }
-  std::ostream& news = progress();
-  news << truths.size() << " truths, " << findings << " numbers: " << counts[0] << " passed, "
-       << counts[1] << " deviate as explained, " << counts[2] << " not applicable, " << counts[3]
-       << " broken";
-  if (broken_truths > 0) news << " in " << broken_truths << " truths";
-  news << '\n';
-  if (counts[3] > 0) return kRegression;
-  return counts[0] + counts[1] > 0 ? kPass : kNothing;
-}
-
 /// Holds the verdicts of assertions to those that were kept, or keeps them.
 int compare_with_baseline(const Answer& answer, const Options& options) {
-  const std::filesystem::path file = std::filesystem::path(options.baselines) / "assertions.json";
-  const Table& now = answer.table("assertions");
+  const std::filesystem::path file = assertion_baseline(options.baselines);
   if (options.update) {
-    Answer kept{"verify", "assertions"};
-    kept.add(now);
-    make_folder(file.parent_path());
-    write_durably(file, to_json(kept));
+    keep_assertions(answer, file);
     progress() << file.string() << '\n';
     return kPass;
   }
-  if (!std::filesystem::exists(file)) {
+  const auto changes = changes_of_assertions(answer, file);
+  if (!changes) {
     std::cerr << "assertions: no baseline " << printable(file.string()) << '\n';
     return options.assertions ? kNothing : kPass;
   }
-  // Figures may differ: the truth's tolerance judges them.
-  const auto changes =
-      differences(answer_from_json(read_text(file), file.string()).table("assertions"), now,
-                  {"source", "assertion"}, {"verdict"});
-  for (const Difference& change : changes)
+  for (const Difference& change : *changes)
     std::cerr << "assertion " << printable(change.text) << '\n';
-  progress() << now.rows.size() << " assertions of publications: "
-             << (changes.empty() ? "every verdict is as it was"
-                                 : std::to_string(changes.size()) + " changed")
+  progress() << answer.table("assertions").rows.size() << " assertions of publications: "
+             << (changes->empty() ? "every verdict is as it was"
+                                  : std::to_string(changes->size()) + " changed")
              << '\n';
-  return changes.empty() ? kPass : kRegression;
+  return changes->empty() ? kPass : kRegression;
+}
+
+Answer list_of(const std::vector<const TruthEntry*>& chosen) {
+  Answer answer{"verify"};
+  Table& table = answer.add(Table{"truths", "", {{"place"}, {"name", "truth"}, {"statement"}}});
+  for (const TruthEntry* truth : chosen)
+    table.rows.push_back({place_of(*truth), truth->name, truth->statement});
+  return answer;
 }
 
 int run(const Options& options) {
   if (options.list) {
-    Answer answer{"verify"};
-    Table& table = answer.add(Table{"truths", "", {{"place"}, {"name", "truth"}, {"statement"}}});
-    for (const TruthEntry* truth : choose(options))
-      table.rows.push_back({place_of(*truth), truth->name, truth->statement});
-    print(answer, options.format);
+    print(list_of(choose(options)), options.format);
     return kPass;
   }
   if (options.update && !(options.assertions && options.of_all_assertions()))
@@ -111,7 +84,10 @@ int run(const Options& options) {
     store.keep(answer);
   }
   print(answer, options.format);
-  const int code = summary(found.truths);
+  const VerdictCounts verdicts = verdicts_of(found.truths);
+  progress() << verdicts.text() << '\n';
+  const bool any = verdicts[TruthVerdict::passed] + verdicts[TruthVerdict::deviates] > 0;
+  const int code = verdicts.broken_truths > 0 ? kRegression : any ? kPass : kNothing;
   if (!options.of_all_assertions()) return code;
   const int assertions = compare_with_baseline(answer, options);
   return code == kPass ? assertions : code;
@@ -157,10 +133,10 @@ TAUT_VERB(verify) = {
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
         "did; 4 nothing was held to anything",
     .answer =
-        "truths: verdict place name numbers nearest section section_title statement source "
-        "seconds; "
-        "findings: verdict truth subject quantity unit measured expected tolerance uncertainty "
-        "why; "
-        "assertions: source section verdict assertion figure; "
-        "broken: truth number",
+        {{"truths",
+          "verdict place name numbers nearest section section_title statement source seconds"},
+         {"findings",
+          "verdict truth subject quantity unit measured expected tolerance uncertainty why"},
+         {"assertions", "source section verdict assertion figure"},
+         {"broken", "truth number"}},
     .bind = taut::bind_verb<taut::verb::verify::add_options, taut::verb::verify::run>};

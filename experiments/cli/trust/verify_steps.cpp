@@ -36,9 +36,8 @@ TAUT_VERB(verify_steps) = {
     .group = VerbGroup::trust,
     .summary = "Compares step.error with the true distance from the exact step",
     .example = "taut verify steps free\n  taut verify steps contact --scene ball",
-    .answer =
-        "free_share contact_share rigid_share; free: scene solver probes within refused "
-        "without_exact least most; "
-        "contact: scene solver probes within refused without_exact least most; "
-        "rigid: scene solver probes within refused without_exact least most",
+    .answer = {{"facts", "free_share contact_share rigid_share"},
+               {"free", "scene solver probes within refused without_exact least most"},
+               {"contact", "scene solver probes within refused without_exact least most"},
+               {"rigid", "scene solver probes within refused without_exact least most"}},
     .bind = taut::bind_verb<taut::verb::step_error::add_options, taut::verb::step_error::run>};

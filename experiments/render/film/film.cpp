@@ -37,7 +37,7 @@ struct Film {
   std::vector<std::string> labels;          ///< theirs: "Bullet float"
   std::vector<std::pair<std::string, std::string>> refused;  ///< solver, why
   double speed = 1;
-  bool studied = true;
+  bool studied = true, still = false;
 
   void add(const std::string& solver, const std::string& label, const std::string& key) {
     request.solvers.push_back(solver);
@@ -73,11 +73,11 @@ double watchable_speed(const Scene& scene) {
   return 0.125;
 }
 
-Film other_film(const report::ComparedSolvers& compared, const std::string& name) {
-  const Scene scene = load_scene(find_scene(name));
-  Film film{.scene = scene.name, .summary = scene.summary, .studied = false};
+Film other_film(const report::ComparedSolvers& compared, const OtherScene& other) {
+  const Scene scene = load_scene(find_scene(other.name));
+  Film film{.scene = scene.name, .summary = scene.summary, .studied = false, .still = other.still};
   film.speed = watchable_speed(scene);
-  film.request.scene = name;
+  film.request.scene = other.name;
   if (scene.duration() > kSeconds)
     film.request.overrides.push_back("time.duration=" + std::to_string(kSeconds));
   for (const report::ComparedSolver& solver : compared.all) {
@@ -95,13 +95,13 @@ Film other_film(const report::ComparedSolvers& compared, const std::string& name
 }
 
 std::vector<Film> all_films(const report::ReportInput& input,
-                            const std::vector<std::string>& others) {
+                            const std::vector<OtherScene>& others) {
   const report::ComparedSolvers compared = report::compared_solvers_of(input);
   std::vector<Film> films;
   for (const report::QuotedScene& quoted : compared.scenes)
     films.push_back(studied_film(compared, quoted));
-  for (const std::string& name : others) {
-    Film film = other_film(compared, name);
+  for (const OtherScene& other : others) {
+    Film film = other_film(compared, other);
     if (std::ranges::find(films, film.scene, &Film::scene) == films.end())
       films.push_back(std::move(film));
   }
@@ -111,6 +111,7 @@ std::vector<Film> all_films(const report::ReportInput& input,
 
 MediaOptions options_of(const Film& film, std::size_t runs) {
   MediaOptions options;
+  options.still = film.still;
   options.speed = film.speed;
   options.duration = kSeconds * film.speed;
   const int panels = std::max(2, static_cast<int>(runs + film.refused.size()));
@@ -164,7 +165,7 @@ std::string key_of(const Film& film) {
   for (const std::string& solver : film.request.solvers)
     all += "\n" + maker.make({film.request.scene, film.request.overrides, solver}).key;
   add(options.width, options.height, options.duration, options.speed, options.fps, options.crf,
-      film.studied);
+      film.studied, film.still);
   return sha256(all);
 }
 
@@ -204,14 +205,14 @@ FilmResult kept_or_made(const Film& film, const std::filesystem::path& folder, b
 
 }  // namespace
 
-void film_scenes(report::ReportInput& input, const std::vector<std::string>& others,
+void film_scenes(report::ReportInput& input, const std::vector<OtherScene>& others,
                  const std::filesystem::path& folder,
                  const std::function<void(const std::string&)>& say) {
   const std::vector<Film> films = all_films(input, others);
   std::vector<std::optional<FilmResult>> results(films.size());
   std::mutex output;
   run_all(films.size(), kScenesAtATime, [&](std::size_t k) {
-    std::string news = films[k].scene + " filmed";
+    std::string news = films[k].scene + (films[k].still ? " drawn" : " filmed");
     bool made = true;
     try {
       results[k] = kept_or_made(films[k], folder, made);

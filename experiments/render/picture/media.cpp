@@ -94,6 +94,7 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
     media.poster_type = "image/png";
     return media;
   }
+  if (options.still) return media;
   const Scratch scratch;
   const std::filesystem::path file = scratch.path() / "film.mp4";
   VideoWriter video(file, {options.width, options.height,

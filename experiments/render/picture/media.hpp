@@ -14,11 +14,12 @@ struct MediaOptions {
   double fps = 16;  ///< of the video; frames are whole steps: the nearest rate that dt allows
   RenderQuality quality = RenderQuality::video();
   int crf = 25;
+  bool still = false;  ///< the poster alone
 };
 
 /// Pictures and numbers of one scene, moment by moment the same for all runs.
 struct Media {
-  std::string mp4;                              ///< H.264; "" without ffmpeg
+  std::string mp4;                              ///< H.264; "" of a still, and without ffmpeg
   std::string poster;                           ///< the moment of the greatest difference
   std::string poster_type;                      ///< "image/jpeg", or "image/png" without ffmpeg
   double poster_t = 0;                          ///< s

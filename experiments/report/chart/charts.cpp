@@ -296,7 +296,8 @@ std::vector<Point> pareto_front(const Chart& chart) {
   std::vector<Point> points, front;
   for (const Curve& curve : chart.curves)
     for (const Point& p : curve.points)
-      if (p.measured() && p.x > 0) points.push_back(p);  // 0: nobody knows its work
+      if (p.measured() && p.x > 0 && !chart.not_counted.contains(p.record->key))
+        points.push_back(p);  // 0: nobody knows its work
   std::ranges::sort(points, {}, [](const Point& p) { return std::pair(p.x, p.y); });
   for (const Point& p : points)
     if (front.empty() || p.y < front.back().y) front.push_back(p);
@@ -422,8 +423,13 @@ Chart cost_chart(const SceneBench& scene, const Records& records) {
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption = "Down and left is better.";
   chart.front = true;
-  for (const BenchedCase& c : scene.cases)
+  const std::vector<Candidate> candidates = scene.candidates(kErrorMetric);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const BenchedCase& c = scene.cases[i];
+    const Candidate& one = candidates[i];
     if (c.stable()) chart.cost[c.record.key] = c.cost();
+    if (one.hardly_moves || one.not_accepted) chart.not_counted[c.record.key] = one.failure;
+  }
   return chart;
 }
 

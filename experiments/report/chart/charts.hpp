@@ -64,6 +64,8 @@ struct Chart {
   std::optional<Floor> floor = {};
   bool front = false;                         ///< with the Pareto front
   std::map<std::string, Interval> cost = {};  ///< by case key: the interval of x
+  /// By case key, what was timed and does not count: why. It is on no front.
+  std::map<std::string, std::string> not_counted = {};
 };
 
 /// The curves of y over x for these records. "setting" as `along` frees every accuracy parameter.
@@ -87,7 +89,7 @@ double theory_factor(const Chart&);
 /// Whose line it is: "theory of relaxation: 1/sweeps".
 std::string theory_text(const Chart&);
 
-/// The measured points that no other beats in both x and y, by ascending x.
+/// The measured points which count that no other beats in both x and y, by ascending x.
 std::vector<Point> pareto_front(const Chart&);
 
 /// How cases of one solver end over two settings.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 
 namespace taut::report {
 
@@ -66,6 +67,23 @@ SolverStyle solver_style(std::string_view solver) {
   std::size_t hash = 0;
   for (const char c : solver) hash = 31 * hash + static_cast<unsigned char>(c);
   return kOthers[hash % kOthers.size()];
+}
+
+std::string_view dash_of(std::string_view solver, int variant) {
+  constexpr std::array<std::string_view, 7> kVariants{"7 4", "2 3",          "10 3 2 3", "16 4",
+                                                      "4 2", "10 3 2 3 2 3", "2 6"};
+  return variant == 0 ? solver_style(solver).dash
+                      : kVariants[static_cast<std::size_t>(variant - 1) % kVariants.size()];
+}
+
+std::span<const StretchShade> stretch_shades() {
+  static constexpr StretchShade kShades[] = {
+      {0.01, 1, "RMS stretch up to 1 %"},
+      {0.03, 0.7, "up to 3 %"},
+      {0.1, 0.45, "up to 10 %"},
+      {0.3, 0.24, "up to 30 %"},
+      {std::numeric_limits<double>::infinity(), 0.08, "more than 30 %"}};
+  return kShades;
 }
 
 StatusStyle status_style(Status::Kind kind) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,9 @@ struct SolverStyle {
 /// By its name: the same in every figure, whatever else is drawn beside it.
 SolverStyle solver_style(std::string_view solver);
 
+/// Lengths of strokes and gaps of a solver's line; each further choice of its settings has another.
+std::string_view dash_of(std::string_view solver, int variant);
+
 /// How a status is drawn in maps, and the glyph that stands for it everywhere.
 struct StatusStyle {
   Colour colour;
@@ -33,5 +37,13 @@ struct StatusStyle {
   Colour ink;              ///< the glyph's colour on `colour`
 };
 StatusStyle status_style(Status::Kind);
+
+/// What completed is drawn in maps in shades of "ok", by its RMS stretch.
+struct StretchShade {
+  double end;    ///< of the stretch; infinite: all beyond
+  double share;  ///< of the colour of "ok"; the rest is the background
+  std::string_view text;
+};
+std::span<const StretchShade> stretch_shades();  ///< ascending
 
 }  // namespace taut::report

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <list>
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
@@ -125,26 +126,30 @@ Table profile_table(const std::vector<SceneBench>& scenes) {
 
 }  // namespace
 
-Json json_of_cost(const ReportInput& input, CaseList& refs, Json& charts, Answer& tables) {
+Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, Answer& tables) {
   const StudyBench& study = *input.bench;
   const WinnerMap winners = winners_of(input, refs);
   Json cost{{"machine", study.machine}};
   refs.use("cpu.per_second");
   refs.use("cpu.per_step");
   std::vector<SceneBench> shared;
+  std::vector<Chart> charts;
+  std::list<std::vector<Record>> kept;  // charts point into them
   for (const SceneBench& bench : study.scenes) {
-    const std::vector<Record> records = StudyBench{"", "", {bench}}.records();
+    const std::vector<Record>& records = kept.emplace_back(StudyBench{"", "", {bench}}.records());
     shared.push_back(with_shared_parameters(bench));
     const CostScene scene{shared.back(), refs, shared.back().candidates(kErrorMetric)};
     Json one{{"scene", bench.scene}};
     try {
-      add_by_id(one, "charts", json_of(cost_chart(bench, records), refs), charts);
+      charts.push_back(cost_chart(bench, records));
+      one["charts"].push_back(charts.back().id);
     } catch (const InputError&) {
       // nothing completed: the tables say so
     }
     add_table(one, levels_table(scene, winners.rows[shared.size() - 1]), tables);
     cost["scenes"].push_back(std::move(one));
   }
+  for (const Figure& figure : figures_of(charts)) add_figure(drawn, "cost", figure, refs);
   add_table(cost, profile_table(shared), tables);
   return cost;
 }

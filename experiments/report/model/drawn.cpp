@@ -7,6 +7,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/format.hpp"
+#include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 
@@ -39,12 +40,34 @@ Json json_of(const Point& p, const Chart& chart, CaseList& refs) {
     point["x_high"] = cost->second.high;
   }
   add_if(point, "name", p.name.empty() ? work_of(*p.record).text() : p.name);
+  if (const auto why = chart.not_counted.find(p.record->key); why != chart.not_counted.end())
+    point["not_counted"] = why->second;
   return point;
 }
 
+Json json_of(const Scale& scale) {
+  return {{"axis", scale.logarithmic ? "log" : "linear"}, {"low", scale.low}, {"high", scale.high}};
+}
+
+Json json_of(const Frame& frame) {
+  return {{"x", json_of(frame.x)}, {"y", json_of(frame.y)}, {"least", frame.least}};
+}
+
+/// Of values over time, with zero; rounding, below a millionth of the unit, lies on the axis.
+Scale scale_of_series(const std::vector<TimeSeries>& all, const Unit& unit) {
+  std::vector<double> values{0};
+  for (const TimeSeries& series : all)
+    for (const double y : series.y) values.push_back(y * unit.scale);
+  const bool any = std::ranges::any_of(values, [](double v) { return v > 0; });
+  if (any) values.push_back(1e-6 * unit.scale);
+  return scale_of(false, values);
+}
+
 /// Times and values of a series.
-Json json_of(const TimeSeries& series, CaseList& refs) {
-  Json one{{"solver", series.solver}, {"label", series.label}};
+Json json_of(const TimeSeries& series, Variants& variants, CaseList& refs) {
+  Json one{{"solver", series.solver},
+           {"label", series.label},
+           {"dash", dash_of(series.solver, variants.of(series.solver, series.label))}};
   for (const double t : series.t) one["t"].push_back(rounded(t, 5));
   for (const double y : series.y)
     one["y"].push_back(std::isfinite(y) ? Json(rounded(y, 4)) : Json());
@@ -54,14 +77,14 @@ Json json_of(const TimeSeries& series, CaseList& refs) {
 
 Json json_of_tracks(const std::string& scene, double until, const ReportInput& input,
                     CaseList& refs) {
-  std::map<std::string, Json> by_value;
+  std::map<std::string, std::vector<TimeSeries>> by_value;
   for (const TimeSeries& series : input.series) {
     if (series.scene != scene) continue;
     TimeSeries cut = series;
     const auto end = std::ranges::upper_bound(cut.t, until + 1e-9) - cut.t.begin();
     cut.t.resize(static_cast<std::size_t>(end));
     cut.y.resize(static_cast<std::size_t>(end));
-    if (cut.t.size() > 1) by_value[series.value].push_back(json_of(cut, refs));
+    if (cut.t.size() > 1) by_value[series.value].push_back(std::move(cut));
   }
   // The scene's own quantity before an error that every scene has; what stays zero but for rounding
   // shows nothing.
@@ -77,10 +100,16 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
   };
   Json tracks;
   for (const int wanted : {0, 1})
-    for (auto& [value, series] : by_value)
-      if (place(value) == wanted)
-        tracks.push_back(
-            {{"metric", value}, {"title", capitalised(refs.use(value).title)}, {"series", series}});
+    for (const auto& [value, series] : by_value) {
+      if (place(value) != wanted) continue;
+      const Quantity& q = refs.use(value);
+      Json track{{"metric", value},
+                 {"title", capitalised(q.title)},
+                 {"range", json_of(scale_of_series(series, q.unit))}};
+      Variants variants;
+      for (const TimeSeries& one : series) track["series"].push_back(json_of(one, variants, refs));
+      tracks.push_back(std::move(track));
+    }
   return tracks;
 }
 
@@ -107,12 +136,11 @@ void add_curves(Json& one, const Chart& chart, CaseList& refs) {
   const std::vector<std::size_t> places =
       places_of(chart.curves.size(), all > kMostPoints ? kMostCurves : chart.curves.size());
   std::size_t drawn = 0;
-  std::map<std::string, int> variants;
   for (const std::size_t i : places) {
     const Curve& curve = chart.curves[i];
     Json series{{"solver", curve.solver},
                 {"label", curve.label},
-                {"variant", variants[curve.solver]++},
+                {"dash", dash_of(curve.solver, curve.variant)},
                 {"join", chart.join}};
     for (const std::size_t k : places_of(curve.points.size(), kMostPoints / places.size())) {
       series["points"].push_back(json_of(curve.points[k], chart, refs));
@@ -146,7 +174,10 @@ Json json_of(const Chart& chart, CaseList& refs) {
            {"y", json_of_axis(refs.use(chart.y.name), {})}};
   add_if(one, "held", chart.held);
   add_curves(one, chart, refs);
-  for (const TimeSeries& series : chart.series) one["series"].push_back(json_of(series, refs));
+  Variants variants;
+  for (const TimeSeries& series : chart.series)
+    one["series"].push_back(json_of(series, variants, refs));
+  if (!chart.series.empty()) one["range"] = json_of(scale_of_series(chart.series, chart.y.unit));
   if (const double factor = theory_factor(chart); std::isfinite(factor))
     one["theory"] = {{"slope", *chart.slope}, {"factor", factor}, {"text", theory_text(chart)}};
   if (chart.floor) one["floor"] = {{"y", chart.floor->y}, {"text", chart.floor->text}};
@@ -158,6 +189,18 @@ Json json_of(const Chart& chart, CaseList& refs) {
   else
     add_if(one, "same", coincident_curves(chart));
   return one;
+}
+
+void add_figure(DrawnCharts& drawn, std::string_view of, const Figure& figure, CaseList& refs) {
+  const bool logarithmic = is_logarithmic(figure.charts);
+  Json one{{"of", of},
+           {"title", figure.title},
+           {"axis", logarithmic ? "log" : "linear"},
+           {"linear", json_of(frame_of(figure.charts, false))}};
+  if (any_positive(figure.charts)) one["log"] = json_of(frame_of(figure.charts, true));
+  for (const Chart& chart : figure.charts)
+    add_by_id(one, "charts", json_of(chart, refs), drawn.charts);
+  drawn.figures.push_back(std::move(one));
 }
 
 Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {

@@ -6,12 +6,19 @@
 
 #include "experiments/report/answer/answer.hpp"
 #include "experiments/report/chart/charts.hpp"
+#include "experiments/report/chart/frame.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
 
 /// Appends a chart, a map or a film to those of the model, and its id to a list of `part`.
 void add_by_id(Json& part, const char* list, Json one, Json& all);
+/// Charts of the model, and the figures whose panels they are.
+struct DrawnCharts {
+  Json charts, figures;
+};
+/// `of`: which part of the page has it.
+void add_figure(DrawnCharts&, std::string_view of, const Figure&, CaseList&);
 /// Adds a table to those of the page, if it has rows, and its name to the tables of `part`.
 void add_table(Json& part, Table, Answer& tables);
 /// The tables of an answer by name, as `taut --json` writes them everywhere.
@@ -31,7 +38,7 @@ Json json_of(const SceneMedia&, const ReportInput&, CaseList&, std::size_t& budg
 /// Who wins where, and what that says in all; null: nothing was timed.
 Json json_of_winners(const ReportInput&, CaseList&);
 /// What accuracy costs, scene by scene.
-Json json_of_cost(const ReportInput&, CaseList&, Json& charts, Answer& tables);
+Json json_of_cost(const ReportInput&, CaseList&, DrawnCharts&, Answer& tables);
 /// What two folders have otherwise.
 Json json_of(const Differences&, CaseList&, Answer& tables);
 /// How values went from build to build, study by study; null: of one build alone.
@@ -39,7 +46,7 @@ Json json_of_history(const ReportInput&, CaseList&);
 /// What scenes require, how far solvers go and where their methods fail; null without any.
 Json json_of_limits(const ReportInput&, CaseList&, Answer& tables);
 /// What iterations inside one step bring, scene by scene; null: no step was followed.
-Json json_of_steps(const ReportInput&, CaseList&, Json& charts, Answer& tables);
+Json json_of_steps(const ReportInput&, CaseList&, DrawnCharts&, Answer& tables);
 /// What publications assert, with verdicts: as its truths say now, if they were checked.
 Table assertions_table(const std::optional<Truths>&);
 /// Settings of every solver on a scene, row by row; without rows if nothing was run.

@@ -1,6 +1,7 @@
 // Inside one step: how near each solver's iterations come to the exact one.
 #include <algorithm>
 #include <cmath>
+#include <list>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
@@ -62,7 +63,7 @@ std::string leaving(const OneStep& step, const std::vector<Cell>& own) {
 
 }  // namespace
 
-Json json_of_steps(const ReportInput& input, CaseList& refs, Json& charts, Answer& tables) {
+Json json_of_steps(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, Answer& tables) {
   Json steps;
   const std::string at = std::to_string(kLooked);
   Table table{
@@ -80,16 +81,22 @@ Json json_of_steps(const ReportInput& input, CaseList& refs, Json& charts, Answe
       "Links of a solver are its own: the exact step of springs is implicit Euler's, that "
       "of rigid links the nearest placement that keeps all lengths."};
   std::vector<std::string> away;
-  for (const Answer& found : input.steps) {
-    const OneStep step(found);
+  std::vector<Chart> charts;
+  const std::list<OneStep> all(input.steps.begin(), input.steps.end());  // charts point into them
+  for (const OneStep& step : all) {
     try {
-      add_by_id(steps, "charts", json_of(step_chart(step, "distance"), refs), charts);
+      charts.push_back(step_chart(step, "distance"));
     } catch (const InputError&) {  // no exact step
     }
-    for (const auto& own : found.table("solvers").rows)
+    for (const auto& own : step.found.table("solvers").rows)
       if (const std::string solver = leaving(step, own); !solver.empty())
         push_unique(away, solver + " on " + step.scene());
-    for (const auto& own : found.table("solvers").rows) table.rows.push_back(row_of(step, own));
+    for (const auto& own : step.found.table("solvers").rows)
+      table.rows.push_back(row_of(step, own));
+  }
+  for (Figure& figure : figures_of(charts)) {
+    figure.title = "Distance from the exact step";
+    add_figure(drawn, "steps", figure, refs);
   }
   if (!away.empty())
     table.caption +=

@@ -122,6 +122,8 @@ const solvers = new Map(model.solvers.map((solver, order) => [solver.id, {...sol
 const solverOf = (id) => solvers.get(id) ?? {id, title: id, order: 0, marker: 'circle', dash: ''};
 const statusOf = (id) => statuses.get(id) ?? {id, title: id, glyph: '?', help: '', failed: true};
 const all = (ids, from) => (ids ?? []).map((id) => from.get(id)).filter(Boolean);
+/** Figures of a part of the page. */
+const figuresOf = (part) => (model.figures ?? []).filter(({of}) => of === part);
 
 const state = {
   params: () => new URLSearchParams(location.hash.slice(1)),

@@ -19,26 +19,13 @@ const markers = {circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.
                  diamond: d3.symbolDiamond, pentagon: polygon(5, -Math.PI / 2), hexagon: polygon(6, 0), star: d3.symbolStar,
                  plus: d3.symbolCross, bar: bar(2.5), post: bar(0.4)};
 const markerPath = (name, size) => d3.symbol().type(markers[name] ?? d3.symbolCircle).size(size)();
-/** Dashes of a solver's further settings. */
-const variantDashes = ['', '7 4', '2 3', '10 3 2 3', '16 4', '4 2', '10 3 2 3 2 3', '2 6'];
-const dashOf = ({solver, variant}) => variant ? variantDashes[variant % variantDashes.length] : solverOf(solver).dash;
+const dashOf = ({solver, dash}) => dash ?? solverOf(solver).dash;
 
-/** Pixels: of a chart alone and beside others, above and below its plot, of a row of failed cases and of one of their glyphs; powers of ten on an axis. */
-const box = {height: 250, small: 190, top: 10, bottom: 22, row: 13, smallRow: 9, glyph: 8, decades: 6};
+/** Pixels: of a chart alone and beside others, above and below its plot, of a row of failed cases and of one of their glyphs. */
+const box = {height: 250, small: 190, top: 10, bottom: 22, row: 13, smallRow: 9, glyph: 8};
 
-/** A scale over shown values: logarithmic over the positive ones or linear, with a little air. */
-function scaleOf(kind, values, range) {
-  const usable = values.filter((v) => Number.isFinite(v) && (kind !== 'log' || v > 0));
-  let [low, high] = usable.length ? d3.extent(usable) : kind === 'log' ? [0.1, 1] : [0, 1];
-  if (kind === 'log') {
-    const air = Math.max((high / low) ** 0.05, 1.12);
-    return d3.scaleLog().domain([low / air, high * air]).range(range);
-  }
-  if (low >= 0 && low < 0.5 * high) low = 0;
-  if (low === 0 && high === 0) high = 1;
-  const air = (high - low || Math.abs(high) || 1) * 0.05;
-  return d3.scaleLinear().domain([low === 0 ? 0 : low - air, high + air]).range(range);
-}
+/** The scale of an axis of the model, over pixels. */
+const scaleOf = ({axis, low, high}, range) => (axis === 'log' ? d3.scaleLog() : d3.scaleLinear()).domain([low, high]).range(range);
 
 /** Ticks that can be read: the values of a study's setting, or 1, 2 and 5 of each power of ten as far as they fit; of many powers every second. */
 function ticksOf(scale, axis, kind, wanted) {
@@ -69,7 +56,7 @@ function pointLines(spec, series, point) {
   const value = point.y === null || point.y === undefined ? 'no value' : shown(point.y, y, 4);
   return [`${series.label}${point.name ? `, ${point.name}` : ''}`, `${y.title}: ${value}`,
           `${x.title}: ${shown(point.x, x, 4)}${costs && ` (95 %: ${costs})`}`,
-          ...caseLines(point.status, undefined, point.case)];
+          point.not_counted && `does not count: ${point.not_counted}`, ...caseLines(point.status, undefined, point.case)].filter(Boolean);
 }
 
 /** Draws when a plot gets its width and whenever that changes, save for paper. */
@@ -92,10 +79,6 @@ function swatch(series) {
   return svg.node();
 }
 
-/** Whether the reference's own error is drawn: unless it lies far below all points. */
-const floorShown = ({floor, series}) => floor && floor.y > d3.min(series.flatMap((s) => s.points)
-    .map((p) => p.failed ? 0 : p.y).filter((v) => v > 0)) / 30;
-
 /** The key of all panels, without what the solvers' switches say for the whole page: further settings of a solver, lines of theory, and what × above the plot, triangle and hollow marker mean where they occur. */
 function chartKey(specs, {kind, frame}) {
   const points = specs.flatMap(pointsOf), grey = (dash) => swatch({colour: 'var(--muted)', dash});
@@ -105,30 +88,21 @@ function chartKey(specs, {kind, frame}) {
   const once = (list, textOf) => [...index(list.filter(Boolean).map((one) => ({...one, text: textOf(one)})), 'text').values()];
   const floored = points.filter((p) => onFloor(p, specs[0], frame));
   const list = el('ul', {className: 'key'},
-    once(specs.flatMap((spec) => spec.series), (s) => s.label).filter((s) => s.variant || s.label !== solverOf(s.solver).title)
+    once(specs.flatMap((spec) => spec.series), (s) => s.label).filter((s) => s.label !== solverOf(s.solver).title)
         .map((s) => entry(swatch(s), short(s.label, 60), solverOf(s.solver).order)),
     once(specs.map((spec) => spec.theory), ({text}) => text).map(({text}) => entry(grey('4 3'), text)),
-    once(specs.filter(floorShown).map((spec) => spec.floor), ({text}) => text).map(({text}) => entry(grey('1 3'), text)),
+    once(specs.map((spec) => spec.floor), ({text}) => text).map(({text}) => entry(grey('1 3'), text)),
     specs.some((spec) => spec.front) && entry(swatch({className: 'front', colour: 'var(--stair)', dash: ''}), 'no setting is better in both'),
     failed.map((s) => entry(el('b', {}, s.glyph), `above the plot: ${s.title}`)),
     floored.length > 0 && entry(el('b', {}, '▲'), 'on the axis: ' + [floored.some((p) => p.zero) && 'exactly zero',
       floored.some((p) => !p.zero) && `below ${shown(frame.least / specs[0].y.scale, specs[0].y, 1)}`].filter(Boolean).join(', or ')),
     kind === 'log' && points.some((p) => p.y < 0) && entry(el('b', {}, '!'),
       `${points.filter((p) => p.y < 0).length} below zero: linear scale only`),
-    unfinished.length > 0 && entry(el('b', {}, '○'), `hollow: ${unfinished.map((s) => s.title).join(', ')}`));
+    unfinished.length > 0 && entry(el('b', {}, '○'), `hollow: ${unfinished.map((s) => s.title).join(', ')}`),
+    points.some((p) => p.not_counted) && entry(el('b', {}, '○'), 'hollow, on no line of the best: does not count (hardly moves, or does what its scene does not accept)'));
   return list.children.length ? list : '';
 }
 
-/** What the panels of a figure share: the values on their axes, below what a point stands on the axis, the rows of failed cases. */
-function frameOf(specs, kind) {
-  const {x, y} = specs[0], points = specs.flatMap(pointsOf);
-  const numbers = (list, scale) => list.filter((v) => typeof v === 'number').map((v) => v * scale);
-  const up = numbers([...points.filter((p) => !p.failed).map((p) => p.y), ...specs.filter(floorShown).map((spec) => spec.floor.y)], y.scale);
-  const least = kind === 'log' ? (d3.max(up) || 0) / 10 ** box.decades : -Infinity;
-  const frame = {kind, least, up: up.filter((v) => v >= least), failed: specs.some((spec) => pointsOf(spec).some((p) => p.failed)),
-                 across: numbers(points.flatMap((p) => [p.x, p.x_low, p.x_high]), x.scale)};
-  return {...frame, floored: points.some((p) => onFloor(p, specs[0], frame))};
-}
 const pointsOf = (spec) => spec.series.flatMap((s) => s.points);
 /** Of each failed case the place among those that failed near its x: [row, from the left, how many in the row]. */
 function failedPlaces(spec, px) {
@@ -140,25 +114,27 @@ function failedPlaces(spec, px) {
     values.forEach(([p], i) => places.set(p, [Math.floor(i / most), i % most, Math.min(most, values.length - most * Math.floor(i / most))]));
   return {places, rows: d3.max(columns, ({values}) => Math.ceil(values.length / most)) ?? 0};
 }
-const onFloor = (p, {y}, {kind, least}) => kind === 'log' && !p.failed && (p.zero || (p.y > 0 && p.y * y.scale < least));
+const onFloor = (p, {y}, {y: {axis}, least}) => axis === 'log' && !p.failed && (p.zero || (p.y > 0 && p.y * y.scale < least));
 
-/** The figure of one quantity over another: a panel for each chart, all on the same axes, `nameOf` above each. */
-function chartFigure(specs, title, nameOf) {
-  const {x, y} = specs[0], common = (get) => specs.every((spec) => get(spec) === get(specs[0]));
+/** A figure of the model: a panel for each chart, all on the same axes, `nameOf` above each. */
+function chartFigure(figure, nameOf) {
+  const specs = all(figure.charts, charts), {x, y} = specs[0], common = (get) => specs.every((spec) => get(spec) === get(specs[0]));
   const held = (spec) => spec.held && spec.held[0].toUpperCase() + spec.held.slice(1) + '.', caption = (spec) => spec.caption;
   const remarks = (spec, shared) => [held, caption].filter((get) => common(get) === shared).map((get) => get(spec)).filter(Boolean);
-  for (const {values} of d3.nest().key((s) => s.solver).entries(specs.flatMap((spec) => spec.series))) {
-    const labels = [...new Set(values.map((s) => s.label))];  // the same dash in every panel
-    for (const s of values) s.variant = labels.indexOf(s.label);
-  }
-  const view = {kind: y.axis, height: specs.length > 1 ? box.small : box.height, frame: frameOf(specs, y.axis), draws: []};
+  const view = {kind: figure.axis, height: specs.length > 1 ? box.small : box.height, draws: []};
+  const useFrame = () => {
+    view.frame = figure[view.kind];
+    view.failed = specs.some((spec) => pointsOf(spec).some((p) => p.failed));
+    view.floored = specs.some((spec) => pointsOf(spec).some((p) => onFloor(p, spec, view.frame)));
+  };
+  useFrame();
   const key = el('div'), bar = el('div', {className: 'tools'});
   const keyOf = () => key.replaceChildren(chartKey(specs, view));
-  if (specs.some((spec) => pointsOf(spec).some((p) => p.y > 0))) {
+  if (figure.log) {
     const other = () => view.kind === 'log' ? 'linear' : 'log';
     const flip = el('button', {type: 'button', title: 'other vertical scale', onclick: () => {
       view.kind = other();
-      view.frame = frameOf(specs, view.kind);
+      useFrame();
       flip.textContent = other();
       keyOf();
       for (const draw of view.draws) draw();
@@ -167,7 +143,7 @@ function chartFigure(specs, title, nameOf) {
   }
   keyOf();
   return el('figure', {className: 'card chart'},
-    el('figcaption', {}, el('h3', {}, short(title, 120)), bar, note(remarks(specs[0], true).join(' '))), key,
+    el('figcaption', {}, el('h3', {}, short(figure.title, 120)), bar, note(remarks(specs[0], true).join(' '))), key,
     el('div', {className: 'y-title'}, titled(y)),
     el('div', {className: specs.length > 1 ? 'multiples' : ''}, specs.map((spec) =>
       chartPanel(spec, view, nameOf?.(spec), [...remarks(spec, false), spec.thinned, ...(spec.same ?? [])]))),
@@ -199,13 +175,13 @@ function chartPanel(spec, view, name, remarks) {
   return panel(plot);
 }
 
-function drawChart(svg, spec, {kind, height, frame, clip}, width) {
+function drawChart(svg, spec, {kind, height, frame, failed, floored, clip}, width) {
   const {x, y} = spec, row = height === box.height ? box.row : box.smallRow;
-  const rough = scaleOf(x.axis, frame.across, [40, width - 12]);  // before the axes have their widths
+  const rough = scaleOf(frame.x, [40, width - 12]);  // before the axes have their widths
   const failures = failedPlaces(spec, (v) => rough(v * x.scale));
-  const strip = frame.failed ? Math.max(1, failures.rows) * row + 6 : 0, base = height - box.bottom, floor = frame.floored ? 12 : 0;
+  const strip = failed ? Math.max(1, failures.rows) * row + 6 : 0, base = height - box.bottom, floor = floored ? 12 : 0;
   const [yLow, yHigh] = [base - floor, box.top + strip];
-  const ys = scaleOf(kind, frame.up, [yLow, yHigh]);
+  const ys = scaleOf(frame.y, [yLow, yHigh]);
   svg.attr('viewBox', `0 0 ${width} ${height}`).attr('width', width).attr('height', height);
   svg.selectAll('*').remove();
   const axisY = svg.append('g').attr('class', 'axis y');
@@ -215,8 +191,8 @@ function drawChart(svg, spec, {kind, height, frame, clip}, width) {
   axisY.attr('transform', `translate(${left},0)`);
   const axisX = svg.append('g').attr('class', 'axis x').attr('transform', `translate(0,${base})`);
   const drawX = (margin) => {
-    const scale = scaleOf(x.axis, frame.across, [left + 8, width - margin]);
-    axisX.call(d3.axisBottom(scale).tickValues(ticksOf(scale, x, x.axis, width / 90))
+    const scale = scaleOf(frame.x, [left + 8, width - margin]);
+    axisX.call(d3.axisBottom(scale).tickValues(ticksOf(scale, x, frame.x.axis, width / 90))
         .tickFormat((v) => number(v)).tickSize(4).tickPadding(4));
     return scale;
   };
@@ -236,12 +212,12 @@ function drawChart(svg, spec, {kind, height, frame, clip}, width) {
   if (spec.front)
     area.append('path').attr('class', 'front').attr('d', line.curve(d3.curveStepAfter)(spec.front.filter(usable)));
   line.curve(d3.curveLinear);
-  if (spec.theory && (kind === 'log') === (x.axis === 'log')) {
+  if (spec.theory && kind === frame.x.axis) {
     const ends = xs.domain().map((v) => v / x.scale);
     area.append('path').attr('class', 'theory')
         .attr('d', d3.line()(ends.map((v) => [px(v), py(spec.theory.factor * v ** spec.theory.slope)])));
   }
-  if (floorShown(spec)) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
+  if (spec.floor) area.append('path').attr('class', 'floor').attr('d', `M${left},${py(spec.floor.y)}H${width - right}`);
   spec.series.forEach((s, order) => {
     const solver = solverOf(s.solver), colour = solverColour(s.solver);
     const dodge = (order - (spec.series.length - 1) / 2) * Math.min(7, 30 / spec.series.length);
@@ -279,7 +255,7 @@ function drawPoint(group, {spec, series, point, place, order, cx, cy, floored, s
   } else {
     g.append('path').attr('class', floored ? 'zero' : 'dot')
         .attr('d', floored ? markerPath('triangle', 50) : markerPath(solverOf(series.solver).marker, size))
-        .classed('hollow', point.status !== 'ok');
+        .classed('hollow', point.status !== 'ok' || !!point.not_counted);
     if (point.name && !floored) g.append('text').attr('class', 'name').attr('x', 7).attr('y', -6).text(point.name);
   }
   describe(g.node(), pointLines(spec, series, point));

@@ -28,10 +28,7 @@ function timeChart(track, seek, until) {
   const draw = (width) => {
     if (!width) return;
     svg.attr('viewBox', `0 0 ${width} ${h}`).attr('width', width).attr('height', h).selectAll('*').remove();
-    const values = track.series.flatMap((s) => s.y).filter((v) => v !== null).map((v) => v * quantity.scale);
-    // Rounding, below a millionth of the unit, lies on the axis.
-    const least = d3.max(values) > 0 ? 1e-6 * quantity.scale : 0;
-    const ys = scaleOf('linear', [0, least, ...values], [h - foot, 8]);
+    const ys = scaleOf(track.range, [h - foot, 8]);
     const axis = svg.append('g').attr('class', 'axis y')
         .call(d3.axisLeft(ys).tickValues(ys.ticks(3)).tickFormat((v) => number(v)).tickSize(0).tickPadding(6));
     const left = Math.ceil(axis.node().getBBox().width) + 4;
@@ -73,7 +70,7 @@ function timeChart(track, seek, until) {
 
 /** A chart over time without a film: its slider moves the cursor. */
 function seriesFigure(spec) {
-  const track = {metric: spec.y.metric, title: spec.title, series: spec.series};
+  const track = {metric: spec.y.metric, title: spec.title, range: spec.range, series: spec.series};
   const seek = (t) => { slider.value = t; line.show(t); };
   const slider = el('input', {type: 'range', min: 0, step: 'any', 'aria-label': `Time in ${short(spec.title, 60)} [s]`,
                               oninput: () => line.show(Number(slider.value))});
@@ -105,7 +102,7 @@ function panels(film) {
 function filmed(film) {
   const seen = film.panels.map(({solver}) => solver), others = compared.filter((id) => !seen.includes(id));
   return others.length ? note(`${film.panels.length} of ${compared.length} solvers compared; `,
-    `not filmed: ${others.map((id) => solverOf(id).title).join(', ')}.`) : null;
+    `not shown: ${others.map((id) => solverOf(id).title).join(', ')}.`) : null;
 }
 
 /** The film of a scene with its controls, and its tracks beside it. */

@@ -11,21 +11,18 @@ function glyphBox(id) {
   return el('span', {className: 'glyph-box', style: `background:var(--c${i});color:var(--i${i})`}, statusOf(id).glyph);
 }
 
-/** Ends of the shades of what completed: RMS stretch. */
-const shades = [0.01, 0.03, 0.1, 0.3];
-const shadeOf = (value) => d3.bisectLeft(shades, value);
-const shaded = (value) => `background:color-mix(in srgb, var(--c${statusIndex('ok')}) ${[100, 70, 45, 24, 8][shadeOf(value)]}%, var(--card));` +
-    (shadeOf(value) > 0 ? 'color:var(--ink)' : '');
+const shadeOf = (value) => model.shades.find(({end}) => end === null || value <= end);
+const shaded = ({share}) => `background:color-mix(in srgb, var(--c${statusIndex('ok')}) ${100 * share}%, var(--card));` +
+    (share < 1 ? 'color:var(--ink)' : '');
 /** What the shades mean, if a cell has one. */
 const shadeKey = (cells) => cells.some(({value}) => value !== undefined) && el('ul', {className: 'key'},
-  [...shades, Infinity].map((end, i) => item(el('span', {className: 'glyph-box', style: shaded(end) + ';border:1px solid var(--line)'}, ''),
-    el('span', {}, end === Infinity ? `more than ${100 * shades[i - 1]}\u00A0%` : `${i ? '' : 'RMS stretch '}up to ${100 * end}\u00A0%`))));
+  model.shades.map((shade) => item(el('span', {className: 'glyph-box', style: shaded(shade) + ';border:1px solid var(--line)'}, ''), el('span', {}, shade.text))));
 
 function mapCell(map, cell, row, column) {
   if (!cell) return el('td', {}, el('span', {className: 'absent', 'aria-label': 'left out by the study'}, '·'));
   const i = statusIndex(cell.status), known = cases.has(cell.case);
   const button = el('button', {type: 'button', className: 'cell', tabIndex: -1,
-    'data-group': row, style: `--c:var(--c${i});--i:var(--i${i});` + (cell.value === undefined ? '' : shaded(cell.value))}, statusOf(cell.status).glyph);
+    'data-group': row, style: `--c:var(--c${i});--i:var(--i${i});` + (cell.value === undefined ? '' : shaded(shadeOf(cell.value)))}, statusOf(cell.status).glyph);
   if (known) button.onclick = () => state.set({case: cell.case});
   else button.setAttribute('aria-disabled', true);
   const at = (axis, place) => `${axis.title} ${shown(axis.values[place], axis, 4)}`;

@@ -8,11 +8,11 @@ function ends(counts) {
     el('li', {'data-s': solverOf(solver).order}, named(solver), Object.entries(byStatus).map(part))));
 }
 
-/** The film of a scene, or that there is none and what makes one. */
+/** The film of a scene, or its picture, or that there is neither; and what makes a film where there is none. */
 function filmOf(scene) {
-  const film = films.get(scene.film);
-  return film ? player(scene, film) : note(`No film of ${short(scene.title)} was rendered; this renders one: `,
-                                           el('code', {}, `taut render ${scene.id} --video`));
+  const film = films.get(scene.film), moves = film?.type?.startsWith('video/');
+  const what = film ? 'The moment at which they differ most; this renders a film: ' : `No film of ${short(scene.title)} was rendered; this renders one: `;
+  return [film && player(scene, film), !moves && note(what, el('code', {}, `taut render ${scene.id} --video`))];
 }
 
 function scenePart(scene) {
@@ -68,11 +68,12 @@ oneOf.views = [];
 
 /** All scenes at one glance: of each quantity, over what it was drawn, a panel for each scene on the same axes. */
 function chartsSection() {
-  const apart = new Set(model.steps?.charts), by = (key, list) => d3.nest().key(key).entries(list);
   const nameOf = (spec) => choice({scene: spec.scene, at: 'scenes'}, {}, short(scenes.get(spec.scene)?.title ?? spec.scene, 30));
-  const parts = by((chart) => chart.y.metric, (model.charts ?? []).filter((chart) => chart.kind !== 'series' && !apart.has(chart.id) && !(model.winners && chart.kind === 'cost')))
-      .map(({key, values}) => ({id: key, title: values[0].y.title, holds: values.map(({id}) => `chart-${id}`),
-        build: () => by((chart) => chart.x.metric, values).map(({values: one}) => chartFigure(one, one[0].title, nameOf))}));
+  const shown = [...figuresOf('scenes'), ...model.winners ? [] : figuresOf('cost')];
+  const quantityOf = (figure) => charts.get(figure.charts[0]).y;
+  const parts = d3.nest().key((figure) => quantityOf(figure).metric).entries(shown)
+      .map(({key, values}) => ({id: key, title: quantityOf(values[0]).title, holds: values.flatMap((figure) => figure.charts.map((id) => `chart-${id}`)),
+        build: () => values.map((figure) => chartFigure(figure, nameOf))}));
   return parts.length ? section('charts', model.scenes?.length > 1 ? 'All scenes' : 'Charts', oneOf('chart', parts, 'Quantities')) : null;
 }
 

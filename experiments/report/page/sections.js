@@ -23,7 +23,7 @@ function stepsSection() {
   return steps ? section('steps', 'Inside one step',
     note('Each solver does 1, 2, 3, ... iterations of one step from the same state: what does the next one bring? ',
          el('code', {}, 'taut converge')),
-    steps.charts && chartFigure(all(steps.charts, charts), 'Distance from the exact step', (spec) => short(spec.title, 60)),
+    figuresOf('steps').map((figure) => chartFigure(figure, (spec) => short(spec.title, 60))),
     all(steps.tables, tables).map(foldedTable)) : null;
 }
 

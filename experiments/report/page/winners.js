@@ -69,8 +69,8 @@ function winnersCard() {
 /** The first screen of what was timed. */
 function winnersPart() {
   if (!model.winners) return null;
-  const costs = (model.charts ?? []).filter((chart) => chart.kind === 'cost');
+  const costs = figuresOf('cost');
   const nameOf = (spec) => short(spec.scene, 30);
   return [...sentences(), el('div', {className: 'first'}, winnersCard(),
-    costs.length ? chartFigure(costs, costs[0].title, nameOf) : null)];
+    costs.map((figure) => chartFigure(figure, nameOf)))];
 }

@@ -55,7 +55,7 @@ std::filesystem::path plot_history(const History& history, const std::string& va
     const std::string rows = "'" + stem + ".csv' skip 1 using (column(2) == " + std::to_string(r) +
                              " ? column(4) : NaN):";
     const std::string colour = " lc rgb '" + colour_of(history.rows[r].solver) + "' ";
-    const std::string dash = "dt " + dash_of(history.rows[r].solver, static_cast<int>(r % 6));
+    const std::string dash = "dt " + gnuplot_dash(history.rows[r].solver, static_cast<int>(r % 6));
     plot += (plot.empty() ? "plot " : ", \\\n  ") + rows + "5 with linespoints pt 7 ps 0.4 " +
             dash + colour + "title " + gnuplot_string(history.rows[r].id) + ", \\\n  " + rows +
             "6 with points pt 6 ps 1.6 lw 2" + colour + "notitle";

@@ -7,6 +7,7 @@
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/plot/sheet.hpp"
+#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -29,16 +30,20 @@ double error_of(const Record& r) {
   return ended ? value_of(r, kErrorMetric) : std::nan("");
 }
 
-/// Shades of cells that completed, by the end of their RMS stretch, and the ink on them.
-struct Shade {
-  double end;
-  const char *colour, *ink, *text;
-};
-constexpr Shade kShades[] = {{0.01, "#1F7A5A", "#FFFFFF", "RMS stretch up to 1 %"},
-                             {0.03, "#5BA98A", "#1A1A19", "up to 3 %"},
-                             {0.1, "#97CBB6", "#1A1A19", "up to 10 %"},
-                             {0.3, "#CBE6DB", "#1A1A19", "up to 30 %"},
-                             {1e300, "#EFF7F3", "#1A1A19", "more than 30 %"}};
+constexpr std::string_view kInk = "#1A1A19";  ///< on light shades
+
+/// Of two colours "#RRGGBB".
+std::string mixed(std::string_view colour, double share, std::string_view background) {
+  const auto part = [](std::string_view of, std::size_t k) {
+    return std::stoi(std::string(of.substr(1 + 2 * k, 2)), nullptr, 16);
+  };
+  std::string text = "#";
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double mix = share * part(colour, k) + (1 - share) * part(background, k);
+    text += formatted("%02X", static_cast<unsigned>(std::lround(mix)));
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -74,21 +79,25 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
                  "with labels tc rgb '" + std::string(style.ink.light) + "'", "");
     }
     double from = -1;
-    for (const Shade& shade : kShades) {
+    for (const StretchShade& shade : stretch_shades()) {
       const bool any = std::ranges::any_of(map.cells, [&](const StatusMap::Cell& cell) {
         const double error = error_of(*cell.record);
         return error > from && error <= shade.end;
       });
       const std::string cells = "'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
                                 " && column(11) > " + exact(from) +
-                                " && column(11) <= " + exact(shade.end) + " ? column(6) : NaN):7:";
+                                " && column(11) <= " + exact(std::min(shade.end, 1e300)) +
+                                " ? column(6) : NaN):7:";
       from = shade.end;
       if (!any) continue;
+      const StatusStyle ok = status_style(Status::Kind::ok);
       sheet.draw(cells + "(0.45):(0.45)",
-                 std::string("with boxxyerror fs solid 1 noborder lc rgb '") + shade.colour + "'",
-                 shade.text);
+                 "with boxxyerror fs solid 1 noborder lc rgb '" +
+                     mixed(ok.colour.light, shade.share, "#FFFFFF") + "'",
+                 std::string(shade.text));
       sheet.draw(cells + "(strcol(8) eq 'ok' ? '✓' : '~')",
-                 std::string("with labels tc rgb '") + shade.ink + "'", "");
+                 "with labels tc rgb '" + std::string(shade.share == 1 ? ok.ink.light : kInk) + "'",
+                 "");
     }
   }
   return sheet;
@@ -116,7 +125,7 @@ Sheet profile_sheet(const std::vector<PerformanceProfile>& profiles) {
     sheet.draw("'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
                    " ? column(3) : NaN):(100*column(4))",
                "with steps lw 2 lc rgb '" + colour_of(profile.solver) + "' dt " +
-                   dash_of(profile.solver, 0),
+                   gnuplot_dash(profile.solver, 0),
                solver_title(profile.solver));
   }
   return sheet;

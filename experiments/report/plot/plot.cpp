@@ -19,10 +19,8 @@ std::string colour_of(std::string_view solver) {
   return std::string(solver_style(solver).colour.light);
 }
 
-std::string dash_of(std::string_view solver, int variant) {
-  constexpr std::array<std::string_view, 5> kVariants{"7 4", "2 3", "10 3 2 3", "16 4", "4 2"};
-  std::string dash(variant == 0 ? solver_style(solver).dash
-                                : kVariants[static_cast<std::size_t>(variant - 1) % 5]);
+std::string gnuplot_dash(std::string_view solver, int variant) {
+  std::string dash(dash_of(solver, variant));
   if (dash.empty()) return "solid";
   std::ranges::replace(dash, ' ', ',');
   return "(" + dash + ")";
@@ -252,7 +250,7 @@ Sheet sheet_of(const PlotSpec& spec, const std::vector<PlotPanel>& panels,
     throw InputError(without.empty() ? "there is nothing to draw" : without.front());
   return !series.empty() ? series_sheet(series, spec.y)
          : !maps.empty() ? map_sheet(maps)
-                         : curves_sheet(charts);
+                         : curves_sheet(figure_of(charts));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/report/chart/charts.hpp"
+#include "experiments/report/chart/frame.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/timing/profile.hpp"
 
@@ -25,12 +26,12 @@ struct Sheet {
   void explain(const std::string& look, const std::string& title);
 };
 
-/// "lc rgb" and "dt" of a solver; its variants have other dashes: "(9,4)".
+/// "lc rgb" and "dt" of a solver: "(9,4)".
 std::string colour_of(std::string_view solver);
-std::string dash_of(std::string_view solver, int variant);
+std::string gnuplot_dash(std::string_view solver, int variant);
 
-/// A panel for each chart. Precondition: not empty, all of the same quantities.
-Sheet curves_sheet(const std::vector<Chart>&);
+/// A panel for each chart.
+Sheet curves_sheet(const Figure&);
 /// A panel for each scene; of its series those of this value.
 Sheet series_sheet(const std::vector<PlotPanel>&, const std::string& value);
 /// A panel for each map. Precondition: not empty.

@@ -64,6 +64,17 @@ void add_acceptable(Answer& answer, const Frontier& found, const Unit& unit) {
 
 }  // namespace
 
+BothFrontiers find_both(const FrontierQuestion& question, Store& store, const CampaignOptions& how,
+                        const Judge& unacceptable) {
+  BothFrontiers found{.stable = find_frontier(question, store, how), .acceptable = {}};
+  if (found.stable.frontier.kind == Frontier::Kind::not_answered) return found;
+  found.acceptable =
+      find_frontier(question, store, how, [&](const Case& one, const Record& record) {
+        return completed(record.status) ? unacceptable(one, record) : describe(record.status);
+      });
+  return found;
+}
+
 Answer answer_of(const FrontierQuestion& question, const BothFrontiers& both,
                  const std::optional<Prediction>& theory) {
   const CaseFrontier& result = both.stable;

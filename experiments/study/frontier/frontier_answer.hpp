@@ -14,6 +14,16 @@ struct BothFrontiers {
   CaseFrontier stable, acceptable;
 };
 
+/// Both searches; the second one finds most of its cases stored. What is not stable is not
+/// acceptable, either.
+BothFrontiers find_both(const FrontierQuestion&, Store&, const CampaignOptions&,
+                        const Judge& acceptable);
+
+/// Both searches; the second one finds most of its cases stored. What did not complete is not
+/// acceptable, either; of the rest `unacceptable` says why not.
+BothFrontiers find_both(const FrontierQuestion&, Store&, const CampaignOptions&,
+                        const Judge& unacceptable);
+
 /// The answer of `taut frontier` for one solver.
 Answer answer_of(const FrontierQuestion&, const BothFrontiers&, const std::optional<Prediction>&);
 

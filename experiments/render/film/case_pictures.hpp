@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/case/case.hpp"
+#include "experiments/results/store.hpp"
+
+namespace taut {
+
+/// A stored case under a title.
+struct TitledCase {
+  CaseSpec spec;
+  std::string title;
+};
+
+/// Draws the cloth of each at its end, under a camera of its own, side by side. Precondition: their
+/// motions are stored. Throws InputError without a renderer.
+void draw_side_by_side(const std::vector<TitledCase>&, const Store&,
+                       const std::filesystem::path& file);
+
+}  // namespace taut
