@@ -98,7 +98,7 @@ State after(const Scene& s, const std::string& solver) {
 
 }  // namespace
 
-TAUT_TRUTH(body_in_a_moving_frame, 7, 11,
+TAUT_TRUTH(body_in_a_moving_frame, 7, 15,
            "a body that a velocity moves is one at rest, seen from a frame that moves, also if it "
            "deforms",
            "Galileo; without damping and wind") {
@@ -123,7 +123,7 @@ TAUT_TRUTH(body_in_a_moving_frame, 7, 11,
     }
 }
 
-TAUT_TRUTH(frames_of_a_rigid_motion, 7, 12,
+TAUT_TRUTH(frames_of_a_rigid_motion, 7, 16,
            "a body whose frames move and turn it as a whole does what a rigid one does",
            "the motion, told in another way") {
   struct Told {
