@@ -57,11 +57,15 @@ Vec3 normal_round(int triangle, std::size_t which, std::span<const Vec3> vertice
     const auto x = [&](std::size_t n) { return vertices[place(triangles[place(t)][n % 3])]; };
     return Vec3(angle_at(x(k), x(k + 1), x(k + 2)) * normals[place(t)]);
   };
+  const auto beyond = [&](int t, std::size_t edge) {
+    const std::int32_t side = across[place(t)][edge % 3];
+    return side < 0 ? -1 : side / 3;
+  };
   Vec3 sum = share(triangle);
   for (const std::size_t edge : {2u, 0u}) {
     std::size_t seen = 1;
-    for (int t = across[place(triangle)][(which + edge) % 3]; t >= 0 && seen < triangles.size();
-         t = across[place(t)][(corner_of(t) + edge) % 3], ++seen) {
+    for (int t = beyond(triangle, which + edge); t >= 0 && seen < triangles.size();
+         t = beyond(t, corner_of(t) + edge), ++seen) {
       if (t == triangle) return sum;
       sum += share(t);
     }
@@ -74,6 +78,10 @@ Vec3 normal_round(int triangle, std::size_t which, std::span<const Vec3> vertice
 TriangleMesh::TriangleMesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
     : triangles_(std::move(triangles)), across_(triangles_.size(), {-1, -1, -1}) {
   vertices_ = std::move(vertices);
+  corner_at_.assign(vertices_.size(), -1);
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      corner_at_[to_place(triangles_[t][k])] = static_cast<std::int32_t>(3 * t + k);
   std::vector<Vec3> middles;
   middles.reserve(triangles_.size());
   order_.reserve(triangles_.size());
@@ -87,6 +95,12 @@ TriangleMesh::TriangleMesh(std::vector<Vec3> vertices, std::vector<Triangle> tri
   if (!triangles_.empty()) build(0, static_cast<std::int32_t>(order_.size()), middles);
   make_boxes();
   make_normals();
+}
+
+Vec3 TriangleMesh::corner_normal(int vertex) const {
+  if (!corner_normals_.empty()) return corner_normals_[to_place(vertex)];
+  const std::int32_t at = corner_at_[to_place(vertex)];
+  return normal_round(at / 3, to_place(at % 3), vertices_, triangles_, across_, normals_);
 }
 
 /// Angles, of which corners' normals are made, are most of the cost, and few places are at corners:
@@ -398,7 +412,7 @@ std::vector<MeshHit> TriangleMesh::hits(const Vec3& from, const Vec3& to) const 
 }
 
 std::size_t TriangleMesh::bytes() const {
-  return sizeof(*this) + vertices_.size() * 2 * sizeof(Vec3) +
+  return sizeof(*this) + vertices_.size() * (2 * sizeof(Vec3) + sizeof corner_at_[0]) +
          triangles_.size() *
              (sizeof(Triangle) + sizeof across_[0] + sizeof(Vec3) + sizeof order_[0]) +
          nodes_.size() * sizeof(Node);

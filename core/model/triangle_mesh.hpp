@@ -51,8 +51,8 @@ class TriangleMesh {
   double volume() const;  ///< m^3; negative: triangles look inward
   const Vec3& normal(int triangle) const { return normals_[to_place(triangle)]; }
 
-  /// Angle-weighted, of no particular length.
-  const Vec3& corner_normal(int vertex) const { return corner_normals_[to_place(vertex)]; }
+  /// Angle-weighted, of no particular length. Precondition: a triangle has the vertex.
+  Vec3 corner_normal(int vertex) const;
   /// Edges are numbered 3 triangle + k, from its corner k to the next. The number of this one in
   /// the triangle beyond it; negative: there is none.
   int beyond(int triangle, int k) const { return across_[to_place(triangle)][to_place(k)]; }
@@ -146,7 +146,8 @@ class TriangleMesh {
   std::vector<Triangle> triangles_;
   std::vector<std::array<std::int32_t, 3>> across_;  ///< beyond()
   std::vector<Vec3> normals_;                        ///< [triangles] unit
-  std::vector<Vec3> corner_normals_;                 ///< [n] corner_normal()
+  std::vector<Vec3> corner_normals_;                 ///< [n] corner_normal(); empty: made if asked
+  std::vector<std::int32_t> corner_at_;              ///< [n] 3 triangle + k of one there
   std::vector<std::int32_t> order_;                  ///< triangles as leaves have them
   std::vector<Node> nodes_;
   Eigen::AlignedBox3d box_;

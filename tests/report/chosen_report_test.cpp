@@ -164,14 +164,17 @@ TEST(Chosen, AFilmHasItsPanelsItsBarAndItsEvents) {
                                    {"case", short_key("hang", "jakobsen", 16)}},
                                   {{"solver", "bullet"}, {"settings", "elsewhere"}}}));
   EXPECT_EQ(film["bar"], input.media[0].bar);
-  EXPECT_EQ(film["tracks"], (Json{{{"metric", "stretch.rms"},
-                                   {"title", "RMS stretch"},
-                                   {"series",
-                                    {{{"solver", "jakobsen"},
-                                      {"label", "J"},
-                                      {"t", {0, 0.5, 1}},
-                                      {"y", {0, 0.1, nullptr}}}}}}}))
-      << "one moment of Bullet's is no track";
+  const Json range{{"axis", "linear"}, {"low", 0}, {"high", 10 + 0.06 * 10}};  // of 0.1
+  const Json line{{"solver", "jakobsen"},
+                  {"label", "J"},
+                  {"dash", ""},
+                  {"t", {0, 0.5, 1}},
+                  {"y", {0, 0.1, nullptr}}};
+  const Json track{{"metric", "stretch.rms"},
+                   {"title", "RMS stretch"},
+                   {"range", range},
+                   {"series", Json::array({line})}};
+  EXPECT_EQ(film["tracks"], Json::array({track})) << "one moment of Bullet's is no track";
   EXPECT_EQ(by_id(model["scenes"], "hang")["film"], "film-hang");
 }
 
