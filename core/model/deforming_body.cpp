@@ -32,22 +32,28 @@ std::vector<double> turning_points(const Cubic& c) {
   std::vector<double> at;
   if (!(discriminant > 0)) return at;
   const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
-  for (const double s : {q / a, c[1] / q})
-    if (s > 0 && s < 1) at.push_back(s);
+  for (const auto& [over, under] : {std::pair(q, a), {c[1], q}})
+    if (const double s = under == 0 ? 0 : over / under; s > 0 && s < 1) at.push_back(s);
   std::ranges::sort(at);
   return at;
+}
+
+/// Where Newton's step from s ends; outside of [0, 1] where f is level.
+double newton_from(const Cubic& c, double s) {
+  const double rise = slope(c, s);
+  return rise == 0 ? -1 : s - value(c, s) / rise;
 }
 
 /// The root between two places of different sign: Newton's steps, halves where they leave.
 double root_between(const Cubic& c, double low, double high) {
   const bool rises = value(c, low) < 0;
-  double s = low - value(c, low) / slope(c, low);
+  double s = newton_from(c, low);
   for (int round = 0; round < 100; ++round) {
     if (!(s > low && s < high)) s = low + (high - low) / 2;
     const double f = value(c, s);
     if (f == 0) return s;
     ((f < 0) == rises ? low : high) = s;
-    const double next = s - f / slope(c, s);
+    const double next = newton_from(c, s);
     if (next == s || high - low <= 1e-16) return s;
     s = next;
   }

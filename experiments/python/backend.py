@@ -88,7 +88,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         wheel.add(f"taut/_taut{SUFFIX}", pathlib.Path(module).read_bytes())
     for kind, where in DATA.items():
         for file in sorted(where.rglob("*")):
-            if file.suffix in (".toml", ".obj", ".json"):
+            if file.suffix in (".toml", ".obj", ".npy", ".json"):
                 wheel.add(f"taut/data/{kind}/{file.relative_to(where)}", file.read_bytes())
     info = f"{name}.dist-info"
     wheel.add(f"{info}/METADATA", about.encode())

@@ -872,7 +872,8 @@ searched = "mine-searched.toml"
             for column, gap in ("to_1e-1", 1e-1), ("to_1e-2", 1e-2), ("to_1e-4", 1e-4):
                 first = [r["iterations"] for r in reached if r["solver"] == own["solver"] and r["below"] == gap]
                 self.assertEqual(row[column], first[0] if first else "not reached")
-        chart, = [chart for chart in model["charts"] if chart["id"] in model["steps"]["charts"]]
+        figure, = [figure for figure in model["figures"] if figure["of"] == "steps"]
+        chart, = [chart for chart in model["charts"] if chart["id"] in figure["charts"]]
         drawn = [(point["x"], point["y"]) for series in chart["series"] for point in series["points"]]
         self.assertEqual(sorted(drawn), sorted((p["iterations"], p["distance"]) for p in points if p["distance"]))
 
