@@ -224,6 +224,14 @@ TEST(TriangleMesh, WhatIsNearbyAnswersToTheBit) {
   }
 }
 
+TEST(TriangleMesh, WhatIsNearbyEndsAtAnOpenBorder) {
+  const TriangleMesh mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  TriangleMesh::Nearby nearby;
+  mesh.nearest({0.1, 0.2, 0.5}, nearby);
+  for (const Vec3& p : {Vec3(0.05, 0.2, 0.5), Vec3(-0.3, 0.2, 0.5), Vec3(0.1, -1, 0.5)})
+    EXPECT_EQ(mesh.nearest(p, nearby).distance, mesh.nearest(p).distance) << p.transpose();
+}
+
 TEST(TriangleMesh, RefittedItAnswersAsOneMadeAnew) {
   for (const auto& [name, body] : bodies()) {
     std::vector<Vec3> moved = body.vertices;

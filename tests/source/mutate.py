@@ -232,7 +232,10 @@ def chosen(file):
         if len(found) != 1:
             sys.exit(f"mutate: {name} contains {there!r} {len(found)} times, not once")
         layer = max((layer for layer in LAYERS if name.startswith(layer)), key=len)
-        yield Mutant(layer, name, found[0] + 1, lines[found[0]].replace(there, instead), checks, tests)
+        mutant = Mutant(layer, name, found[0] + 1, lines[found[0]].replace(there, instead), checks, tests)
+        if mutant.body((ROOT / name).read_text()) is None:
+            sys.exit(f"mutate: {there!r} of {name} is in no function")
+        yield mutant
 
 
 def draw(layers, random_, build):

@@ -79,6 +79,19 @@ TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
   EXPECT_GT(checked, 3000);
 }
 
+TEST(BodyFeatures, AFaceLeavesATipByItsDepthAndTheThickness) {
+  const TriangleMesh mesh({{0, 0, 0}, {1, -1, 0}, {-0.5, -1, -0.8}, {-0.5, -1, 0.8}},
+                          {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
+  ASSERT_GT(mesh.volume(), 0);
+  BodyFeatures features(0.01, 1);
+  for (const double y : {-0.05, -0.002, 0.004}) {
+    const Corners face{Vec3(1, y, 0), Vec3(-1, y, -1), Vec3(-1, y, 1)};
+    const Separation out = features.out_of(mesh, 0, false, face, nullptr);
+    EXPECT_NEAR(out.length, 0.01 - y, 1e-12) << y;
+    EXPECT_NEAR(out.normal.y(), 1, 1e-12) << y;
+  }
+}
+
 TEST(BodyFeatures, WhatPiecesRememberHidesNothing) {
   const auto mesh = torus(0.3, 0.12, 16, 10, 0.02).mesh();
   constexpr double kThickness = 0.005;
