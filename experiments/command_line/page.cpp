@@ -51,6 +51,13 @@ std::vector<report::SolverInfo> introductions() {
   return all;
 }
 
+/// Bodies that deform take Bullet minutes: `--film` films such a scene.
+bool is_drawn_unasked(const std::string& name) {
+  const Scene scene = load_scene(find_scene(name));
+  return std::ranges::none_of(scene.colliders,
+                              [](const Collider& c) { return c.frames != nullptr; });
+}
+
 /// "20261121T205040Z" as people write it: "2026-11-21 20:50 UTC".
 std::string readable(const std::string& stamp) {
   return stamp.substr(0, 4) + "-" + stamp.substr(4, 2) + "-" + stamp.substr(6, 2) + " " +
@@ -120,7 +127,8 @@ report::ReportInput input_of(PageRequest options) {
   std::vector<OtherScene> shown;
   for (const std::string& scene : options.films) shown.push_back({scene});
   if (options.studies.empty() && shown.empty())
-    for (const std::string& scene : shipped("scenes")) shown.push_back({scene, true});
+    for (const std::string& scene : shipped("scenes"))
+      if (is_drawn_unasked(scene)) shown.push_back({scene, true});
   std::vector<std::string> maps = options.studies;
   if (options.studies.empty()) {
     const MainJob job = main_job();

@@ -66,6 +66,17 @@ double relative_rounding(const std::vector<Vec3>& x) {
   return (all ? 0x1p-24 : 0x1p-53) / std::sqrt(3.0);
 }
 
+/// No cloth goes farther [m] in these seconds than twice a fall from its start. Where hundreds of
+/// substeps in single precision have rounded in contact, what they seem to miss is more; without
+/// gravity nothing is known.
+double farthest(const Scene& scene, double seconds) {
+  const double g = scene.gravity.norm();
+  if (g == 0) return std::numeric_limits<double>::infinity();
+  double fastest = 0;
+  for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());
+  return 2 * (g * seconds / 2 + fastest) * seconds;
+}
+
 /// From which step a case is off, is what its solver declares, and nothing else of it is known: the
 /// state before a step, or before its last substep, and the one behind it.
 class StepErrors final : public Metric {
@@ -93,7 +104,8 @@ class StepErrors final : public Metric {
            "over |w + l|^2, w its way beside that of its pins or, without any, of its centre of "
            "mass, l the sum of (T - t) times the velocity "
            "that the step at t misses; 0 of a cloth that stands still; none if it would hardly "
-           "have moved, at most 5 % of its size, or if rounding is above a tenth of the way: l, "
+           "have moved, at most 5 % of its size, or farther than twice a fall, or if rounding is "
+           "above a tenth of the way: l, "
            "each step missing |x|/sqrt(3) 2^-24 of coordinates that are all floats, else 2^-53",
        .window = Window::none,
        .title = "share of the way, by what its steps miss"},
@@ -206,7 +218,8 @@ class StepErrors final : public Metric {
     }
     const double rms = std::sqrt(square / static_cast<double>(free.size()));
     const bool known = rounding <= kMostRounding * kMostRounding * square;
-    return known && rms >= kLeastWay * extent(scene_) ? along / square : Summary::kNone;
+    const bool moves = rms >= kLeastWay * extent(scene_) && rms <= farthest(scene_, seconds);
+    return known && moves ? along / square : Summary::kNone;
   }
   void judge(const Snapshot& m) {
     const double h = substep();

@@ -30,7 +30,7 @@ void add_options(CLI::App& app, Options& options) {
   add_stored(app, options.preset, options.results);
   app.add_option("--film", options.films,
                  "Also films this scene (name or path), which no study ran; none and no STUDY: a "
-                 "picture of every shipped scene")
+                 "picture of every shipped scene but those with bodies that deform")
       ->allow_extra_args(false);
   app.add_flag("--no-media", options.no_media, "Without pictures and videos");
   add_json(app, options.model,
