@@ -3,6 +3,7 @@
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -14,6 +15,7 @@
 
 #include "bullet_ref/bullet_solver.hpp"
 #include "core/model/body_frames.hpp"
+#include "core/model/index.hpp"
 #include "core/model/triangle_mesh.hpp"
 
 namespace taut {
@@ -157,7 +159,49 @@ std::shared_ptr<const TriangleMesh> triangles_of(const btBvhTriangleMeshShape& s
   return std::make_shared<const TriangleMesh>(std::move(x), std::move(triangles));
 }
 
+/// Solid, in one piece and bent inward along no edge.
+bool is_convex(const MeshBody& body) {
+  const TriangleMesh& mesh = *body.mesh;
+  if (body.sides != MeshBody::Sides::out || !mesh.closed()) return false;
+  const double rounding = 1e-9 * mesh.reach();
+  std::vector<char> seen(mesh.triangles().size());
+  std::vector<int> ahead{0};
+  seen[0] = 1;
+  std::size_t reached = 1;
+  while (!ahead.empty()) {
+    const int t = ahead.back();
+    ahead.pop_back();
+    const Vec3& corner = mesh.vertices()[to_index(mesh.triangles()[to_index(t)][0])];
+    for (int k = 0; k < 3; ++k) {
+      const int edge = mesh.beyond(t, k), other = edge / 3;
+      const int opposite = mesh.triangles()[to_index(other)][to_index((edge + 2) % 3)];
+      if (mesh.normal(t).dot(mesh.vertices()[to_index(opposite)] - corner) > rounding) return false;
+      if (std::exchange(seen[to_index(other)], 1)) continue;
+      ++reached;
+      ahead.push_back(other);
+    }
+  }
+  return reached == seen.size();
+}
+
+/// All of its corners, in their order.
+std::unique_ptr<btConvexHullShape> hull_of(const TriangleMesh& mesh) {
+  auto made = std::make_unique<btConvexHullShape>();
+  for (const Vec3& x : mesh.vertices()) made->addPoint(to_bullet(x), false);
+  made->recalcLocalAabb();
+  made->setMargin(0);
+  return made;
+}
+
+std::shared_ptr<const TriangleMesh> triangles_of(const btConvexHullShape& hull,
+                                                 const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> x;
+  for (int v = 0; v < hull.getNumPoints(); ++v) x.push_back(from_bullet(hull.getScaledPoint(v)));
+  return std::make_shared<const TriangleMesh>(std::move(x), triangles);
+}
+
 std::unique_ptr<btCollisionShape> make_shape(const Shape& shape, const Slab& slab) {
+  if (const auto* body = std::get_if<MeshBody>(&shape)) return hull_of(*body->mesh);
   if (const auto* ball = std::get_if<Ball>(&shape))
     return std::make_unique<btSphereShape>(static_cast<btScalar>(ball->radius));
   if (const auto* capsule = std::get_if<Capsule>(&shape))
@@ -180,17 +224,25 @@ Vec3 middle(const std::vector<Vec3>& points) {
 
 }  // namespace
 
+bool is_met_by_triangles(const Collider& collider) {
+  const auto* body = std::get_if<MeshBody>(&collider.shape);
+  return body && (collider.frames || !is_convex(*body));
+}
+
 struct RigidColliders::Body {
   Body(const Collider& collider, const Vec3& above, const Slab& slab)
       : start(pose_at_start(collider.shape, above, slab)),
         motion(collider.motion),
         is_plane(std::holds_alternative<Plane>(collider.shape)),
         follows(slab.follows()),
-        body(std::get_if<MeshBody>(&collider.shape)
+        body(is_met_by_triangles(collider)
                  ? std::make_unique<TriangleShape>(*std::get<MeshBody>(collider.shape).mesh)
                  : nullptr),
         frames(collider.frames),
         sides(body ? std::get<MeshBody>(collider.shape).sides : MeshBody::Sides::out),
+        hull(body || !std::holds_alternative<MeshBody>(collider.shape)
+                 ? nullptr
+                 : std::get<MeshBody>(collider.shape).mesh),
         shape(body ? nullptr : make_shape(collider.shape, slab)),
         rigid(btRigidBody::btRigidBodyConstructionInfo(
             0, nullptr, body ? static_cast<btCollisionShape*>(&body->shape()) : shape.get())) {
@@ -230,6 +282,7 @@ struct RigidColliders::Body {
   std::unique_ptr<TriangleShape> body;       ///< null: another shape
   std::shared_ptr<const BodyFrames> frames;  ///< of a body that deforms
   MeshBody::Sides sides;                     ///< of a body, which Bullet does not know
+  std::shared_ptr<const TriangleMesh> hull;  ///< whose corners the shape has; null: another shape
   std::unique_ptr<btCollisionShape> shape;
   btRigidBody rigid;
 };
@@ -288,6 +341,9 @@ std::vector<Collider> RigidColliders::read_back(double t) const {
     const btCollisionShape* shape = body->rigid.getCollisionShape();
     if (const auto* triangles = dynamic_cast<const btBvhTriangleMeshShape*>(shape)) {
       collider.shape = MeshBody{triangles_of(*triangles), origin, rotation, body->sides};
+    } else if (const auto* hull = dynamic_cast<const btConvexHullShape*>(shape)) {
+      collider.shape =
+          MeshBody{triangles_of(*hull, body->hull->triangles()), origin, rotation, body->sides};
     } else if (const auto* ball = dynamic_cast<const btSphereShape*>(shape)) {
       collider.shape = Ball{origin, static_cast<double>(ball->getRadius())};
     } else if (const auto* round = dynamic_cast<const btCapsuleShape*>(shape)) {

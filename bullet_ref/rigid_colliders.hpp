@@ -11,11 +11,17 @@ class btRigidBody;
 
 namespace taut {
 
+/// A body whose triangles Bullet meets one by one, as hulls that are 0.06 m thick on both sides
+/// (BT_SOFTBODY_TRIANGLE_EXTRUSION) and have a margin of 0.04 m, whatever the body's sides are:
+/// cloth rests 0.06 to 0.1 m above it. It is that unless it is convex, "out" and does not deform.
+bool is_met_by_triangles(const Collider&);
+
 /// A scene's colliders as Bullet's rigid bodies, in the scene's order: a ball as btSphereShape, a
 /// capsule as btCapsuleShape (along its own y), a box as btBoxShape, a plane as the top of a
 /// btBoxShape slab (btStaticPlaneShape tunnels and lets the cloth rest 0.10 m too high). Boxes have
-/// shape margin 0; a sphere's and a capsule's is its radius. Bodies that move are kinematic; one
-/// that deforms is a btBvhTriangleMeshShape that is refitted as it moves.
+/// shape margin 0; a sphere's and a capsule's is its radius. A body of triangles is the
+/// btConvexHullShape of its corners if it is convex, else a btBvhTriangleMeshShape, which is
+/// refitted where it deforms. Bodies that move are kinematic.
 class RigidColliders {
  public:
   /// Adds the bodies to the world, which must outlive this object. Slabs are centred below the

@@ -47,6 +47,7 @@ Scene everything() {
       {.shape = Capsule{{2, -0.3, 0.1}, {2.5, 0.4, 0.9}, 0.2},
        .motion = {.velocity = {0, 1, 0}, .spin = {1, 0, 2}}},
       {.shape = Capsule{{-2, 5, 0}, {-2, 4, 0}, 0.3}},
+      {.shape = MeshBody{pyramid(0.3, 0.2).mesh(), {-3, 0.2, 2}, turned}},
       {.shape = MeshBody{torus(0.3, 0.1, 7, 5).mesh(), {3, 0.2, 0.7}, turned},
        .motion = {.velocity = {0, 1, 0}, .spin = {1, 0, 2}}}};
   scene.wind = Wind{.velocity = {3, 0, 1}, .strength = 0.2, .law = Wind::Law::literal};
