@@ -268,7 +268,7 @@ constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|dou
                                                         {"order", "contacts-first|links-first"},
                                                         {"hardness", "0.1|0.4|1"}};
 
-constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", "on", "off", true}};
+constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", "on|off", true}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   if (scene.damping != 0 || params.is("reorder", "on"))

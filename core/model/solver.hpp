@@ -118,12 +118,13 @@ struct AccuracyParameters {
   std::string_view accelerators;
 };
 
-/// A choice that a scene may not need (experiments/require): the value that costs more, and the one
-/// that may do; of a whole number none, for it is halved until it is 1.
+/// A choice that a scene may not need (experiments/require).
 struct OptionalEffect {
   std::string_view name;  ///< "contact of faces"
-  std::string_view parameter, from, to;
-  bool of_contact = false;  ///< means something with colliders only
+  std::string_view parameter;
+  std::string_view values = "";  ///< "on|edges|off": from the one that costs most to the one that
+                                 ///< may do; none of a whole number, which is halved until it is 1
+  bool of_contact = false;       ///< means something with colliders only
 };
 
 /// What a solver does to small displacements of links at their rest length, without gravity, wind

@@ -167,4 +167,5 @@ TAUT_SOLVER(admm) = {
                  .sweeps = "iterations",
                  .all_at_once = true,
                  .alternatives = taut::solver::admm::kAlternatives,
-                 .labelled = "substeps|iterations|penalty|multipliers|precision"}};
+                 .labelled = "substeps|iterations|penalty|multipliers|precision"},
+    .optional_effects = taut::loop::kOptionalEffects};

@@ -136,8 +136,10 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {
-    {"beta", "10|100|1000"}, {"k-min", "1|10|100"}, {"precision", "double|float"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"beta", "10|100|1000"},
+                                                        {"k-min", "1|10|100"},
+                                                        {"order", "coloured|mesh"},
+                                                        {"precision", "double|float"}};
 
 }  // namespace
 }  // namespace taut::solver::avbd
@@ -154,4 +156,5 @@ TAUT_SOLVER(avbd) = {.name = "avbd",
                      .accuracy = {.substeps = "substeps",
                                   .sweeps = "iterations",
                                   .alternatives = taut::solver::avbd::kAlternatives,
-                                  .labelled = "substeps|iterations|beta|k-min|precision"}};
+                                  .labelled = "substeps|iterations|beta|k-min|order|precision"},
+                     .optional_effects = taut::loop::kOptionalEffects};

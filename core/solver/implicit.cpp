@@ -11,7 +11,7 @@
 // Cloth, SIGGRAPH 2002). Where full steps no longer bring the gradient down fast, the Hessian is
 // taken as it is, if it is positive definite. The step is halved until G falls (Armijo). From x_t,
 // one iteration without line search is the linearised step of Baraff, Witkin: Large Steps in Cloth
-// Simulation (SIGGRAPH 1998).
+// Simulation (SIGGRAPH 1998). start=inertia begins at y instead, where nothing touches.
 //
 // With multipliers=keep (core/solver/newton/kept_tensions.hpp) the tension across links is one that
 // outlives the step, and iterations begin at y; a step whose gradient, in the norm of 1/M, has
@@ -54,6 +54,10 @@ constexpr ParamSpec kOwn[] = {
     kMaterial,
     Integrator::kParam,
     KeptTensions::kParam,
+    ParamSpec::choice("start", "last", "last|inertia",
+                      "iterations begin where the last step ended, or where inertia and gravity "
+                      "alone lead; with multipliers=keep always there, and where anything touches "
+                      "never"),
     ParamSpec::choice("line-search", "on", "on|off",
                       "halve steps until the energy falls; iterations=1,line-search=off is Baraff "
                       "and Witkin's step"),
@@ -72,6 +76,7 @@ class NewtonPass final : public Pass<double> {
   explicit NewtonPass(const loop::Setup& s)
       : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
         bending_(make_bending(s.scene)),
+        starts_at_y_(s.params.is("start", "inertia") || s.params.is("multipliers", "keep")),
         line_search_(s.params.is("line-search", "on")),
         iterations_(s.params.integer("iterations")),
         integrator_(s.params, s.scene.gravity),
@@ -117,12 +122,13 @@ class NewtonPass final : public Pass<double> {
     ended_at_.clear();
     set_tolerances(p, h);
     plain_ = !kept_.on();
-    if (plain_) return;
+    from_y_ = starts_at_y_;
+    if (!from_y_) return;
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, y_[i]);
     first_ = false;
     contacts_.let_go();
-    at_first_ = in_norm_of_masses(gradient(positions(p), h));
+    if (!plain_) at_first_ = in_norm_of_masses(gradient(positions(p), h));
   }
 
   void end(Particles<double>& p, double t, double h) override {
@@ -138,7 +144,7 @@ class NewtonPass final : public Pass<double> {
     std::vector<Vec3> x = positions(p);
     if (x == ended_at_) return;
     contacts_.find(p);
-    if (!plain_ && contacts_.touch()) {
+    if (from_y_ && contacts_.touch()) {
       start_over(p);
       x = positions(p);
       contacts_.find(p);
@@ -173,6 +179,7 @@ class NewtonPass final : public Pass<double> {
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
     plain_ = first_ = clamped_ = true;
+    from_y_ = false;
     ended_at_.clear();
     kept_.forget();
   }
@@ -374,12 +381,13 @@ class NewtonPass final : public Pass<double> {
 
   std::vector<Spring> springs_;
   std::vector<BendingElement> bending_;
-  bool line_search_;
+  bool starts_at_y_, line_search_;
   int iterations_;
   Integrator integrator_;
   KeptTensions kept_;
   double at_first_ = 0;  ///< N/sqrt(kg), of |g| at the prediction
   bool plain_ = true;    ///< Newton's method, without kept tensions, in this substep
+  bool from_y_ = false;  ///< iterations of this substep began at y
   Hessian hessian_;
   std::vector<double> stiffness_;  ///< N/m, of all links and bending at each vertex
   AugmentedContacts contacts_;
@@ -436,7 +444,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"multipliers", "keep"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {
+    {"multipliers", "keep"}, {"start", "inertia"}, {"line-search", "off"}};
 
 }  // namespace
 }  // namespace taut::solver::implicit
@@ -456,4 +465,5 @@ TAUT_SOLVER(implicit) = {
                  .all_at_once = true,
                  .stiffness = taut::kStiffnesses,
                  .alternatives = taut::solver::implicit::kAlternatives,
-                 .labelled = "substeps|iterations|structural|multipliers"}};
+                 .labelled = "substeps|iterations|structural|multipliers|start|line-search"},
+    .optional_effects = taut::loop::kOptionalEffects};

@@ -123,11 +123,10 @@ constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|dou
                                                         {"levels", "2|3"},
                                                         {"tethers", "on"}};
 
-constexpr OptionalEffect kOptionalEffects[] = {
-    {"contact of faces", "faces", "on", "off", true},
-    {"continuous detection", "contact", "continuous", "discrete", true},
-    {"tethers", "tethers", "on", "off"},
-    {"levels", "levels"}};
+constexpr OptionalEffect kOptionalEffects[] = {loop::kOptionalEffects[0],
+                                               loop::kOptionalEffects[1],
+                                               {"tethers", "tethers", "on|off"},
+                                               {"levels", "levels"}};
 
 LinearModel linear_model(const Scene&, const Params& params) {
   const bool jacobi = params.is("method", "jacobi");

@@ -418,4 +418,5 @@ TAUT_SOLVER(pd) = {
                  .stiffness = taut::kStiffnesses,
                  .alternatives = taut::solver::pd::kAlternatives,
                  .labelled = "substeps|iterations|structural|anderson|chebyshev|method|precision",
-                 .accelerators = "anderson|chebyshev|method"}};
+                 .accelerators = "anderson|chebyshev|method"},
+    .optional_effects = taut::loop::kOptionalEffects};

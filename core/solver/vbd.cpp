@@ -92,8 +92,10 @@ DeclaredStep declared_step(const Scene& scene, const Params& params) {
   return step;
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {
-    {"chebyshev", "0.5|0.8|0.9"}, {"start", "adaptive|inertia"}, {"precision", "double|float"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"chebyshev", "0.5|0.8|0.9"},
+                                                        {"start", "adaptive|inertia"},
+                                                        {"order", "coloured|mesh"},
+                                                        {"precision", "double|float"}};
 
 }  // namespace
 }  // namespace taut::solver::vbd
@@ -112,5 +114,6 @@ TAUT_SOLVER(vbd) = {
                  .sweeps = "iterations",
                  .stiffness = taut::kStiffnesses,
                  .alternatives = taut::solver::vbd::kAlternatives,
-                 .labelled = "substeps|iterations|structural|chebyshev|start|precision",
-                 .accelerators = "chebyshev|threads"}};
+                 .labelled = "substeps|iterations|structural|chebyshev|start|order|precision",
+                 .accelerators = "chebyshev|threads"},
+    .optional_effects = taut::loop::kOptionalEffects};

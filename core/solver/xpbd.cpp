@@ -121,8 +121,11 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params, own, "refused", loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {
-    {"precision", "float|double"}, {"method", "global"}, {"primal", "on"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
+                                                        {"order", "coloured|mesh"},
+                                                        {"tethers", "on"},
+                                                        {"method", "global"},
+                                                        {"primal", "on"}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   if (params.is("method", "global")) return {};
@@ -149,7 +152,7 @@ TAUT_SOLVER(xpbd) = {
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .alternatives = taut::solver::xpbd::kAlternatives,
-                 .labelled = "substeps|iterations|method|primal|precision",
+                 .labelled = "substeps|iterations|method|primal|order|tethers|precision",
                  .accelerators = "tethers|threads"},
     .optional_effects = taut::loop::kOptionalEffects,
     .linear_model = taut::solver::xpbd::linear_model};

@@ -73,9 +73,9 @@ void add_contact(const Case& one, Effects& effects) {
   if (!scene.colliders.empty()) add_keys(effects, "cloth", scene);
 }
 
-/// A choice with its cheaper value; a whole number is halved until it is 1.
+/// A choice with the values that cost less; a whole number is halved until it is 1.
 void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effect) {
-  const std::string parameter(effect.parameter), to(effect.to);
+  const std::string parameter(effect.parameter);
   const auto spec = std::ranges::find(one.choice.entry->params, parameter, &ParamSpec::name);
   if (spec == one.choice.entry->params.end()) return;
   const std::string from(one.choice.params.value(parameter));
@@ -87,8 +87,9 @@ void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effe
   };
   if (spec->kind == ParamSpec::Kind::integer)
     for (int n = std::stoi(from); n > 1;) reduce_to(std::to_string(n = (n + 1) / 2));
-  else if (from == effect.from)
-    reduce_to(to);
+  const std::vector<std::string> values = parts_of(effect.values);
+  for (auto at = std::ranges::find(values, from); at != values.end() && ++at != values.end();)
+    reduce_to(*at);
   add(effects, std::string(effect.name), std::move(reductions));
 }
 
@@ -130,7 +131,7 @@ std::vector<Effect> effects_of(const Case& one) {
     if (!effect.of_contact || !one.scene->colliders.empty()) add_parameter(one, effects, effect);
   add_parameter(one, effects, {"substeps", solver.accuracy.substeps});
   add_parameter(one, effects, {"sweeps", solver.accuracy.sweeps});
-  add_parameter(one, effects, {"precision", "precision", "double", "float"});
+  add_parameter(one, effects, {"precision", "precision", "double|float"});
   add_sizes(one, effects);
   return effects;
 }

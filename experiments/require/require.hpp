@@ -136,7 +136,8 @@ inline constexpr double kMostStretch = 0.1;
 /// What is accepted unless something is asked for: no passage and no crossing, depths below 0.1 %
 /// of the cloth's extent, an RMS stretch up to kMostStretch, and, for a strain alone is small of a
 /// cloth that stands still, a motion within 25 % of its way from the dynamic reference; as far as
-/// the scene has them.
+/// the scene has them. No passages of edges and faces: past an edge of a box they happen to every
+/// solver that keeps vertices alone outside (`--keep edge.passages:0` asks for none).
 std::vector<KeptAnswer> default_limits(const Scene&);
 /// What a case does beyond these limits: "penetration.peak 3.1 mm, more than 1 mm"; "": nothing.
 std::string beyond(const Record&, const std::vector<KeptAnswer>&);

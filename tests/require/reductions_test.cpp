@@ -65,6 +65,14 @@ TEST(Reductions, OfParametersAreCheaperChoicesAndHalves) {
   EXPECT_EQ(steps_of(one, "tethers"), Strings{"on -> off"});
   EXPECT_EQ(steps_of(one, "levels"), (Strings{"3 -> 2", "3 -> 1"}));
   EXPECT_EQ(steps_of(one, "contact of faces"), Strings{}) << "nothing is touched";
+  for (const std::string solver : {"jakobsen", "xpbd", "implicit", "pd", "admm", "vbd", "avbd"}) {
+    const auto faces = [&](const std::string& value) {
+      return steps_of(make_case({"ball", {}, solver + ":faces=" + value}), "contact of faces");
+    };
+    EXPECT_EQ(faces("on"), (Strings{"on -> edges", "on -> off"})) << solver;
+    EXPECT_EQ(faces("edges"), Strings{"edges -> off"}) << solver;
+    EXPECT_EQ(faces("off"), Strings{}) << solver;
+  }
   EXPECT_EQ(steps_of(hang({}, "jakobsen:precision=float"), "precision"), Strings{});
   EXPECT_EQ(steps_of(hang({}, "mass-spring:substeps=4"), "sweeps"), Strings{}) << "it has none";
 }

@@ -70,6 +70,9 @@ class ElasticStep {
     for (const Link& l : scene.links) k_.push_back(stiffness[static_cast<std::size_t>(l.family)]);
   }
 
+  /// m, where inertia and gravity alone lead; pins stay.
+  const std::vector<Vec3>& prediction() const { return y_; }
+
   double energy(const std::vector<Vec3>& x) const {
     double sum = 0;
     for (std::size_t i = 0; i < x.size(); ++i)

@@ -57,6 +57,35 @@ TEST(Implicit, OneIterationIsBaraffAndWitkinsStep) {
   EXPECT_GT(largest_distance(after_one("on"), whole), 1e-2);
 }
 
+TEST(Implicit, BeginsWhereInertiaLeadsIfItIsTold) {
+  const Scene scene = irregular_net(6);
+  const ElasticStep step(scene, kSoft);
+  const std::vector<Vec3>& y = step.prediction();
+  const std::vector<Vec3> linear = step.moved(y, step.newton_direction(y));
+  const auto after = [&](const std::string& how) {
+    return after_one_step(scene, "implicit:" + how + "," + kSoftText).x;
+  };
+  EXPECT_LT(largest_distance(after("start=inertia,iterations=1,line-search=off"), linear), 1e-9);
+  EXPECT_GT(largest_distance(after("iterations=1,line-search=off"), linear), 1e-5);
+  EXPECT_LT(largest_distance(after("start=inertia"), step.minimum()), 1e-9);
+}
+
+/// Where anything touches, the step begins where the last one ended.
+TEST(Implicit, RestsOnABallWhereverItsStepsBegin) {
+  Scene scene = hanging_sheet(9, 9);
+  scene.stiffness = {1e3, 1e3, 1};
+  for (Vec3& x : scene.start.x) x = {x.x() - 0.5, 0.36, x.y() + 0.5};
+  scene.pins.clear();
+  scene.thickness = 0.005;
+  scene.colliders = {{.shape = Ball{Vec3::Zero(), 0.3}, .friction = 0.5}};
+  const State last = simulate(scene, "implicit", 32);
+  const State inertia = simulate(scene, "implicit:start=inertia", 32);
+  EXPECT_LT(largest_distance(last.x, inertia.x), 1e-8);
+  double deepest = 1;
+  for (const Vec3& x : last.x) deepest = std::min(deepest, x.norm());
+  EXPECT_NEAR(deepest, 0.305, 1e-6) << "it touches";
+}
+
 /// What convergence is measured against is the step of the scene: with damping, wind and pins that
 /// move, each alone and together.
 TEST(Implicit, ConvergesToTheMinimumOfTheReference) {
@@ -88,8 +117,9 @@ TEST(EverySolver, SeesASteadilyMovingClothAsOneAtRest) {
   Scene still = hanging_sheet(5, 5);
   for (std::size_t i = 0; i < still.start.x.size(); ++i) still.start.v[i] = {0, 0, 0.3};
   for (const int pin : still.pins) still.start.v[to_index(pin)].setZero();
-  for (const char* solver : {"implicit", "implicit:linear=cg", "pd", "admm", "vbd", "avbd",
-                             "mass-spring", "jakobsen:precision=double", "xpbd:precision=double"}) {
+  for (const char* solver :
+       {"implicit", "implicit:start=inertia", "implicit:linear=cg", "pd", "admm", "vbd", "avbd",
+        "mass-spring", "jakobsen:precision=double", "xpbd:precision=double"}) {
     const State at_rest = simulate(still, solver, 30);
     for (const double speed : {2.0, 6.0, 20.0, 40.0}) {
       const Vec3 velocity(0, -speed, 0);
