@@ -244,6 +244,7 @@ TEST(Settings, LabelsHaveWhatVariesAndNoMore) {
   EXPECT_EQ(labels.of(all[0]), "1 × 4, omega=1.5, mesh") << "a number does not speak for itself";
   EXPECT_EQ(labels.of(all[1]), "1 × 8, omega=1, mesh, tethers");
   EXPECT_EQ(labels.of(all[2]), "1 × 8, omega=1, coloured");
+  EXPECT_EQ(labels.of(all[2], "order"), "1 × 8, omega=1") << "what is said beside it";
   EXPECT_EQ(labels.of(all[3]), "") << "nothing varies of Bullet's";
 }
 

@@ -23,11 +23,11 @@ SceneBench with_shared_parameters(SceneBench bench) {
   return bench;
 }
 
-std::string setting_text(const SceneBench& bench, std::size_t at) {
+std::string setting_text(const SceneBench& bench, std::size_t at, std::string_view beside) {
   Records records;
   for (const BenchedCase& c : bench.cases) records.push_back(&c.record);
   const Record& one = bench.cases[at].record;
-  std::string label = SettingLabels(records).of(one);
+  std::string label = SettingLabels(records).of(one, beside);
   if (label.empty()) label = work_of(one).text();
   const std::string order = link_order(one);
   return label + (order.empty() || label.find(order) != std::string::npos ? "" : ", " + order);

@@ -48,7 +48,7 @@ class SceneWinners {
   Contender contender(std::size_t at) {
     const Record& r = bench_.cases[at].record;
     return {r.solver,
-            setting_text(bench_, at),
+            setting_text(bench_, at, "precision"),
             arithmetic_of(r, input_.vectors),
             links_text(r),
             candidates_[at].cost,

@@ -326,12 +326,12 @@ SettingLabels::SettingLabels(const Records& all) {
       if (const auto value = setting_of(*r, name)) seen_[{r->solver, name}].insert(*value);
 }
 
-std::string SettingLabels::of(const Record& record) const {
+std::string SettingLabels::of(const Record& record, std::string_view beside) const {
   std::string text;
   bool work = false;
   for (const std::string& name : names_in_labels(record.solver)) {
     const auto value = setting_of(record, name);
-    if (!value || *value == "off") continue;
+    if (!value || *value == "off" || name == beside) continue;
     const auto seen = seen_.find({record.solver, name});
     const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(*value);
     if (!varies) continue;

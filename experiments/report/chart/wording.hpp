@@ -111,8 +111,8 @@ std::string unequal_work(const Records&);
 class SettingLabels {
  public:
   explicit SettingLabels(const Records&);
-  /// "2 × 8, coloured"; "" if nothing varies.
-  std::string of(const Record&) const;
+  /// "2 × 8, coloured"; "" if nothing varies. Without the parameter that is said beside it.
+  std::string of(const Record&, std::string_view beside = "") const;
 
  private:
   std::map<std::pair<std::string, std::string>, std::set<std::string>> seen_;  ///< solver, name
