@@ -75,9 +75,12 @@ double contraction(const std::vector<ConvergencePoint>& points, double floor) {
 /// Root mean square of the way between the iterates of two numbers of iterations [m].
 using Way = std::function<double(int, int)>;
 
+/// Of the distance: iterates that move no more than this when their number doubles are at rest.
+constexpr double kRests = 1e-3;
+
 /// The distance at the end if the last third of the points is within a tenth of it and the iterates
-/// come to rest: of one that only creeps, the way grows with the iterations that it takes.
-/// `moved`: how far the last round of the exact step moved it.
+/// are at rest: one that creeps moves further in more iterations. `moved`: how far the last round
+/// of the exact step moved it.
 double floor_of(const std::vector<ConvergencePoint>& points, double moved, const Way& way) {
   const double end = points.empty() ? 0 : points.back().distance;
   if (points.size() < 6 || !(end > std::max(2 * moved, 1e-12))) return 0;  // rounding
@@ -86,7 +89,8 @@ double floor_of(const std::vector<ConvergencePoint>& points, double moved, const
     if (!(std::abs(points[i].distance - end) <= 0.1 * end)) return 0;
   int last = 1;
   while (2 * last <= points.back().iterations) last *= 2;
-  return way(last / 2, last) <= 1.2 * way(last / 4, last / 2) ? end : 0;
+  const double way_of_last = way(last / 2, last);
+  return way_of_last <= kRests * end && way_of_last <= 1.2 * way(last / 4, last / 2) ? end : 0;
 }
 
 /// A step and its minimum, the same for all solvers with this stiffness.
