@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/reference/exact_path.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -23,6 +24,9 @@ constexpr double kFirst = 1.3, kLeastWay = 0.05;
 /// Of the way that a cloth would have gone, what rounding may seem to miss at most.
 constexpr double kMostRounding = 0.1;
 constexpr int kFirstWithoutGravity = 32, kFirstSamples = 8;
+/// Of L, what the cloth moves at least on the exact steps' own path; N/m, of links there at most:
+/// stiffer ones go the same way and take Newton's method ten times as long.
+constexpr double kLeastExactWay = 0.01, kMostStiffness = 1e3;
 
 /// Steps in which a cloth shows whether it moves.
 int first_steps(const Scene& scene) {
@@ -102,11 +106,15 @@ class StepErrors final : public Metric {
            "a second of a square metre, if no step "
            "had missed any of the exact step at the lengths that the links have: w.(w + l) "
            "over |w + l|^2, w its way beside that of its pins or, without any, of its centre of "
-           "mass, l the sum of (T - t) times the velocity "
-           "that the step at t misses; 0 of a cloth that stands still; none if it would hardly "
-           "have moved, at most 5 % of its size, or farther than twice a fall, or if rounding is "
-           "above a tenth of the way: l, "
-           "each step missing |x|/sqrt(3) 2^-24 of coordinates that are all floats, else 2^-53",
+           "mass, l the sum of (T - t) times the velocity that the step at t misses along its own "
+           "way; none if it would hardly have moved, at most 5 % of its size, or farther than "
+           "twice "
+           "a fall, or if rounding is above a tenth of the way: l, each step missing |x|/sqrt(3) "
+           "2^-24 of coordinates that are all floats, else 2^-53. Below 25 %, without contact and "
+           "bending, where l may be what links would have held back: the sum of w.e over that of "
+           "|e|^2 at eight times, e the way of exact steps from the scene's start (links of at "
+           "most "
+           "1e3 N/m), none if that is less than 1 % of its size. 0 of a cloth that stands still",
        .window = Window::none,
        .title = "share of the way, by what its steps miss"},
       {"step.error.believed", kSignedShare,
@@ -147,6 +155,10 @@ class StepErrors final : public Metric {
     const bool known = m.step > 0 && step_before_ == (substeps > 1 ? m.step : m.step - 1);
     if (known && samples(m.step)) judge(m);
     if (known && samples_first(m.step)) add_missed(m);
+    if (samples_first(m.step)) {
+      sampled_.push_back(m.step);
+      places_.push_back(m.state.x);
+    }
     if (m.step == first_) end_ = m.state.x;
     if (substeps == 1 && (samples(m.step + 1) || samples_first(m.step + 1))) observe_within(m);
   }
@@ -186,7 +198,7 @@ class StepErrors final : public Metric {
   void add_missed(const Snapshot& m) {
     ++first_count_;
     const double h = substep();
-    const std::vector<Vec3> missed = error_->missed(before_, m.t - h, h, m.state.x);
+    const std::vector<Vec3> missed = along_the_way(before_, m, h);
     if (missed.empty()) return;
     ++first_believed_;
     const double left = first_ * scene_.dt - m.t;
@@ -197,6 +209,49 @@ class StepErrors final : public Metric {
       lost_[i] += times * missed[i];
       rounded_[i] += times * rounding * m.state.x[i].norm();
     }
+  }
+  /// What the step from `before` misses of the exact one along the exact one's own way: what it
+  /// does across that keeps no cloth back. Empty: it cannot be believed.
+  std::vector<Vec3> along_the_way(const State& before, const Snapshot& m, double h) {
+    std::vector<Vec3> missed = error_->missed(before, m.t - h, h, m.state.x);
+    double along = 0, square = 0;
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      const Vec3 way = m.state.x[i] + missed[i] - before.x[i];
+      along += missed[i].dot(way);
+      square += way.squaredNorm();
+    }
+    for (std::size_t i = 0; i < missed.size(); ++i)
+      missed[i] = square > 0 ? Vec3(along / square * (m.state.x[i] + missed[i] - before.x[i]))
+                             : Vec3(Vec3::Zero());
+    return missed;
+  }
+  /// Beside the exact steps' own path at the times of the samples, in place of `by_steps`.
+  double share_of_path(double by_steps) const {
+    Stiffness stiffness = declared_.stiffness;
+    for (double& k : stiffness) k = std::min(k, kMostStiffness);
+    const std::vector<std::vector<Vec3>> exact = reference::exact_path(scene_, stiffness, sampled_);
+    if (exact.empty()) return by_steps;
+    const std::vector<std::size_t> free = free_vertices(scene_);
+    double along = 0, square = 0, farthest2 = 0;
+    for (std::size_t k = 0; k < exact.size(); ++k) {
+      const std::vector<Vec3> way = own_way(places_[k], sampled_[k]);
+      const std::vector<Vec3> full = own_way(exact[k], sampled_[k]);
+      double here = 0;
+      for (const std::size_t i : free) {
+        along += way[i].dot(full[i]);
+        here += full[i].squaredNorm();
+      }
+      square += here;
+      farthest2 = std::max(farthest2, here / static_cast<double>(free.size()));
+    }
+    const bool moves = std::sqrt(farthest2) >= kLeastExactWay * extent(scene_);
+    return moves ? along / square : Summary::kNone;
+  }
+  /// From the start to these places after so many steps [m], without what keeps the cloth's shape.
+  std::vector<Vec3> own_way(std::vector<Vec3> places, int steps) const {
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] -= scene_.start.x[i];
+    keep_own_way(scene_, steps * scene_.dt, places);
+    return places;
   }
   double way_share() const {
     if (end_.empty() || first_believed_ < kEnough * first_count_ || first_believed_ == 0)
@@ -219,7 +274,9 @@ class StepErrors final : public Metric {
     const double rms = std::sqrt(square / static_cast<double>(free.size()));
     const bool known = rounding <= kMostRounding * kMostRounding * square;
     const bool moves = rms >= kLeastWay * extent(scene_) && rms <= farthest(scene_, seconds);
-    return known && moves ? along / square : Summary::kNone;
+    if (!known || !moves) return Summary::kNone;
+    const double share = along / square;
+    return share < kLeastByStepsAlone ? share_of_path(share) : share;
   }
   void judge(const Snapshot& m) {
     const double h = substep();
@@ -239,8 +296,10 @@ class StepErrors final : public Metric {
   std::optional<reference::StepError> error_;  ///< none: no value
   State before_;
   int step_before_ = -1;
-  std::vector<Vec3> lost_, end_;  ///< m; the places after the first steps
-  std::vector<double> rounded_;   ///< m, what of lost_ may be rounding
+  std::vector<Vec3> lost_, end_;           ///< m; the places after the first steps
+  std::vector<int> sampled_;               ///< of the first steps
+  std::vector<std::vector<Vec3>> places_;  ///< m, after these
+  std::vector<double> rounded_;            ///< m, what of lost_ may be rounding
   double first_count_ = 0, first_believed_ = 0;
   int count_ = 0;
   double believed_ = 0, sum_ = 0, peak_ = 0;  ///< steps, m, m
