@@ -2,7 +2,8 @@
 // Jolt Physics' soft body (npm jolt-physics, MIT) as a solver: vertices, edges, rest lengths and inverse masses of
 // the scene, compliance 0, float32. experiments/external/README.md says how to register it.
 //
-// Colliders at rest are static bodies of their shape (a plane is a large box); all have one friction.
+// Colliders at rest are static bodies of their shape (a plane is a large box, a body of triangles a MeshShape, which
+// has no inside); all have one friction.
 //
 // Jolt's "iterations" are substeps of one sweep each, without multipliers. Its Optimize() is obligatory and reorders
 // the edges; pins have to be set before it.
@@ -25,14 +26,28 @@ function start(Jolt) {
   settings.mObjectVsBroadPhaseLayerFilter = new Jolt.ObjectVsBroadPhaseLayerFilterTable(broad, 1, layers, 1);
   const engine = new Jolt.JoltInterface(settings), system = engine.GetPhysicsSystem(), bodies = system.GetBodyInterface();
 
+  const vector = ([x, y, z]) => new Jolt.Vec3(x, y, z);
+
+  function surface(vertices, triangles) {
+    const list = new Jolt.TriangleList();
+    for (const corners of triangles) {
+      const [a, b, c] = corners.map((corner) => vector(vertices[corner])), triangle = new Jolt.Triangle(a, b, c);
+      list.push_back(triangle);
+      for (const made of [a, b, c, triangle]) Jolt.destroy(made);
+    }
+    const settings = new Jolt.MeshShapeSettings(list), made = settings.Create();
+    if (made.HasError()) throw new Error(made.GetError().c_str());
+    Jolt.destroy(list);
+    return made.Get();
+  }
+
   /// A static body of a collider, not yet added.
-  function still({type, normal, offset, center, radius, half_extents: half, rotation, friction}) {
-    const vector = ([x, y, z]) => new Jolt.Vec3(x, y, z);
+  function still({type, normal, offset, center, radius, half_extents: half, rotation, vertices, triangles, friction}) {
     let shape, at, turned = Jolt.Quat.prototype.sIdentity();
     if (type === 'ball') {
       shape = new Jolt.SphereShape(radius), at = center;
-    } else if (type === 'box') {
-      shape = new Jolt.BoxShape(vector(half), 0, null), at = center;
+    } else if (type === 'box' || type === 'mesh') {
+      shape = type === 'box' ? new Jolt.BoxShape(vector(half), 0, null) : surface(vertices, triangles), at = center;
       turned = new Jolt.Quat(rotation[1], rotation[2], rotation[3], rotation[0]);
     } else {  // its upper side is the plane
       const kDeep = 50;
@@ -46,10 +61,10 @@ function start(Jolt) {
 
   class Cloth {
     static cannot(scene) {
-      const mapped = (c) => !c.motion && ['plane', 'ball', 'box'].includes(c.type);
-      const effects = {'colliders that move, capsules': !scene.colliders.every(mapped),
+      const mapped = (c) => !c.motion && !c.frames && ['plane', 'ball', 'box', 'mesh'].includes(c.type);
+      const effects = {'colliders that move or deform, capsules': !scene.colliders.every(mapped),
         'several frictions': new Set(scene.colliders.map((c) => c.friction)).size > 1, wind: scene.wind, 'self-collision': scene.self_collision,
-        'moving pins': scene.pin_motions.length > 0, damping: scene.damping > 0};
+        'moving pins': scene.pin_motions.length > 0, damping: scene.damping > 0, 'elastic links': scene.stiffness, bending: scene.bending};
       const present = Object.keys(effects).filter((name) => effects[name]);
       return present.length > 0 ? [`${present.join(', ')}: not mapped to Jolt`] : [];
     }
@@ -110,7 +125,7 @@ function start(Jolt) {
     settings() { return {precision: 'float32', order: 'as Optimize() sorts the edges', projection: 'exact, compliance 0'}; }
   }
   Cloth.about = {
-    name: 'jolt', version: `jolt-physics ${JSON.parse(fs.readFileSync(path.join(kPackage, 'package.json'))).version}`,
+    protocol: 'taut-solver/3', name: 'jolt', version: `jolt-physics ${JSON.parse(fs.readFileSync(path.join(kPackage, 'package.json'))).version}`,
     summary: "Jolt Physics' soft body: XPBD edges without compliance", source: 'J. Rouwe, Jolt Physics; npm jolt-physics',
     params: {substeps: {type: 'integer', min: 1, max: 10000, default: 5, doc: "Jolt's mNumIterations: substeps of one sweep each"}},
   };
