@@ -46,7 +46,7 @@ std::string end_main_job(const MainJob& job, const MainJobEnd& options) {
                    }));
   for (const std::string& scene : job.steps) {
     tell_part(3, "inside one step of " + scene);
-    const StudyScene chosen = parse_scene(scene);
+    const StudyScene chosen = parse_study_scene(scene);
     store.keep(one_step({.scene = chosen.name,
                          .settings = chosen.settings,
                          .solvers = load_study(job.studies.front(), options.preset).solvers}));
