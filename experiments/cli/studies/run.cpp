@@ -5,7 +5,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/main_job_end.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/answer/failure_map.hpp"
+#include "experiments/report/questions/failure_map.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/results/builds.hpp"
 #include "experiments/study/campaign.hpp"
