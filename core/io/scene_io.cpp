@@ -9,8 +9,6 @@
 #include "core/io/document.hpp"
 #include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
-#include "core/model/body_frames.hpp"
-#include "core/model/crossings.hpp"
 #include "core/model/index.hpp"
 #include "core/model/text.hpp"
 
@@ -302,8 +300,6 @@ void set_steps(const FileKeys& said, Section& time, Scene& scene) {
   scene.steps = std::max(1, static_cast<int>(steps));
 }
 
-constexpr double kShortestLink = 1e-9;  ///< m
-
 /// The warp's direction where the scene leaves it open: along v of a grid; any where it makes no
 /// difference.
 void complete(Bending& bending, const Mesh& mesh) {
@@ -312,190 +308,6 @@ void complete(Bending& bending, const Mesh& mesh) {
     bending.direction = (mesh.rest[to_index(mesh.grid->nu)] - mesh.rest[0]).normalized();
   else if (bending.warp == bending.weft)
     bending.direction = -Vec3::UnitY();
-}
-
-/// What no single key is to blame for.
-void check_whole(Section& root, Diagnostics& diagnostics, const Scene& scene) {
-  for (const Link& link : scene.links)
-    if (!is_seam(link) && !(link.rest >= kShortestLink)) {
-      diagnostics.report(root.place("cloth"), "vertices " + std::to_string(link.a) + " and " +
-                                                  std::to_string(link.b) +
-                                                  " coincide: their link has no length");
-      break;
-    }
-  if (scene.bending && scene.mesh.triangles.empty())
-    diagnostics.report(root.place("bending"), "[bending] acts on faces, and this cloth has none");
-  if (scene.bending && scene.bending->direction.isZero(0))
-    diagnostics.report(root.place("bending"),
-                       "'warp' in [bending] is missing: where warp and weft differ, a mesh needs "
-                       "the direction of its warp");
-  if (scene.wind && scene.mesh.triangles.empty())
-    diagnostics.report(root.place("wind"), "[wind] acts on faces, and this cloth has none");
-}
-
-bool pinned(const Scene& scene, std::size_t i) {
-  return std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i));
-}
-
-/// Where a point leaves a shape, `thickness` [m] above its surface: the nearest place first and,
-/// of a box, the five other sides.
-std::vector<Vec3> ways_out(const Shape& shape, const Vec3& p, double thickness) {
-  const Surface s = surface(shape, p);
-  std::vector<Vec3> out{p + (thickness - s.distance) * s.normal};
-  const Box* box = std::get_if<Box>(&shape);
-  if (!box || s.distance > 0) return out;
-  const Vec3 local = box->rotation.conjugate() * (p - box->center);
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      Vec3 at = local;
-      at[axis] = side * (box->half_extents[axis] + thickness);
-      out.push_back(box->center + box->rotation * at);
-    }
-  std::ranges::stable_sort(out, {}, [&](const Vec3& q) { return (q - p).squaredNorm(); });
-  return out;
-}
-
-/// Where a vertex is out of all shapes: rounds until nothing moves it. Out of each by the nearest
-/// way that leads into no other one, if there is such a way.
-Vec3 resolved(const std::vector<Shape>& shapes, Vec3 x, double thickness) {
-  double rounding = 0;  // m
-  const auto inside = [&](const Shape& shape, const Vec3& p) {
-    return surface(shape, p).distance < thickness - rounding;
-  };
-  constexpr int kRounds = 1000;  // a wedge takes as many as it is narrow
-  for (int round = 0; round < kRounds; ++round) {
-    bool moved = false;
-    for (const Shape& shape : shapes) {
-      if (!inside(shape, x)) continue;
-      const std::vector<Vec3> ways = ways_out(shape, x, thickness);
-      const auto free = std::ranges::find_if(ways, [&](const Vec3& p) {
-        return std::ranges::none_of(shapes, [&](const Shape& s) { return inside(s, p); });
-      });
-      x = free != ways.end() ? *free : ways.front();
-      moved = true;
-    }
-    if (!moved) break;
-    rounding = 1e-12 * (1 + x.norm());
-  }
-  return x;
-}
-
-/// Moves the free vertices out of all colliders.
-void resolve(Scene& scene) {
-  std::vector<Shape> shapes;
-  for (const Collider& collider : scene.colliders) shapes.push_back(shape_at(collider, 0));
-  for (std::size_t i = 0; i < scene.start.x.size(); ++i)
-    if (!pinned(scene, i)) scene.start.x[i] = resolved(shapes, scene.start.x[i], scene.thickness);
-}
-
-/// A pinned vertex may be inside: that is how a cloth is fixed to an obstacle.
-void judge_start(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
-  const Shape shape = shape_at(collider, 0);
-  const double rounding = 1e-9 * extent(scene);  // of what the file says
-  double deepest = 0;
-  std::size_t vertex = 0, count = 0;
-  for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
-    const double depth = -surface(shape, scene.start.x[i]).distance;
-    if (pinned(scene, i) || depth <= rounding) continue;
-    ++count;
-    if (depth > deepest) {
-      deepest = depth;
-      vertex = i;
-    }
-  }
-  if (count == 0) return;
-  root.diagnostics().report(
-      item.place, "the cloth starts inside this " + std::string(type_name(collider.shape)) + ": " +
-                      std::to_string(count) + " vertices, vertex " + std::to_string(vertex) + " " +
-                      as_typed(std::round(1e9 * deepest) / 1e9) +
-                      " m deep; move one of them, or set start_inside = \"resolve\" in [cloth]");
-}
-
-/// Which side of a thin body the cloth is on is known as long as it keeps off it.
-void judge_thin(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
-  const MeshBody* body = std::get_if<MeshBody>(&collider.shape);
-  if (!body || body->sides != MeshBody::Sides::both || scene.thickness > 0) return;
-  root.diagnostics().report(item.place,
-                            "a body with sides = \"both\" is thin: it keeps the cloth out only at "
-                            "a 'thickness' in [cloth] above 0");
-}
-
-/// What moves for a time step or longer moves as `velocity` would have it, however fast: no jump.
-void judge_path(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
-  const auto& path = collider.motion.path;
-  for (std::size_t k = 1; k < path.size(); ++k) {
-    const double way = (path[k].displacement - path[k - 1].displacement).norm();
-    if (path[k].t - path[k - 1].t >= scene.dt || way <= extent(scene)) continue;
-    root.diagnostics().report(item.place,
-                              "the path jumps: from key " + std::to_string(k) + " to key " +
-                                  std::to_string(k + 1) + " it makes " + as_typed(way) +
-                                  " m within one time step, more than the size of the cloth");
-    return;
-  }
-}
-
-/// A body that goes farther than its own size within a time step is somewhere else, and not moved.
-void judge_frames(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
-  if (!collider.frames) return;
-  const auto& places = collider.frames->places;
-  const double size = std::get<MeshBody>(collider.shape).mesh->box().diagonal().norm();
-  const double in_a_step = std::min(1.0, scene.dt * collider.frames->fps);
-  for (std::size_t k = 1; k < places.size(); ++k)
-    for (std::size_t i = 0; i < places[k].size(); ++i) {
-      const double way = in_a_step * (places[k][i] - places[k - 1][i]).norm();
-      if (way <= size) continue;
-      root.diagnostics().report(
-          item.place, "the body jumps: from frame " + std::to_string(k - 1) + " to frame " +
-                          std::to_string(k) + " vertex " + std::to_string(i) + " makes " +
-                          as_typed(way) +
-                          " m within one time step, more than the size of the body");
-      return;
-    }
-}
-
-/// Length of the shortest link between neighbours [m]; 0 if there is none.
-double spacing(const Scene& scene) {
-  double least = 0;
-  for (const Link& link : scene.links)
-    if (link.family == Family::structural && !is_seam(link) && (least == 0 || link.rest < least))
-      least = link.rest;
-  return least;
-}
-
-void judge_sizes(Section& root, const FileKeys& said, const Scene& scene) {
-  const double least = spacing(scene);
-  if (least == 0) return;
-  if (scene.thickness > least && !scene.colliders.empty())
-    root.report("cloth", "thickness " + as_typed(scene.thickness) +
-                             " m is larger than the spacing " + as_typed(least) +
-                             " m of the vertices");
-  if (!scene.self_collision || said.overlap) return;
-  if (2 * scene.self_collision->radius > least * (1 + 1e-9))
-    root.report("self_collision", "particles of radius " + as_typed(scene.self_collision->radius) +
-                                      " m overlap at rest, where they are " + as_typed(least) +
-                                      " m apart: at most half of that, or set overlap = true");
-}
-
-/// Reports what makes contact meaningless in an otherwise complete scene: a cloth that starts
-/// inside a collider (moved to its surface, at the scene's thickness, if the scene says so) or
-/// through itself, a thickness or a particle larger than the spacing, a collider whose path jumps.
-void check_contact(Section& root, const FileKeys& said, Scene& scene) {
-  if (said.start_inside == FileKeys::Inside::resolve) resolve(scene);
-  const auto items = root.tables("collider");
-  for (std::size_t k = 0; k < items.size() && k < scene.colliders.size(); ++k) {
-    judge_start(*items[k], root, scene.colliders[k], scene);
-    judge_path(*items[k], root, scene.colliders[k], scene);
-    judge_frames(*items[k], root, scene.colliders[k], scene);
-    judge_thin(*items[k], root, scene.colliders[k], scene);
-  }
-  judge_sizes(root, said, scene);
-  if (!scene.self_collision) return;
-  const auto pairs = crossings(scene.mesh.triangles, scene.start.x);
-  if (!pairs.empty())
-    root.report("self_collision",
-                "the cloth starts through itself: " + std::to_string(pairs.size()) +
-                    " pairs of faces cross, the first being " + std::to_string(pairs[0][0]) +
-                    " and " + std::to_string(pairs[0][1]));
 }
 
 Scene scene_of(const Document& document, const std::filesystem::path& path,
@@ -546,7 +358,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   for (const SceneKey& key : scene_keys()) paths.emplace_back(key.path);
   root.finish(paths);
   if (built && scene.bending) complete(*scene.bending, scene.mesh);
-  if (built) check_whole(root, diagnostics, scene);
+  if (built) check_whole(root, scene);
   if (built && diagnostics.clean()) check_contact(root, said, scene);
   diagnostics.throw_if_any();
   if (remarks) *remarks = diagnostics.remarks();

@@ -10,7 +10,8 @@
 #include "core/model/scene_keys.hpp"
 #include "core/model/triangle_mesh.hpp"
 
-// What scene_io.cpp and cloth_io.cpp read a scene with.
+// The parts of load_scene(): what scene_io.cpp, cloth_io.cpp, body_io.cpp and scene_checks.cpp
+// share.
 
 namespace taut {
 
@@ -51,6 +52,14 @@ std::vector<int> read_vertices(Section&, const std::string& key, const Mesh&);
 
 /// Reads every [[seam]] and puts its links behind the cloth's structural ones.
 void read_seams(Section& root, Scene&);
+
+/// Reports what no single key is to blame for, of a scene with a mesh.
+void check_whole(Section& root, const Scene&);
+
+/// Reports what makes contact meaningless in an otherwise complete scene: a cloth that starts
+/// inside a collider (moved to its surface, at the scene's thickness, if the scene says so) or
+/// through itself, a thickness or a particle larger than the spacing, a collider whose path jumps.
+void check_contact(Section& root, const FileKeys&, Scene&);
 
 /// Reads 'rotation': { axis = [0, 0, 1], angle = 45 } with the angle in degrees, or a quaternion
 /// [w, x, y, z] of any length but zero. Absent: the identity.

@@ -40,7 +40,7 @@ class SolverSearch {
   SolverSearch(const std::string& scene, const std::vector<std::string>& settings,
                const std::string& solver, const std::string& metric, Store& store)
       : scene_(scene), settings_(settings), solver_(solver), metric_(metric), store_(store) {
-    const std::vector<std::string> own = parse_scene(scene).settings;
+    const std::vector<std::string> own = parse_study_scene(scene).settings;
     settings_.insert(settings_.end(), own.begin(), own.end());
     const Case one = make(solver);
     duration_ = one.scene->duration();
@@ -62,7 +62,8 @@ class SolverSearch {
 
  private:
   Case make(const std::string& solver) {
-    return maker_.make({parse_scene(scene_).name, settings_, parse_solver(solver).canonical()});
+    return maker_.make(
+        {parse_study_scene(scene_).name, settings_, parse_solver(solver).canonical()});
   }
 
   /// Each error with an equal share of what those before it have left.

@@ -61,4 +61,11 @@ Answer search_study(const Study& study, Store& store, const std::string& metric,
   return answer;
 }
 
+std::vector<std::string> solvers_to_search() {
+  std::vector<std::string> all;
+  for (const SolverEntry* entry : all_solvers())
+    if (entry->name != "external" && entry->name != "positions") all.emplace_back(entry->name);
+  return all;
+}
+
 }  // namespace taut

@@ -26,7 +26,7 @@ struct RowStatus {
 struct BaselineRow {
   std::string id;  ///< of the case in its study
   CaseSpec spec;
-  std::string scene;  ///< digest of the scene's content: another one is another question
+  std::string scene;  ///< digest of the scene's content: another digest is another task
   RowStatus status;
   std::size_t projections = 0;           ///< constraint projections per step
   std::map<std::string, double> values;  ///< by metric value; NaN: no meaning for this case
@@ -46,10 +46,10 @@ BaselineRow baseline_row(const Record&, const std::string& scene);
 /// One difference between a baseline and what was run.
 struct Change {
   enum class Kind {
-    // the same question, another answer
+    // the same task, another result
     value_moved,
     status_changed,
-    // not the same question: the baseline does not match the study
+    // another task: the baseline does not match the study
     case_missing,      ///< in the baseline, not in the study
     case_new,          ///< in the study, not in the baseline
     case_renamed,      ///< the same scene and solver under another id

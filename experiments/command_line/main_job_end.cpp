@@ -40,13 +40,10 @@ std::string end_main_job(const MainJob& job, const MainJobEnd& options) {
   const Study trade = load_study(job.bench, job.preset);
   keep(store,
        bench_study(trade.name, run_and_collect({trade.name, cases_of(trade)}, store, "taut bench"),
-                   [](const std::string& scene, std::size_t cases) {
-                     progress() << scene << ": timing " << cases << " cases\n";
-                     return TimingOptions{.seconds = 0.015, .progress = Countdown("timing round")};
-                   }));
+                   tell_timing({.seconds = 0.015})));
   for (const std::string& scene : job.steps) {
     tell_part(3, "inside one step of " + scene);
-    const StudyScene chosen = parse_scene(scene);
+    const StudyScene chosen = parse_study_scene(scene);
     store.keep(one_step({.scene = chosen.name,
                          .settings = chosen.settings,
                          .solvers = load_study(job.studies.front(), options.preset).solvers}));

@@ -203,6 +203,22 @@ Study load_study_to_plot(const std::string& name, const std::string& preset) {
   return study;
 }
 
+std::vector<Study> load_studies_to_plot(const std::vector<std::string>& names,
+                                        const std::string& preset,
+                                        const std::vector<std::string>& steps) {
+  std::vector<Study> studies;
+  read_all(names, [&](const std::string& name) {
+    studies.push_back(at_time_steps(load_study_to_plot(name, preset), steps));
+  });
+  return studies;
+}
+
+std::vector<StudyCases> cases_of_each(const std::vector<Study>& studies) {
+  std::vector<StudyCases> all;
+  read_all(studies, [&](const Study& study) { all.push_back({study.name, cases_of(study)}); });
+  return all;
+}
+
 std::string study_words(const Study& study) {
   const std::vector<std::string> known = shipped("studies");
   const bool is_shipped = std::ranges::find(known, study.name) != known.end();

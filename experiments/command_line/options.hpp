@@ -8,8 +8,10 @@
 #include "experiments/baseline/baseline_study.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/command_line/output.hpp"
+#include "experiments/results/session.hpp"
 #include "experiments/study/isolate.hpp"
 #include "experiments/study/study.hpp"
+#include "experiments/system/read_all.hpp"
 
 namespace taut {
 
@@ -54,7 +56,7 @@ void add_judgement(CLI::App&, std::string& metric, double& tolerance);
 /// The folder of the baselines, as --baselines.
 void add_baselines(CLI::App&, std::string& folder);
 
-/// Runs, says and names values as verbs do.
+/// How verbs run cases, print news and name values.
 BaselineOptions baseline_options();
 
 /// What every verb about baselines has: --baselines, --out, -j, and baseline_options().
@@ -66,20 +68,14 @@ void add_format(CLI::App&, Format&, const char* details = nullptr);
 /// --json, which says `what` is printed instead.
 CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
 
-/// Calls read(one) for each; throws everything that is wrong with any of them as one InputError.
-template <class All, class Read>
-void read_all(const All& all, const Read& read) {
-  std::vector<Diagnostic> wrong;
-  for (const auto& one : all) try {
-      read(one);
-    } catch (const InputError& error) {
-      wrong.insert(wrong.end(), error.diagnostics().begin(), error.diagnostics().end());
-    }
-  if (!wrong.empty()) throw InputError(wrong);
-}
-
-/// load_study(), if figures could draw all that it asks for; else throws InputError, too.
+/// load_study(); throws InputError, too, if a figure that the study asks for cannot be drawn.
 Study load_study_to_plot(const std::string& name_or_path, const std::string& preset);
+/// The same of several, each at these time steps (at_time_steps()).
+std::vector<Study> load_studies_to_plot(const std::vector<std::string>& names_or_paths,
+                                        const std::string& preset,
+                                        const std::vector<std::string>& steps);
+/// The cases of each study.
+std::vector<StudyCases> cases_of_each(const std::vector<Study>&);
 
 /// "; preset quick has all of its results: --preset quick", of the presets of a study of which
 /// every case is stored; "" if there is none.

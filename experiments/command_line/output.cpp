@@ -157,6 +157,21 @@ void Progress::show(const CampaignProgress& campaign, const Record* record) {
             << clock_text(elapsed) << "  left " << left << (terminal_ ? "" : "\n") << std::flush;
 }
 
+std::function<TimingOptions(const std::string&, std::size_t)> tell_timing(TimingOptions options) {
+  return [options](const std::string& scene, std::size_t cases) {
+    progress() << scene << ": timing " << cases << " cases\n";
+    TimingOptions counted = options;
+    counted.progress = Countdown("timing round");
+    return counted;
+  };
+}
+
+std::function<void(const CampaignProgress&, const Record*)> show_ended_cases() {
+  return [shown = Progress()](const CampaignProgress& campaign, const Record* record) mutable {
+    if (record) shown.show(campaign, record);
+  };
+}
+
 void Progress::finish(const CampaignProgress& campaign) {
   if (!g_shown) return;
   if (terminal_) std::cerr << "\r\033[K";
@@ -198,6 +213,26 @@ int exit_code(const CampaignProgress& campaign, const Store& store) {
   if (campaign.interrupted) return kInterrupted;
   if (campaign.conflicts > 0) return kConflict;
   return campaign.ended_from_outside > 0 ? kIncomplete : kPass;
+}
+
+int exit_code(CheckEnd end) {
+  switch (end) {
+    case CheckEnd::passed:
+      return kPass;
+    case CheckEnd::not_run:
+      return kIncomplete;
+    case CheckEnd::nothing:
+      return kNothing;
+    case CheckEnd::moved:
+      return kRegression;
+    case CheckEnd::environment:
+      return kEnvironment;
+    case CheckEnd::conflict:
+      return kConflict;
+    case CheckEnd::interrupted:
+      return kInterrupted;
+  }
+  return kUsage;
 }
 
 }  // namespace taut

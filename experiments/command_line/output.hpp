@@ -1,14 +1,17 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "experiments/answer/answer.hpp"
+#include "experiments/baseline/check.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/study/campaign.hpp"
+#include "experiments/timing/timing.hpp"
 
 namespace taut {
 
@@ -50,6 +53,8 @@ class Progress {
   bool terminal_, verbose_;
   std::size_t told_ = 0;  ///< tenths of the work
 };
+/// A campaign's `progress` that shows it as each case ends.
+std::function<void(const CampaignProgress&, const Record*)> show_ended_cases();
 
 /// Runs what the store lacks, each case once, in a session that `command` names, with progress on
 /// stderr.
@@ -61,6 +66,8 @@ std::vector<Record> run_and_collect(const StudyCases&, Store&, const std::string
 
 /// The exit code of a campaign; says where the results are that differ from those stored.
 int exit_code(const CampaignProgress&, const Store&);
+/// The exit code of a comparison with baselines.
+int exit_code(CheckEnd);
 
 /// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
 /// says what one took: "frame 80/80  0.15 s each".
@@ -74,6 +81,11 @@ class Countdown {
   bool terminal_;
   std::chrono::steady_clock::time_point start_;
 };
+
+/// What bench_study() asks before each scene: these options, with a line for the scene and a
+/// countdown of its rounds.
+std::function<TimingOptions(const std::string& scene, std::size_t cases)> tell_timing(
+    TimingOptions);
 
 /// Whether progress is shown; --quiet switches it off.
 void show_progress(bool);

@@ -117,6 +117,20 @@ void add_findings(report::ReportInput& input, const Store& store, const std::str
   add("taut frontier --all", input.frontiers, report::stored_frontiers);
 }
 
+void add_films(report::ReportInput& input, const std::vector<OtherScene>& others,
+               const std::filesystem::path& folder) {
+  const std::vector<Film> films = films_of(report::compared_solvers_of(input), others);
+  std::size_t filmed = 0;
+  const Countdown countdown("pictured scene");
+  for (FilmResult& film : make_films(films, folder, [&](const std::string& news) {
+         progress() << news << '\n';
+         countdown(++filmed, films.size());
+       })) {
+    input.media.push_back(std::move(film.media));
+    std::ranges::move(film.series, std::back_inserter(input.series));
+  }
+}
+
 report::ReportInput input_of(PageRequest options) {
   if (!options.studies.empty() && Store::is_at(options.studies[0]))
     return compared_folders(options);
@@ -164,18 +178,8 @@ report::ReportInput input_of(PageRequest options) {
                       {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();
   add_findings(input, store, program);
-  if (!options.model && options.media) {
-    std::set<std::string> scenes;
-    for (const OtherScene& other : shown) scenes.insert(other.name);
-    for (const report::SceneInfo& scene : input.scenes) scenes.insert(scene.name);
-    std::size_t filmed = 0;
-    const Countdown countdown("pictured scene");
-    film_scenes(input, shown, std::filesystem::path(options.results) / "films",
-                [&](const std::string& news) {
-                  progress() << news << '\n';
-                  countdown(filmed = std::min(filmed + 1, scenes.size()), scenes.size());
-                });
-  }
+  if (!options.model && options.media)
+    add_films(input, shown, std::filesystem::path(options.results) / "films");
   return input;
 }
 

@@ -14,6 +14,9 @@ void enable();
 /// $TAUT_SOLVERS, else $XDG_CONFIG_HOME/taut/solvers, else ~/.config/taut/solvers.
 std::filesystem::path registered_folder();
 
+/// Why the program behind a solver did not introduce itself; "": it did, or there is none.
+std::string why_silent(const SolverEntry&);
+
 /// The command of "external:cmd='...'" or of a registered name, or the text itself as a command.
 /// Throws InputError.
 Command command_of(const std::string& text);

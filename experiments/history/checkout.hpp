@@ -32,8 +32,8 @@ struct BuildLimits {
   double bytes = 20e9;  ///< of its folder
 };
 
-/// A folder of its own with the files of one commit after another, so that what is built of one is
-/// there for the next. It borrows the repository's objects and writes nothing there.
+/// A folder that holds the files of one commit after another, so that the next commit finds what
+/// was built of the last. It borrows the repository's objects and writes nothing there.
 class Checkout {
  public:
   /// Takes up what an earlier process left. Throws InputError: another process uses the folder.
@@ -44,8 +44,9 @@ class Checkout {
   const std::filesystem::path& folder() const { return folder_; }
   const std::string& commit() const { return commit_; }  ///< "": none yet
 
-  /// Checks out a commit and, unless it is "", runs a command of the shell there. Why that failed,
-  /// one sentence; "": it did not. Throws InputError: the disk is full, or git refuses.
+  /// Checks out a commit and, unless it is "", runs a command of the shell there. Returns why that
+  /// failed, in one sentence; "" if it did not. Throws InputError: the disk is full, or git
+  /// refuses.
   std::string build(const std::string& commit, const std::string& command, const BuildLimits&);
   /// What somebody changed in the files of the commit since build(), one sentence; "": nothing.
   std::string changed() const;

@@ -145,11 +145,10 @@ class Walker {
     any_ran_ = true;
     return s.checkout->changed();
   }
-  /// Why a program does not introduce itself, so that nobody knows which cases it would have.
-  static std::string silent(const std::string& solver) {
+  std::string silent(const std::string& solver) const {
     admit_solver(solver);
-    const std::string_view says = parse_solver(solver).entry->summary;
-    return says.starts_with("does not answer") ? "its solver " + std::string(says) : "";
+    const std::string why = asked_.silence(*parse_solver(solver).entry);
+    return why.empty() ? "" : "its solver does not answer: " + why;
   }
   /// A reason that is not the commit's: of the results file, or of a study that no commit could
   /// run.

@@ -29,6 +29,9 @@ struct Walk {
   std::function<CampaignProgress(const std::vector<StudyCases>&, Store&, const std::string& command,
                                  CampaignOptions)>
       run;
+  /// Why a solver's program does not introduce itself, so that nobody knows which cases it would
+  /// have; "": it does.
+  std::function<std::string(const SolverEntry&)> silence;
   std::function<void(const std::string&)> say;  ///< is told news for people, a line each
 };
 

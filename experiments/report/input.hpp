@@ -24,7 +24,7 @@ struct TimeSeries {
   std::vector<double> t;  ///< s
   std::vector<double> y;  ///< SI; NaN: no value at this moment
   std::string key = {};   ///< of the case; "": it is not stored
-  double floor = 0;       ///< of strain, by the rounding of a file of positions; 0: it is none
+  double floor = 0;       ///< of strain, by the rounding of a file of positions; 0: it has none
 };
 
 /// A study that was run, or as much of it as there is.
@@ -121,7 +121,7 @@ struct ReportInput {
   std::vector<ParameterFrontier> frontiers = {};  ///< solver by solver, parameter by parameter
   std::vector<Answer> steps = {};                 ///< of `taut converge`, scene by scene
   std::vector<History> histories = {};            ///< of the studies, build by build
-  /// Inputs that could not be understood, and why: they are left out and said so.
+  /// Inputs that could not be understood, and why: the page leaves them out and says so.
   std::vector<std::pair<std::string, std::string>> left_out = {};
 };
 

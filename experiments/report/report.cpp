@@ -9,13 +9,15 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/report/answer/answer.hpp"
-#include "experiments/report/answer/winners.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/report/questions/costs.hpp"
+#include "experiments/report/questions/links.hpp"
+#include "experiments/report/questions/questions.hpp"
+#include "experiments/report/questions/winners.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/json.hpp"
 
@@ -55,7 +57,7 @@ class Builder {
     const Answer answer = answer_of(input_, compared_, refs_);
     std::vector<Chart> charts;
     for (const QuotedScene& quoted : compared_.scenes)
-      std::ranges::move(scene_charts(input_, quoted.question.scene), std::back_inserter(charts));
+      std::ranges::move(scene_charts(input_, quoted.task.scene), std::back_inserter(charts));
     for (const Figure& figure : figures_of(charts)) add_figure(drawn_, "scenes", figure, refs_);
     Json scenes = Json::array();
     for (const QuotedScene& quoted : compared_.scenes) scenes.push_back(scene(quoted));
@@ -257,7 +259,7 @@ class Builder {
   }
 
   Json scene(const QuotedScene& quoted) {
-    const std::string& name = quoted.question.scene;
+    const std::string& name = quoted.task.scene;
     Json one{{"id", name}, {"title", solver_title(name)}, {"summary", ""}, {"studied", true}};
     for (const SceneInfo& info : input_.scenes)
       if (info.name == name) one["summary"] = info.summary;
@@ -366,7 +368,7 @@ class Builder {
                                                       : std::string("trade --preset quick")));
     if (input_.media.empty())
       add("films", "No pictures were rendered.",
-          "taut render " + compared_.scenes.front().question.scene + " --video");
+          "taut render " + compared_.scenes.front().task.scene + " --video");
     if (!input_.truths)
       add("truths", "Closed forms and published numbers were not evaluated by this build.",
           "taut verify --record");

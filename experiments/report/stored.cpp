@@ -8,9 +8,9 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
-#include "experiments/report/answer/case_list.hpp"
-#include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/questions/case_list.hpp"
+#include "experiments/report/questions/compared_solvers.hpp"
 #include "experiments/require/require.hpp"
 #include "experiments/system/files.hpp"
 

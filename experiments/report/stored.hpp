@@ -18,7 +18,7 @@ namespace taut::report {
 /// (kMostCases) only values with a role. Throws InputError as load_scene() does.
 ReportInput stored_results(const std::vector<Study>&, const Store&);
 
-/// Leaves of a case the values with a role and their floors: no table and no chart of a page is of
+/// Keeps of a case only the values with a role and their floors: no table or chart of a page needs
 /// others.
 void keep_roles(Record&);
 
@@ -28,15 +28,16 @@ std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of);
 /// A value over time of those cases of which the store has it, named by what sets them apart.
 std::vector<TimeSeries> stored_series(const Records&, const std::string& value, const Store&);
 
-/// Leaves of a bench the cases that this build would run alike, in scenes that have any.
+/// Keeps of a bench only the cases that this build would run the same way, and the scenes that have
+/// any.
 void keep_current(StudyBench&);
 
 /// Adds the maps among these studies (two axes and a plot of kind "stability") of which the store
 /// has something; what the input holds of a study is not read again.
 void add_stored_maps(ReportInput&, const std::vector<Study>&, const Store&);
 
-/// What two results folders have, whichever builds made them, case by case: of the same scene, its
-/// settings and solver, with the same values of those parameters that both know.
+/// Pairs the cases of two results folders, whichever builds made them: the same scene, settings and
+/// solver, and the same values of the parameters that both know.
 Differences stored_differences(const Store& a, const Store& b);
 
 /// The records of `b` among these studies' cases, whichever build made them; all in one study where

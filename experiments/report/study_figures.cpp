@@ -1,5 +1,6 @@
 #include "experiments/report/study_figures.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/io/text_file.hpp"
@@ -99,6 +100,22 @@ std::vector<std::vector<std::string>> panels_of(const std::string& kind,
   return sets;
 }
 
+/// `name_of`: what `names`, the values of an option, are compared with.
+template <class NameOf>
+void keep_named(const char* option, std::vector<Record>& records,
+                const std::vector<std::string>& names, NameOf name_of) {
+  std::vector<std::string> known;
+  for (const Record& r : records) push_unique(known, name_of(r));
+  for (const std::string& name : names)
+    if (std::ranges::find(known, name) == known.end())
+      throw InputError(std::string(option) + ": the study has no results of '" + name + "'" +
+                       suggestion(name, known));
+  if (!names.empty())
+    std::erase_if(records, [&](const Record& r) {
+      return std::ranges::find(names, name_of(r)) == names.end();
+    });
+}
+
 PlotFiles draw_profile(PlotSpec spec, const FigureRequest& want, const ReportInput& input,
                        const std::filesystem::path& out) {
   if (!input.bench)
@@ -127,6 +144,12 @@ std::vector<FigureRequest> figures_of(const Study& study) {
   }
   if (all.empty()) throw InputError("study '" + study.name + "' asks for no plot; use --kind");
   return all;
+}
+
+void keep_chosen(StudyResult& study, const std::vector<std::string>& solvers,
+                 const std::vector<std::string>& scenes) {
+  keep_named("--solver", study.records, solvers, [](const Record& r) { return r.solver; });
+  keep_named("--scene", study.records, scenes, [](const Record& r) { return r.scene; });
 }
 
 StudyFigures draw_figures(const std::vector<FigureRequest>& wanted, const ReportInput& input,

@@ -26,6 +26,11 @@ struct FigureRequest {
 /// number.
 std::vector<FigureRequest> figures_of(const Study&);
 
+/// Leaves only the records of these solvers and scenes; none named: of all. Throws InputError: the
+/// study has no results of one.
+void keep_chosen(StudyResult&, const std::vector<std::string>& solvers,
+                 const std::vector<std::string>& scenes);
+
 struct StudyFigures {
   std::vector<PlotFiles> files;
   std::vector<std::string> not_drawn;  ///< a sentence for each figure that could not be drawn

@@ -147,8 +147,30 @@ RequirementSummary summary_of(const Requirement& found) {
   return summary;
 }
 
-Answer answer_of(const Requirement& found, std::size_t bytes, const std::string& picture,
+RequirementTable::RequirementTable()
+    : table_{"scenes",
+             "",
+             {{"scene"},
+              {"chaotic"},
+              {"kept"},
+              {"can_go", "can go"},
+              {"required"},
+              {"time_left", "CPU time left", kShare, 2}}} {}
+
+void RequirementTable::add(const Requirement& found) {
+  const RequirementSummary summary = summary_of(found);
+  table_.rows.push_back({summary.scene, summary.chaotic, summary.kept, summary.can_go,
+                         summary.required, found.time_ratio});
+}
+
+void RequirementTable::add_refused(const std::string& scene, const std::string& reason) {
+  table_.rows.push_back({scene, {}, {}, {}, reason, {}});
+}
+
+Answer answer_of(const Requirement& found, const Store& store, const std::string& picture,
                  double seconds, double patience) {
+  const auto full = store.find(found.full);
+  const std::size_t bytes = full ? bytes_of(full->step_cost) : 0;
   Answer answer{"require", found.full.id};
   const RequirementSummary summary = summary_of(found);
   answer.add(Column("key").in_detail(), found.full.key);

@@ -17,9 +17,22 @@ struct RequirementSummary {
 };
 RequirementSummary summary_of(const Requirement&);
 
-/// `bytes`: of a step of the full model; `seconds` of the patience were used.
-Answer answer_of(const Requirement&, std::size_t bytes, const std::string& picture, double seconds,
+/// `picture`: its file, "" if there is none; `seconds` of the patience were used. What a step of
+/// the full model holds is read from the store.
+Answer answer_of(const Requirement&, const Store&, const std::string& picture, double seconds,
                  double patience);
 RequirementSummary requirement_in(const Answer&);
+
+/// A table `scenes` of several scenes' requirements.
+class RequirementTable {
+ public:
+  RequirementTable();
+  void add(const Requirement&);
+  void add_refused(const std::string& scene, const std::string& reason);
+  const Table& table() const { return table_; }
+
+ private:
+  Table table_;
+};
 
 }  // namespace taut

@@ -25,14 +25,14 @@ struct Build {
 /// is a date with or without a time of day (UTC).
 Build build_named(const std::string& text);
 
-/// What $TAUT_BUILD_ID says (`taut run --build-id`) of the programs that run studies: which build
-/// they are; no id: nothing. Throws InputError.
+/// The build that $TAUT_BUILD_ID (`taut run --build-id`) names for the programs that run studies;
+/// without an id if it names none. Throws InputError.
 Build given_build();
 
-/// Notes a build of a study, in place of what was known of it.
+/// Notes a build of a study; replaces what was known of it.
 void note_build(Store&, const std::string& study, const Build&);
-/// Notes that a build has a case of a study, under this name and address; a build that is not known
-/// is noted, too. Throws InputError.
+/// Notes that a build has a case of a study, under this id and key, and the build if it is new.
+/// Throws InputError.
 void note_ran(Store&, const std::string& study, const Build&, const std::string& id,
               const std::string& key);
 /// Those of a study, in their order.
@@ -52,7 +52,7 @@ struct BuildRatio {
   double low = 0, ratio = 0, high = 0;                    ///< now over before, 95 %
   double control_low = 0, control = 0, control_high = 0;  ///< `before` over itself
 };
-/// In place of what was known of these two builds and this case.
+/// Replaces what was known of these two builds and this case.
 void note_ratio(Store&, const std::string& study, const BuildRatio&);
 std::vector<BuildRatio> ratios_of(const Store&, const std::string& study);
 

@@ -11,6 +11,7 @@
 #include "experiments/results/builds.hpp"
 #include "experiments/results/database.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut {
@@ -46,6 +47,14 @@ Shard Shard::parse(const std::string& text) {
     throw InputError("shard " + std::to_string(shard.index) + "/" + std::to_string(shard.count) +
                      " does not exist: the first is 1/n, the last n/n");
   return shard;
+}
+
+std::vector<std::string> remarks_of(const std::vector<StudyCases>& studies) {
+  std::vector<std::string> all;
+  for (const StudyCases& study : studies)
+    for (const Case& one : study.cases)
+      for (const std::string& remark : one.remarks) push_unique(all, remark);
+  return all;
 }
 
 std::string Missing::sentence() const {

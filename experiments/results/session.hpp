@@ -25,6 +25,8 @@ struct StudyCases {
   std::string study;  ///< its name; "": cases of no study
   std::vector<Case> cases;
 };
+/// What was skipped of the files of their scenes, each remark once.
+std::vector<std::string> remarks_of(const std::vector<StudyCases>&);
 
 /// A case that a session was to run.
 struct PlannedKey {

@@ -8,15 +8,14 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/results/database.hpp"
+#include "experiments/results/record_rows.hpp"
 #include "experiments/results/schema.hpp"
 #include "experiments/results/writer_mark.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
 
 namespace taut {
 
@@ -39,63 +38,6 @@ std::string end_of(const fs::path& file, std::size_t most) {
 
 std::string text_if_there(const fs::path& file) {
   return fs::exists(file) ? read_text(file) : std::string();
-}
-
-/// -1 where the column is NULL.
-int place(const Database::Rows& row, int column) {
-  return row.null(column) ? -1 : static_cast<int>(row.integer(column));
-}
-
-// What a column of a record is in the file, and back. Texts of JSON hold what is no single value.
-
-Database::Value kept(const std::string& text) { return text; }
-Database::Value kept(double number) { return number; }
-Database::Value kept(std::size_t count) { return static_cast<std::int64_t>(count); }
-Database::Value kept(int number) {
-  if (number < 0) return nullptr;
-  return std::int64_t{number};
-}
-Database::Value kept(Status::Kind kind) { return std::string(to_string(kind)); }
-template <class Value>
-Database::Value kept(const Value& value) {
-  return to_text(Json(value));
-}
-
-void read(const Database::Rows& row, int column, std::string& text) { text = row.text(column); }
-void read(const Database::Rows& row, int column, double& number) { number = row.number(column); }
-void read(const Database::Rows& row, int column, int& number) { number = place(row, column); }
-void read(const Database::Rows& row, int column, std::size_t& count) {
-  count = static_cast<std::size_t>(row.integer(column));
-}
-void read(const Database::Rows& row, int column, Status::Kind& kind) {
-  kind = status_kind(row.text(column));
-}
-template <class Value>
-void read(const Database::Rows& row, int column, Value& value) {
-  read_json(row.text(column), case_columns()[static_cast<std::size_t>(column)],
-            [&](const JsonReader& j) { return read_into(j, value), true; });
-}
-
-/// All but the values, of case_columns(). Throws InputError where a text is not what it has to be.
-Record record_in(const Database::Rows& row) {
-  Record r;
-  int at = 0;
-  for (const RecordColumn& column : record_columns())
-    if (!column.column.empty())
-      with_member(r, column, [&](auto& member) { read(row, at++, member); });
-  if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)
-    throw InputError("its time step or its sizes cannot be");
-  return r;
-}
-
-/// The same; nothing, and why, if a text is not what it has to be.
-std::optional<Record> record_of_row(const Database::Rows& row, std::string& why) {
-  try {
-    return record_in(row);
-  } catch (const InputError& error) {
-    why = error.what();
-    return {};
-  }
 }
 
 /// What becomes of a record beside the one that is there, if any.
@@ -290,7 +232,7 @@ Trajectory Store::motion(const std::string& key) const {
   if (!row.next()) fail("there is none");
   if (sha256(row.text(0)) != row.text(4)) fail("it does not match its digest");
   try {
-    return {row.text(2), row.number(3), frames_in(row.text(0), place(row, 1))};
+    return {row.text(2), row.number(3), frames_in(row.text(0), whole_or_none(row, 1))};
   } catch (const InputError& error) {
     fail(error.what());
   }
@@ -308,13 +250,9 @@ fs::path Store::stage(const std::string& key) {
 
 void Store::insert(Database& database, const Record& r, const CaseFiles& files) {
   database.run("DELETE FROM cases WHERE key = ?", r.key);
-  std::vector<Database::Value> values;
+  std::vector<Database::Value> values = row_of(r);
   std::string marks;
-  for (const RecordColumn& column : record_columns()) {
-    if (column.column.empty()) continue;
-    values.push_back(with_member(r, column, [](const auto& member) { return kept(member); }));
-    marks += "?, ";
-  }
+  for (std::size_t i = 0; i < values.size(); ++i) marks += "?, ";
   values.insert(values.end(), {std::int64_t{r.status.is_result()}, result_digest(r), files.errors});
   database.run_with("INSERT INTO cases (" + join(case_columns(), ", ") +
                         ", is_result, result_digest, errors) VALUES (" + marks + "?, ?, ?)",
@@ -452,91 +390,6 @@ std::vector<Answer> Store::answers(const std::string& kind, std::string_view pro
     all.push_back(answer_from_json(row.text(0), place));
   }
   return all;
-}
-
-std::vector<std::string> Store::unsound_keys() const {
-  std::vector<std::string> all = keys();
-  const std::vector<Entry> sound = entries();
-  std::erase_if(all, [&](const std::string& key) {
-    return std::ranges::binary_search(sound, key, {}, &Entry::key);
-  });
-  return all;
-}
-
-namespace {
-
-/// A temporary table of these keys, for as long as this lives.
-class SoundKeys {
- public:
-  SoundKeys(Database& database, const std::vector<Store::Entry>& all) : database_(database) {
-    database_.script("CREATE TEMP TABLE sound (key TEXT PRIMARY KEY) WITHOUT ROWID");
-    for (const Store::Entry& one : all) database_.run("INSERT INTO temp.sound VALUES (?)", one.key);
-  }
-  ~SoundKeys() {
-    try {
-      database_.script("DROP TABLE IF EXISTS temp.sound");
-    } catch (const InputError&) {  // of a connection that is of no use any more
-    }
-  }
-  SoundKeys(const SoundKeys&) = delete;
-  SoundKeys& operator=(const SoundKeys&) = delete;
-
- private:
-  Database& database_;
-};
-
-}  // namespace
-
-void Store::take(const Store& other) {
-  if (!other.reading()) return;
-  Database& database = writing();
-  const std::string columns = join(case_columns(), ", ") + ", is_result, result_digest, errors";
-  const SoundKeys sound(database, other.entries());
-  const std::vector<std::string> unsound = unsound_keys();
-  database.run("ATTACH ? AS other", fs::absolute(other.file()).string());
-  try {
-    database.transaction([&] {
-      for (const std::string& key : unsound)
-        database.run("DELETE FROM cases WHERE key = ? AND key IN (SELECT key FROM temp.sound)",
-                     key);
-      database.script(
-          "INSERT OR IGNORE INTO metrics (name, unit, definition) "
-          "SELECT name, unit, definition FROM other.metrics;"
-          "DELETE FROM cases WHERE NOT is_result AND key IN "
-          "(SELECT key FROM other.cases JOIN temp.sound USING (key) WHERE is_result)");
-      const std::int64_t last =
-          database.number_of("SELECT coalesce(max(case_id), 0) FROM main.cases");
-      const std::string taken =
-          " FROM main.cases AS mine JOIN other.cases AS theirs USING (key) WHERE mine.case_id > " +
-          std::to_string(last);
-      database.script(
-          "INSERT OR IGNORE INTO main.cases (" + columns + ") SELECT " + columns +
-          " FROM other.cases WHERE key IN (SELECT key FROM temp.sound) ORDER BY "
-          "case_id;"
-          "CREATE TEMP TABLE taken AS SELECT mine.case_id AS mine, theirs.case_id AS "
-          "theirs" +
-          taken +
-          " ORDER BY mine.case_id;"
-          "INSERT INTO main.numbers SELECT mine, n.metric_id, value FROM taken JOIN "
-          "(SELECT n.case_id, m.metric_id, n.value FROM other.numbers AS n JOIN "
-          "other.metrics AS o USING (metric_id) JOIN main.metrics AS m USING (name)) "
-          "AS n ON n.case_id = theirs;"
-          "INSERT INTO main.series SELECT mine, columns, digest FROM taken JOIN other.series "
-          "ON case_id = theirs;"
-          "INSERT OR IGNORE INTO main.sessions SELECT * FROM other.sessions;"
-          "INSERT OR IGNORE INTO main.planned SELECT * FROM other.planned;"
-          "INSERT OR IGNORE INTO main.builds SELECT * FROM other.builds;"
-          "INSERT OR IGNORE INTO main.ran SELECT * FROM other.ran;"
-          "INSERT OR IGNORE INTO main.ratios SELECT * FROM other.ratios;"
-          "INSERT INTO main.frames SELECT mine, motion, digest FROM taken JOIN other.frames "
-          "ON case_id = theirs;"
-          "DROP TABLE taken");
-    });
-  } catch (...) {
-    database.run("DETACH other");
-    throw;
-  }
-  database.run("DETACH other");
 }
 
 }  // namespace taut

@@ -95,7 +95,7 @@ const std::vector<std::string>& solvers_on(const Study& study, const std::string
 
 CaseSpec spec_of(const Study& study, const std::string& scene, const std::string& solver,
                  const Settings& of_scene, const Settings& of_solver) {
-  const StudyScene own = parse_scene(scene);
+  const StudyScene own = parse_study_scene(scene);
   CaseSpec spec{own.name, study.settings, solver};
   spec.overrides.insert(spec.overrides.end(), own.settings.begin(), own.settings.end());
   for (const StudyAxis& axis : study.axes)

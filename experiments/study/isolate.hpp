@@ -47,8 +47,8 @@ class Heartbeat {
 /// It dies with this process, however this one ends.
 class IsolatedCase {
  public:
-  /// Starts it; its files and what it says go into `folder`. Throws InputError if it cannot start.
-  /// Of its motion about so many moments are kept (kFramesFile); 0: none.
+  /// Starts it; its files and its output go into `folder`, with about `frames` moments of its
+  /// motion (kFramesFile). Throws InputError if it cannot start.
   IsolatedCase(const Case&, std::filesystem::path folder, const Limits&, int frames = 0);
 
   /// Ready for reading when the process has ended.
@@ -73,7 +73,7 @@ class IsolatedCase {
 };
 
 /// The child's side: runs the case in this process and leaves case.json, series.json, its heartbeat
-/// and, if asked for, so many moments of its motion in `folder`. Gives the exit code.
+/// and about `frames` moments of its motion in `folder`. Returns the exit code.
 int run_into(const Case&, const std::filesystem::path& folder, int frames = 0);
 
 }  // namespace taut

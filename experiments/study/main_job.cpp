@@ -20,4 +20,10 @@ MainJob main_job() {
   return job;
 }
 
+std::vector<std::string> MainJob::studies_to_run() const {
+  std::vector<std::string> all = studies;
+  all.insert(all.end(), maps.begin(), maps.end());
+  return all;
+}
+
 }  // namespace taut

@@ -14,6 +14,9 @@ struct MainJob {
   std::string bench;                 ///< the study that is timed
   /// Scenes ("name:key=value,...") of which one step is followed, by the first study's solvers.
   std::vector<std::string> steps;
+
+  /// Those that are compared, then the maps.
+  std::vector<std::string> studies_to_run() const;
 };
 
 /// Throws InputError with everything that is wrong with the file.

@@ -1,70 +1,18 @@
 #include "experiments/study/study.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <functional>
-#include <set>
 
 #include "core/io/document.hpp"
-#include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
 #include "experiments/results/builds.hpp"
+#include "experiments/study/study_reading.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
 
 namespace {
-
-std::string in_quotes(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
-std::string key_text(const std::string& key) {
-  constexpr std::string_view kBare =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-  return !key.empty() && key.find_first_not_of(kBare) == key.npos ? key : in_quotes(key);
-}
-
-/// Whether text_of() can say the value: no date, and a table as TOML only.
-bool has_text(const Value& value, bool toml) {
-  if (value.kind == Value::Kind::date || (value.is_table() && !toml)) return false;
-  return std::ranges::all_of(value.items, [&](const Value& item) { return has_text(item, toml); });
-}
-
-/// A value as a command line would have it: for a solver's parameter bare, for a scene key as TOML.
-/// Precondition: has_text().
-std::string text_of(const Value& value, bool toml) {
-  const auto text_of_item = [&](const Value& item) { return text_of(item, toml); };
-  switch (value.kind) {
-    case Value::Kind::boolean:
-      return value.boolean ? "true" : "false";
-    case Value::Kind::string:
-      return toml ? in_quotes(value.string) : value.string;
-    case Value::Kind::array:
-      return "[" + join(value.items, ", ", text_of_item) + "]";
-    case Value::Kind::table: {
-      std::vector<std::string> items;
-      for (std::size_t i = 0; i < value.items.size(); ++i)
-        items.push_back(key_text(value.keys[i].text) + " = " + text_of_item(value.items[i]));
-      return "{ " + join(items, ", ") + " }";
-    }
-    case Value::Kind::integer:  // 100000 and not 1e+05
-      if (std::abs(value.number) < 1e15) return std::to_string(std::lround(value.number));
-      return shortest(value.number);
-    case Value::Kind::real:
-      return shortest(value.number);
-    case Value::Kind::date:
-      break;
-  }
-  assert(false && "a date has no text");
-  return {};
-}
 
 constexpr const char* kAll = "all";  ///< shipped scenes
 
@@ -115,7 +63,7 @@ class StudyReader {
   }
   void read_scenes(Section& section) {
     strings(section, "scenes", study_.scenes, [](const std::string& text) {
-      const StudyScene scene = parse_scene(text);
+      const StudyScene scene = parse_study_scene(text);
       if (scene.name != kAll)
         find_scene(scene.name);
       else if (!scene.settings.empty())
@@ -172,7 +120,7 @@ class StudyReader {
   void refuse_clashes() {
     std::map<std::string, std::string> text_of;
     for (const std::string& text : study_.scenes) try {
-        const StudyScene scene = parse_scene(text);
+        const StudyScene scene = parse_study_scene(text);
         const auto report = [&](const std::string& what) {
           diagnostics_.report(study_.scene_places.at(text), what);
         };
@@ -368,7 +316,7 @@ class StudyReader {
         const auto add = [&](const Value& value) {
           values.push_back(text(value, key, toml));
           guarded(value, [&] {  // of a preset's scenes and solvers too
-            if (key == "scene") find_scene(parse_scene(values.back()).name);
+            if (key == "scene") find_scene(parse_study_scene(values.back()).name);
             if (key == "solver") find_solver(values.back());
           });
         };
@@ -489,56 +437,7 @@ void StudyReader::read_presets(Section& section) {
   }
 }
 
-/// What is wrong with the scenes of a study that is itself wrong: each with `set`, and with every
-/// value of an axis by itself.
-void judge_scenes(const Study& study, Diagnostics& diagnostics) {
-  std::vector<std::vector<std::string>> variants(1);
-  for (const StudyAxis& axis : study.axes)
-    for (const std::string& value : axis.values)
-      if (axis.of_scene()) {
-        variants.push_back({axis.name + "=" + value});
-      }
-  std::set<std::string> said;
-  for (const std::string& scene : study.scenes)
-    for (const std::vector<std::string>& of_axis : variants) try {
-        const StudyScene own = parse_scene(scene);
-        std::vector<std::string> overrides = study.settings;
-        overrides.insert(overrides.end(), own.settings.begin(), own.settings.end());
-        overrides.insert(overrides.end(), of_axis.begin(), of_axis.end());
-        load_scene(find_scene(own.name), overrides);
-      } catch (const InputError& error) {
-        for (const Diagnostic& d : error.diagnostics())
-          if (said.insert(d.text()).second && !d.file.empty())
-            diagnostics.report({placed(study, scene, d)});
-      }
-}
-
 }  // namespace
-
-StudyScene parse_scene(const std::string& text) {
-  const auto colon = text.find(':');
-  StudyScene scene{text.substr(0, colon), {}};
-  if (colon == text.npos) return scene;
-  const auto wrong = [&](const std::string& what) {
-    throw InputError("scene '" + scene.name + "': " + what);
-  };
-  for (const ParamItem& item : param_items(std::string_view(text).substr(colon + 1))) {
-    if (!item.problem.empty()) wrong(item.problem);
-    for (const std::string& before : scene.settings)
-      if (before.starts_with(item.key + "=")) wrong("'" + item.key + "' is given twice");
-    scene.settings.push_back(item.key + "=" + item.value);
-  }
-  if (scene.settings.empty()) wrong("key=value is missing after the colon");
-  return scene;
-}
-
-Diagnostic placed(const Study& study, const std::string& scene, const Diagnostic& d) {
-  const bool own = std::ranges::count(parse_scene(scene).settings, d.file) > 0;
-  const auto& places = own ? study.scene_places : study.places;
-  const auto at = places.find(own ? scene : d.file);
-  if (at == places.end()) return d;
-  return {study.file.string(), at->second.line, at->second.column, d.file + ": " + d.message};
-}
 
 std::vector<StudyKey> study_keys() {
   std::vector<StudyKey> keys;

@@ -28,7 +28,7 @@ struct StudyAxis {
   bool of_solver() const { return name.find(':') != std::string::npos; }
 };
 
-/// Cases that a study leaves out: those that match every setting that is named.
+/// Cases that a study leaves out: those that match all of the named settings.
 struct Exclusion {
   /// By "scene" (as in Study::scenes), "solver" (entry's name) or an axis's name: any of these
   /// values.
@@ -73,8 +73,8 @@ struct StudyKey {
 };
 std::vector<StudyKey> study_keys();
 
-/// A row of a file of searched settings (Study::searched): what was tried, and what of it is a
-/// solver's best on a scene. A row that is none was tried alone.
+/// A row of a file of searched settings (Study::searched): a setting that was tried, and for what
+/// it is its solver's best on the scene, if for anything.
 struct SearchedSetting {
   std::string scene;  ///< as in Study::scenes
   std::string solver;
@@ -87,7 +87,8 @@ struct SearchedSetting {
   std::vector<double> best = {};  ///< errors for which it is the solver's best with them
   bool chosen() const { return cheapest || !plain.empty() || !best.empty(); }
 };
-/// The file's text behind `heading`, comment lines; `missing` are sentences on who is not there.
+/// The text of such a file: `heading` (comment lines), the rows, and as comments the sentences of
+/// `missing` on who is absent.
 std::string searched_toml(const std::string& heading, const std::vector<SearchedSetting>&,
                           const std::vector<std::string>& missing);
 /// Throws InputError with all that is wrong with the file.
@@ -111,10 +112,10 @@ struct StudyScene {
   std::vector<std::string> settings;
 };
 /// Throws InputError if what follows the colon is no list of key=value, each key once.
-StudyScene parse_scene(const std::string& text);
+StudyScene parse_study_scene(const std::string& text);
 
-/// The study at these time steps ("1/64") in place of its own, under a name that says so: its own
-/// results stay as planned. Without any it is as it was.
+/// The study at these time steps ("1/64") in place of its own, under a name that says so, so that
+/// its own results stay as planned. Without steps: the study unchanged.
 Study at_time_steps(Study, const std::vector<std::string>& steps);
 
 /// The study with its external programs called a build of this name ("": as they are): their

@@ -17,7 +17,7 @@ namespace {
 std::string setting_of(const Case& one, const Study& study) {
   std::vector<std::string> shared = study.settings;
   for (const std::string& scene : study.scenes)
-    std::ranges::copy(parse_scene(scene).settings, std::back_inserter(shared));
+    std::ranges::copy(parse_study_scene(scene).settings, std::back_inserter(shared));
   std::string text = one.choice.brief();
   for (const std::string& change : one.spec.overrides)
     if (std::ranges::find(shared, change) == shared.end()) text += " " + change;

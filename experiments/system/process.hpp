@@ -71,22 +71,21 @@ class Process {
   bool was_stopped() const { return was_stopped_; }
   /// How it ended; nothing while it runs.
   std::optional<ProcessEnd> poll();
-  /// Waits for its end. Nothing: it still ran after so many seconds (< 0: no limit) and was killed.
+  /// Waits for its end. Nothing if it still ran after these seconds (< 0: no limit) and was killed.
   std::optional<ProcessEnd> wait(double seconds = -1);
 
   /// To its standard input; false once it no longer reads (never a SIGPIPE), or has not read all of
   /// it after so many seconds (< 0: no limit).
   bool write(std::string_view bytes, double seconds = -1);
   void close_input();
-  /// A line of its output without the line feed; false: it ended first, so many seconds passed (<
-  /// 0: no limit), or the line is longer than `most` bytes.
+  /// A line of its output without the line feed; false if it ended first, the seconds passed (< 0:
+  /// no limit), or the line is longer than `most` bytes.
   bool read_line(std::string&, double seconds = -1, std::size_t most = std::string::npos);
-  /// Exactly so many bytes of its output; false: it ended first, or so many seconds passed.
+  /// Exactly that many bytes of its output; false if it ended first or the seconds passed.
   bool read_bytes(std::string&, std::size_t bytes, double seconds);
   /// What has come of its output and was not read.
   std::string_view unread() const { return buffer_; }
-  /// Its output to the end; what came by then if that takes longer than so many seconds (< 0: no
-  /// limit).
+  /// Its output to the end, or what came of it within these seconds (< 0: no limit).
   std::string read_all(double seconds = -1);
   /// Whether something lives that it started.
   bool has_descendants() const;

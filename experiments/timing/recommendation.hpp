@@ -31,28 +31,28 @@ struct Recommendation {
 Recommendation recommend(const SceneBench&, const Target&, const std::string& metric,
                          double tolerance = kTolerance);
 
-/// Where the cost of a case is to be expected in another session [CPU s per simulated s]: its
-/// interval, wider by how far identical code strayed from itself in this one.
+/// The cost to expect of a case in another session [CPU s per simulated s]: its interval, widened
+/// by how far identical code strayed from itself in this one.
 Interval cost_expected_again(const SceneBench&, std::size_t at);
 
 /// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms a frame of 1/60 s".
 std::string text(const Target&, const std::string& metric, double fps = 1 / kFrame);
 
-/// How sure of what: "clearly within the budget", "likely cheaper than bullet", "costs the same as
-/// bullet within 5 %". Precondition: there is a best.
+/// How sure the best is, and of what: "clearly within the budget", "likely cheaper than bullet",
+/// "costs the same as bullet within 5 %". Precondition: there is a best.
 std::string verdict(const Recommendation&, const SceneBench&);
 
-/// What a solver that did not reach the target came nearest to, and whether it could not.
+/// Of a solver that missed the target: how near it came, and whether it could have reached it.
 std::string nearest(const SolverRecommendation&, const SceneBench&, const Recommendation&,
                     const std::string& metric, double fps = 1 / kFrame);
 
-/// An empty table of recommendations, and its rows for one of them: the best, then every other
-/// solver with what it costs or how near it came.
+/// An empty table of recommendations. add() appends the rows of one: the best, then every other
+/// solver with its cost or how near it came.
 Table recommendations(const std::string& metric);
 void add(Table&, const Recommendation&, const SceneBench&, const std::string& metric);
 
-/// Whom to time: the best by quick cost of every solver that meets the target, at most `most`, then
-/// the next best of the leader. Indices into `tried`, best first.
+/// Which settings to time: of every solver that meets the target the best by quick cost, at most
+/// `most`, then the next best of the leader. Indices into `tried`, best first.
 std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target&,
                                    std::size_t most);
 

@@ -11,8 +11,8 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/case/question.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/case/task.hpp"
 #include "experiments/results/database.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
@@ -206,12 +206,12 @@ namespace {
 /// Grouped by scene and its settings, in order of appearance; without what a solver refuses.
 std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
     const std::vector<Record>& records) {
-  std::set<Question> asked;
-  for (const Record& record : records) asked.insert(question_of(record));
+  std::set<Task> asked;
+  for (const Record& record : records) asked.insert(task_of(record));
   std::vector<std::pair<std::string, std::vector<Record>>> groups;
   for (const Record& record : records) {
     if (record.status.kind == Status::Kind::unsupported) continue;
-    group_of(groups, title_among(question_of(record), asked)).push_back(record);
+    group_of(groups, title_among(task_of(record), asked)).push_back(record);
   }
   return groups;
 }

@@ -102,8 +102,9 @@ struct StudyBench {
   std::vector<Record> records() const;
 };
 
-/// Times these cases scene by scene, settings of a scene apart; the time step is a solver's
-/// setting, for a cost is that of a simulated second. `options_of` is asked before each scene.
+/// Times these cases scene by scene; a scene with other settings is a scene of its own, but not one
+/// with another time step, for a cost is that of a simulated second. `options_of` is asked before
+/// each scene.
 StudyBench bench_study(
     const std::string& name, const std::vector<Record>&,
     const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of);
@@ -119,8 +120,8 @@ std::vector<std::string> solvers_of(const SceneBench&);
 /// InputError; then the former stay.
 void keep(Store&, const StudyBench&);
 
-/// What is stored of a study ("": of all): of this host and build, of this host, of others by name;
-/// of cases that are stored, in scenes that have any.
+/// The stored benches of a study ("": of all): first that of this host and build, then those of
+/// this host, then of others by name. Without cases that are not stored, and scenes that have none.
 std::vector<StudyBench> stored_benches(const Store&, const std::string& study);
 
 /// Throws InputError in a Slurm job that may not time: on several nodes, or not alone on its node.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <limits>
@@ -85,6 +86,8 @@ StepTime CheckpointedRun::sample(Solver& solver, int steps) const {
 }
 
 int serve_timing(const Scene& scene, const SolverChoice& choice) {
+  if (std::getenv("SLURM_JOB_ID"))
+    pin(choice.params.has("threads") ? std::max(1, choice.params.integer("threads")) : 1);
   const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
   std::cout.precision(17);
   std::cout << "ready" << std::endl;

@@ -73,7 +73,8 @@ class TimingWorker {
   std::optional<std::chrono::steady_clock::time_point> deadline_;
 };
 
-/// The worker's side: reads requests from stdin and answers on stdout until the input ends.
+/// The worker's side: reads requests from stdin and answers on stdout until the input ends. In a
+/// Slurm job on as many cores as the solver has threads (pin()).
 int serve_timing(const Scene&, const SolverChoice&);
 
 /// Keeps this process on as many of the cores that it may use, the last ones: no sample moves

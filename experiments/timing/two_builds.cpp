@@ -140,6 +140,17 @@ std::vector<BuildRatio> ratios_of(const std::vector<TwoBuilds>& all, const std::
   return ratios;
 }
 
+std::vector<TwoBuilds> compare_with_build(const std::string& study,
+                                          const std::vector<Record>& records,
+                                          const std::string& before, Store& store,
+                                          const TimingOptions& options) {
+  const fs::path folder = folder_of_build(store.root(), before);
+  const std::vector<TwoBuilds> found = time_two_builds(cases_of_two(records, folder), options);
+  for (const BuildRatio& one : ratios_of(found, before, build_named(this_build()).id))
+    note_ratio(store, study, one);
+  return found;
+}
+
 Table table_of(const std::vector<TwoBuilds>& all, const std::string& name,
                const std::string& before) {
   Table table{name,

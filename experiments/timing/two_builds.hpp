@@ -54,6 +54,11 @@ std::vector<CaseOfTwo> cases_of_two(const std::vector<Record>&,
 std::vector<BuildRatio> ratios_of(const std::vector<TwoBuilds>&, const std::string& before,
                                   const std::string& now);
 
+/// What cases of a study cost over another build (folder_of_build()); the store keeps the ratios of
+/// each case. Throws InputError.
+std::vector<TwoBuilds> compare_with_build(const std::string& study, const std::vector<Record>&,
+                                          const std::string& before, Store&, const TimingOptions&);
+
 /// A table `name` for people and data: ratio, control, verdict of each case.
 Table table_of(const std::vector<TwoBuilds>&, const std::string& name, const std::string& before);
 bool any_slower(const std::vector<TwoBuilds>&);

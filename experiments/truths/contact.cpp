@@ -55,7 +55,7 @@ TAUT_TRUTH(plane_rest, 7, 1,
     const double speed = sim.v(0).norm();
     sim.step(254);
     const double hover = sim.x(0).y();
-    if (solver.starts_with("bullet")) {
+    if (solver_name(solver) == "bullet") {
       findings.deviates(solver, "height at rest", "m", hover, 0, kG * s.dt * s.dt, 1e-5,
                         "a contact is only seen at the predicted place, so it rests at + g dt^2");
       continue;

@@ -103,7 +103,7 @@ TAUT_TRUTH(damping_factor, 3, 2,
       const double decay = q * (1 - std::pow(q, n)) / (1 - q);
       return (sim.x(0) - (kThrow * s.dt * decay + a / (1 - q) * (n - decay))).norm();
     });
-    const bool is_bullet = solver.starts_with("bullet");
+    const bool is_bullet = solver_name(solver) == "bullet";
     findings.below(solver, "distance from the closed form of x + q (x - x') + g dt^2 over 1 s", "m",
                    worst, is_bullet ? 1e-9 : 1e-12);
     sim.step(64 * 14);

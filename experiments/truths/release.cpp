@@ -32,8 +32,8 @@ std::vector<std::string> steppers() {
 /// Vertex descent and a step of conjugate gradients end before what is inside the cloth has
 /// cancelled: their centre of mass is pulled along.
 bool balances(const std::string& solver) {
-  return !solver.starts_with("vbd") && !solver.starts_with("avbd") &&
-         !solver.starts_with("bullet-deformable");
+  const std::string name = solver_name(solver);
+  return name != "vbd" && name != "avbd" && name != "bullet-deformable";
 }
 
 Vec3 mean(const Scene& s, const std::vector<Vec3>& of) {

@@ -91,7 +91,8 @@ TAUT_TRUTH(turning_disc, 7, 10,
         std::string("vbd:substeps=1,iterations=200,precision=double,start=inertia"),
         std::string("pd:substeps=1,precision=double,iterations=100"),
         std::string("admm:substeps=1,precision=double")}) {
-    if (solver.starts_with("pd") || solver.starts_with("vbd") || solver.starts_with("implicit"))
+    const std::string name = solver_name(solver);
+    if (name == "pd" || name == "vbd" || name == "implicit")
       s.stiffness = {1000, 1000, 1000};
     else
       s.stiffness = kRigid;

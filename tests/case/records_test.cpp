@@ -11,10 +11,10 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/case/question.hpp"
 #include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/reference_store.hpp"
+#include "experiments/case/task.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/cloths.hpp"
 #include "tests/support/environment.hpp"
@@ -268,16 +268,16 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   EXPECT_FALSE(found().rest || !found().motion.empty());
 }
 
-// In which order settings are given, and how long a step is, makes it no other question.
-TEST(Questions, AreTheSameInAnyOrderOfTheirSettings) {
+// In which order settings are given, and how long a step is, makes it no other task.
+TEST(Tasks, AreTheSameInAnyOrderOfTheirSettings) {
   const auto asked = [](std::vector<std::string> overrides, double dt = 0.01) {
     Record record;
     record.scene = "hang";
     record.spec.overrides = std::move(overrides);
     record.dt = dt;
-    return question_of(record);
+    return task_of(record);
   };
-  const Question one = asked({"wind.strength=2", "time.dt=0.01", "cloth.grid=[4, 4]"});
+  const Task one = asked({"wind.strength=2", "time.dt=0.01", "cloth.grid=[4, 4]"});
   EXPECT_EQ(one, asked({"cloth.grid=[4, 4]", "wind.strength=2"}));
   EXPECT_NE(one, asked({"cloth.grid=[4, 4]", "wind.strength=3"}));
   EXPECT_NE(one, asked({"cloth.grid=[4, 4]", "wind.strength=2"}, 0.02));

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The README's two commands on a Debian 12 that has nothing else: what they install is all that they, and the tests, use.
-# The bare system is a folder (debootstrap, from the mirror of this machine). In it stands this tree with BUILD, under an overlay:
+# In the bare system (tests/support/bare_debian.sh) stands this tree with BUILD, under an overlay:
 # it is configured anew with what the root has, and compiled anew where a file differs that the root has, or has not.
 # Usage: bare_root.sh BUILD [--whole]
 #   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call other programs.
@@ -13,21 +13,8 @@ else
   study=regression
   tests=(-R '^(browser|cluster.container|documents|external_test|format|install_test|launcher_test|layers$|pictures_test|python\.|VideoTest|Plots)')
 fi
-not_here() { echo "bare_root: not run: $1"; exit 77; }
-
-[[ $(id -u) == 0 ]] || not_here "needs root"
-unshare --mount --pid --fork true 2>/dev/null || not_here "no namespaces here"
-command -v debootstrap >/dev/null || not_here "debootstrap is not installed"
-mirror=$(apt-get indextargets --format '$(RELEASE) $(COMPONENT) $(REPO_URI)' 2>/dev/null | awk '/^bookworm main /{ print $3; exit }')
-[[ -n $mirror ]] || not_here "this machine has no mirror of Debian 12"
-
-scratch=$(mktemp -d)
-trap 'rm -rf --one-file-system "$scratch"' EXIT
-root=$scratch/root
-mkdir "$root" "$scratch/changed" "$scratch/work"
-debootstrap --variant=minbase bookworm "$root" "$mirror" >"$scratch/log" 2>&1 || { tail -n 3 "$scratch/log"; not_here "debootstrap failed"; }
-mkdir -p "$root$home"
-cp /etc/resolv.conf /etc/hosts "$root/etc"
+. "$home/tests/support/bare_debian.sh"
+mkdir -p "$scratch/changed" "$scratch/work" "$root$home"
 # The Debian packages in a root of their own: what they depend on is all that `import taut` needs.
 packages=
 if command -v dpkg-shlibdeps >/dev/null && grep -q '^TAUT_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then

@@ -206,12 +206,14 @@ class Signals(CommandLine):
 
     def test_a_report_that_is_ended_leaves_no_folder_and_no_part_of_a_page(self):
         self.taut("run", "small", env=self.env)
-        for k in range(6):  # they are filmed, too: when the first line is said there is more to do
+        more = []  # they are filmed, too: when the first line is said there is more to do
+        for k in range(6):
             shutil.copy(self.folder / "data/scenes/small.toml", self.folder / f"data/scenes/small-{k}.toml")
+            more += ["--film", f"small-{k}"]
         for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
             for films in self.folder.glob("results/**/films"):
                 shutil.rmtree(films)  # what is there already is not made
-            self.end_at("small", stop, "report", "small")
+            self.end_at("small", stop, "report", "small", *more)
             for file in self.folder.glob("*report*"):  # it had just been written
                 self.assertEqual(file.name, "report.html")
                 self.assertTrue(file.read_text().rstrip().endswith("</html>"))

@@ -5,18 +5,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(readlink -f "$1")
-not_here() { echo "workflow_root: not run: $1"; exit 77; }
-
-[[ $(id -u) == 0 ]] || not_here "needs root"
-unshare --mount --pid --fork true 2>/dev/null || not_here "no namespaces here"
-command -v debootstrap >/dev/null || not_here "debootstrap is not installed"
-mirror=$(apt-get indextargets --format '$(RELEASE) $(COMPONENT) $(REPO_URI)' 2>/dev/null | awk '/^bookworm main /{ print $3; exit }')
-[[ -n $mirror ]] || not_here "this machine has no mirror of Debian 12"
-scratch=$(mktemp -d)
-trap 'rm -rf --one-file-system "$scratch"' EXIT
-root=$scratch/root
-debootstrap --variant=minbase bookworm "$root" "$mirror" >"$scratch/log" 2>&1 || { tail -n 3 "$scratch/log"; not_here "debootstrap failed"; }
-cp /etc/resolv.conf /etc/hosts "$root/etc"
+. "$here/../support/bare_debian.sh"
 cpack --config "$build/CPackConfig.cmake" -G DEB -B "$scratch/deb" >/dev/null
 cp "$scratch"/deb/taut_*.deb "$root/tmp/taut.deb"
 mkdir "$root/tmp/workflow"

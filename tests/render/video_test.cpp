@@ -270,6 +270,16 @@ Record ran(const std::string& scene, const std::string& solver, const Status& st
   return r;
 }
 
+/// Adds the films of a report to it.
+void add_films(report::ReportInput& input, const std::vector<OtherScene>& others,
+               const fs::path& folder, const std::function<void(const std::string&)>& say) {
+  const std::vector<Film> films = films_of(report::compared_solvers_of(input), others);
+  for (FilmResult& film : make_films(films, folder, say)) {
+    input.media.push_back(std::move(film.media));
+    std::ranges::move(film.series, std::back_inserter(input.series));
+  }
+}
+
 TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   const Scratch scratch;
   const std::string cloth = "[cloth]\ngrid = [4, 3]\nsize = [1, 0.5]\nmass = 0.1\n",
@@ -292,8 +302,8 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   input.studies[0].records.push_back(
       ran(small, "mass-spring:substeps=1", {Status::Kind::unsupported, "no reason", -1, -1}));
   std::multiset<std::string> news;
-  film_scenes(input, others, scratch.path() / "films",
-              [&](const std::string& said) { news.insert(said); });
+  add_films(input, others, scratch.path() / "films",
+            [&](const std::string& said) { news.insert(said); });
   EXPECT_EQ(news, (std::multiset<std::string>{"small filmed", "thrown2 filmed", "thrown4 filmed",
                                               "thrown4.01 filmed", "thrown8.01 filmed"}));
   ASSERT_EQ(input.media.size(), 5u);
@@ -345,8 +355,8 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   // Made once: the second report takes what the first one kept.
   report::ReportInput again;
   again.studies = input.studies;
-  film_scenes(again, others, scratch.path() / "films",
-              [](const std::string& said) { ADD_FAILURE() << said; });
+  add_films(again, others, scratch.path() / "films",
+            [](const std::string& said) { ADD_FAILURE() << said; });
   ASSERT_EQ(again.media.size(), input.media.size());
   for (std::size_t k = 0; k < again.media.size(); ++k) {
     const report::SceneMedia &a = input.media[k], &b = again.media[k];
@@ -370,16 +380,16 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   std::vector<std::string> mended;
   again.media.clear();
   again.series.clear();
-  film_scenes(again, others, scratch.path() / "films",
-              [&](const std::string& said) { mended.push_back(said); });
+  add_films(again, others, scratch.path() / "films",
+            [&](const std::string& said) { mended.push_back(said); });
   EXPECT_EQ(mended.size(), 1u);
   ASSERT_EQ(again.media.size(), input.media.size());
   EXPECT_EQ(again.media[0].clip.poster, input.media[0].clip.poster);
   // Another case is another film.
   again.studies[0].records[0] = ran(small, "xpbd:substeps=1,iterations=3");
   std::vector<std::string> made;
-  film_scenes(again, {}, scratch.path() / "films",
-              [&](const std::string& said) { made.push_back(said); });
+  add_films(again, {}, scratch.path() / "films",
+            [&](const std::string& said) { made.push_back(said); });
   EXPECT_EQ(made, (std::vector<std::string>{"small filmed"}));
 }
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "experiments/report/answer/case_list.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/questions/case_list.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::curves_test {

@@ -9,7 +9,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
-#include "experiments/report/answer/compared_solvers.hpp"
+#include "experiments/report/questions/compared_solvers.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "experiments/case/record_io.hpp"
-#include "experiments/report/answer/answer.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/questions/rows.hpp"
 
 namespace taut::report::format_test {
 namespace {

@@ -10,10 +10,10 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
-#include "experiments/report/answer/case_list.hpp"
-#include "experiments/report/answer/compared_solvers.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
+#include "experiments/report/questions/case_list.hpp"
+#include "experiments/report/questions/compared_solvers.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"

@@ -41,9 +41,9 @@ experiments/render/picture | (core/model|experiments/(answer|system|case|render/
 experiments/render/film  | (core/(model|io)|experiments/(system|case|results|study|render/(image|picture|film)|report))/
 experiments/report       | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|steps|require|baseline|history|truths|report))/
 experiments/report/chart | (core/model|experiments/(answer|system|metrics|case|timing|steps|report/chart))/|experiments/report/input
-experiments/report/answer | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|answer)))/|experiments/report/input
+experiments/report/questions | (core/model|experiments/(answer|system|metrics|case|timing|report/(chart|questions)))/|experiments/report/input
 experiments/report/plot  | (core/model|experiments/(answer|system|study/frontier|timing|history|report/(chart|plot)))/
-experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|history|truths|report/(chart|answer|model)))/|experiments/report/input
+experiments/report/model | (core/model|experiments/(answer|system|metrics|case|timing|steps|baseline|history|truths|report/(chart|questions|model)))/|experiments/report/input
 '
 # what is included | files that may include it
 owners='
@@ -149,9 +149,9 @@ experiments/timing/bench/planted.cpp|"experiments/results/store.hpp"
 experiments/render/picture/planted.cpp|"experiments/render/film/film.hpp"
 experiments/require/planted.cpp|"experiments/report/chart/format.hpp"
 experiments/report/planted.cpp|"core/solver/simd/distance.hpp"
-experiments/report/chart/planted.hpp|"experiments/report/answer/answer.hpp"
-experiments/report/answer/planted.cpp|"experiments/report/model/parts.hpp"
-experiments/report/plot/planted.cpp|"experiments/report/answer/answer.hpp"
+experiments/report/chart/planted.hpp|"experiments/report/questions/questions.hpp"
+experiments/report/questions/planted.cpp|"experiments/report/model/parts.hpp"
+experiments/report/plot/planted.cpp|"experiments/report/questions/questions.hpp"
 experiments/report/model/planted.cpp|"experiments/report/plot/plot.hpp"
 experiments/render/image/planted.cpp|"experiments/render/opengl/camera.hpp"
 experiments/render/opengl/planted.cpp|"experiments/render/picture/figure.hpp"

@@ -28,6 +28,7 @@ import argparse
 import concurrent.futures
 import contextlib
 import fnmatch
+import functools
 import itertools
 import json
 import math
@@ -98,6 +99,7 @@ class Mutant:
     def __init__(self, layer, file, line, planted, checks="*", tests=()):
         self.layer, self.file, self.line, self.planted, self.checks, self.tests = layer, file, line, planted, checks, tests
         self.was = (ROOT / file).read_text().splitlines()[line - 1]
+        self.program = None  # whose checks may notice; None: of several
         self.number, self.compiles = 0, True
         self.by, self.tried, self.seconds = None, 0, 0.0
 
@@ -136,10 +138,19 @@ class Build:
     def ninja(self, *words):
         return subprocess.run(["ninja", *words], cwd=self.build, check=True, text=True, capture_output=True).stdout
 
-    def objects(self, file, tests=()):
-        """Those of the layers that depend on a source file, and those of some files of the tests."""
+    def objects(self, file, tests=(), program=None):
+        """Those of the layers that depend on a source file (and that a program is linked of), and those of some files of the tests."""
         of_tests = [self.dependents[str(ROOT / test)] for test in tests]
-        return (self.dependents.get(str(ROOT / file), set()) & self.library.keys()).union(*of_tests)
+        of_file = self.dependents.get(str(ROOT / file), set()) & self.library.keys()
+        if program:
+            linked = set(self.link_line(program))
+            of_file = {target for target in of_file if self.library[target] in linked or target in linked}
+        return of_file.union(*of_tests)
+
+    @functools.cache
+    def link_line(self, program):
+        return shlex.split(next(line for line in reversed(self.ninja("-t", "commands", program).splitlines())
+                                if f"-o {program} " in line).removeprefix(": && ").split(" && ")[0])
 
     def compile(self, target, mutants):
         """The object with all these errors in it but those that do not compile."""
@@ -171,33 +182,33 @@ class Build:
         return None
 
     def link(self, program, objects, out):
-        words = shlex.split(next(line for line in reversed(self.ninja("-t", "commands", program).splitlines())
-                                 if f"-o {program} " in line).removeprefix(": && ").split(" && ")[0])
+        words = list(self.link_line(program))
         words[words.index("-o") + 1] = str(out)
         own = [str(object_) for target, object_ in objects.items() if {target, self.library.get(target)} & set(words)]
         # BUILD's libraries then have nothing left to give.
         words = [words[0], "-Wl,--strip-debug", *own, str(self.folder / "chosen.o"), *(w for w in words[1:] if w not in objects)]
         subprocess.run(words, cwd=self.build, check=True)
 
-    def plant(self, mutants, pool):
-        """A folder with the programs that have the errors in them, and all else of BUILD."""
+    def plant(self, mutants, programs, pool):
+        """A folder with the programs that have the errors in them, and all else of BUILD. An error whose checks all are of one
+        program is in the objects of that one."""
         beside, chosen = self.folder / "programs", self.folder / "chosen.c"
         for name in ("", "tests"):
             (beside / name).mkdir()
             for entry in (self.build / name).iterdir():
-                if entry.name not in (*PROGRAMS, "tests", pathlib.Path(UNIT).name):
+                if str(entry.relative_to(self.build)) not in (*programs, "tests"):
                     (beside / name / entry.name).symlink_to(entry)
         chosen.write_text(CHOSEN)
         subprocess.run(["cc", "-c", chosen, "-o", chosen.with_suffix(".o")], check=True)
         of = {}
         for mutant in mutants:
-            for target in self.objects(mutant.file, mutant.tests):
+            for target in self.objects(mutant.file, mutant.tests, mutant.program):
                 of.setdefault(target, []).append(mutant)
         # The largest first: both cores stay busy to the end.
         targets = sorted(of, key=lambda target: -(self.build / target).stat().st_size)
         compiled = zip(targets, pool.map(lambda target: self.compile(target, of[target]), targets))
         objects = {target: object_ for target, object_ in compiled if object_}
-        list(pool.map(lambda program: self.link(program, objects, beside / program), PROGRAMS))
+        list(pool.map(lambda program: self.link(program, objects, beside / program), programs))
         return beside
 
 
@@ -300,8 +311,8 @@ def batches_of(checks):
         yield Batch(batch)
 
 
-def judge(mutant, batches, programs, limit):
-    """Sets by whom it is noticed, and what that took."""
+def judge(mutant, batches, programs, limit, sound):
+    """Sets by whom it is noticed, and what that took. `sound`: names of checks that are known to be green without any error."""
     own = mutant.layer.split("/")[-1]
     for batch in sorted(batches, key=lambda batch: (batch.folder != own, batch.seconds)):
         while batch.checks and (batch.reached is None or batch.reached[mutant.number]):
@@ -318,7 +329,8 @@ def judge(mutant, batches, programs, limit):
                 break
             culprits = [check for check in checks if check.name == red]
             with scratch() as where:
-                if not culprits or not run(culprits, program, where, allowed)[0]:
+                if not culprits or red in sound or not run(culprits, program, where, allowed)[0]:
+                    sound.add(red)
                     mutant.by = red
                     return
             print(f"red without any error: {red}", flush=True)
@@ -363,17 +375,23 @@ def main():
                 print(mutant.text())
         if options.list:
             return 0
-        programs = build.plant(mutants, pool)
-        checks, batches = checks_of(build.build), {}
+        checks, batches, needed = checks_of(build.build), {}, set()
         for asked in {mutant.checks for mutant in mutants}:
-            batches[asked] = list(batches_of(check for check in checks if fnmatch.fnmatch(check.name, asked)))
-        compiled = [mutant for mutant in mutants if mutant.compiles]
+            named = [check for check in checks if fnmatch.fnmatch(check.name, asked)]
+            batches[asked] = list(batches_of(named))
+            of = {program for check in named for program in (PROGRAMS if check.script else [check.program])}
+            needed |= of
+            for mutant in mutants:
+                if mutant.checks == asked and len(of) == 1:
+                    mutant.program, = of
+        programs = build.plant(mutants, [program for program in PROGRAMS if program in needed], pool)
+        compiled, sound = [mutant for mutant in mutants if mutant.compiles], set()
         print(f"{len(compiled)} of {len(mutants)} errors compile; {len(checks)} checks: {spent()}", flush=True)
 
         def judged(mutant):
             if time.monotonic() - start > 60 * options.minutes:
                 return False
-            judge(mutant, batches[mutant.checks], programs, options.limit)
+            judge(mutant, batches[mutant.checks], programs, options.limit, sound)
             how = f"noticed by {mutant.by}" if mutant.by else f"SURVIVED {mutant.tried} checks"
             print(f"{how}: {mutant.text()}   ({mutant.seconds:.0f} s)", flush=True)
             return True

@@ -53,13 +53,6 @@ int search(const Options& options) {
   return kPass;
 }
 
-std::vector<std::string> solvers_to_search() {
-  std::vector<std::string> all;
-  for (const SolverEntry* entry : all_solvers())
-    if (entry->name != "external" && entry->name != "positions") all.emplace_back(entry->name);
-  return all;
-}
-
 int run(Options options) {
   if (options.scene.empty() == options.study.empty())
     throw InputError("advise what? A scene, or --study");

@@ -1,5 +1,3 @@
-#include <cstdlib>
-
 #include "experiments/command_line/verb.hpp"
 #include "experiments/require/require.hpp"
 #include "experiments/study/campaign.hpp"
@@ -17,57 +15,46 @@ struct Options {
   std::vector<std::string> what, solvers, settings;
   std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
   std::string preset, metric = kErrorMetric, out, against, keep_build, beside;
-  int rounds = 5;
-  double seconds = 0.05;
+  TimingOptions timing;
   double tolerance = kTolerance;
   bool worker = false;
   Format format;
 };
 
-StudyBench bench(const StudyCases& study, const std::string& name, const Options& options) {
-  Store store(options.out);
-  StudyBench timed = bench_study(name, run_and_collect(study, store, "taut bench"),
-                                 [&](const std::string& scene, std::size_t cases) {
-                                   progress() << scene << ": timing " << cases << " cases\n";
-                                   return TimingOptions{.rounds = options.rounds,
-                                                        .seconds = options.seconds,
-                                                        .progress = Countdown("timing round")};
-                                 });
+StudyBench bench(const StudyCases& study, const std::string& name, const Options& options,
+                 Store& store) {
+  StudyBench timed =
+      bench_study(name, run_and_collect(study, store, "taut bench"), tell_timing(options.timing));
   mark_not_accepted(timed);
   return timed;
 }
 
-StudyBench timed(const std::string& name, const Options& options) {
+StudyBench timed(const std::string& name, const Options& options, Store& store) {
   if (std::ranges::count(shipped("scenes"), name) > std::ranges::count(shipped("studies"), name))
     throw InputError("'" + name + "' is a scene; --solver says what to time on it");
   const Study study = load_study(name, options.preset);
-  StudyBench result = bench({study.name, taut::cases_of(study)}, study.name, options);
-  Store store(options.out);
+  StudyBench result = bench({study.name, cases_of(study)}, study.name, options, store);
   keep(store, result);
   return result;
 }
 
-StudyBench compared(const std::string& scene, const Options& options) {
+StudyBench compared(const std::string& scene, const Options& options, Store& store) {
   check_solvers(options.solvers);
   std::vector<Case> cases;
   CaseMaker maker;
   for (const std::string& solver : options.solvers)
     cases.push_back(maker.make({scene, options.settings, parse_solver(solver).canonical()}));
-  return bench({"", cases}, scene, options);
+  return bench({"", cases}, scene, options, store);
 }
 
 /// This build over another one, case by case; whether it is slower anywhere.
-bool against(const std::string& name, const Options& options) {
-  const std::filesystem::path folder = folder_of_build(options.out, options.against);
-  Study study = load_study(name, options.preset);
-  Store store(options.out);
-  const std::vector<TwoBuilds> found = time_two_builds(
-      cases_of_two(run_and_collect({study.name, taut::cases_of(study)}, store, "taut bench"),
-                   folder),
-      {.rounds = options.rounds, .seconds = options.seconds, .progress = Countdown("case")});
-  const std::string now = build_named(this_build()).id;
-  for (const BuildRatio& one : ratios_of(found, options.against, now))
-    note_ratio(store, study.name, one);
+bool against(const std::string& name, const Options& options, Store& store) {
+  folder_of_build(options.out, options.against);  // before anything runs
+  const Study study = load_study(name, options.preset);
+  const auto records = run_and_collect({study.name, cases_of(study)}, store, "taut bench");
+  const std::vector<TwoBuilds> found =
+      compare_with_build(study.name, records, options.against, store,
+                         {options.timing.rounds, options.timing.seconds, Countdown("case")});
   Answer answer{"bench", name};
   answer.add({"machine"}, machine_name());
   answer.add(table_of(found, "against", options.against));
@@ -75,24 +62,19 @@ bool against(const std::string& name, const Options& options) {
   return any_slower(found);
 }
 
-/// Cores that a case keeps busy.
-int threads_of(const SolverChoice& choice) {
-  for (const ParamSpec& spec : choice.params.specs())
-    if (spec.name == "threads") return std::max(1, choice.params.integer("threads"));
-  return 1;
+/// Serves samples of one case, the scene and the solver that were named.
+int serve(const Options& options) {
+  if (options.what.size() != 2) throw InputError("bench --worker takes a scene and a solver");
+  const Case one = make_case({options.what[0], options.settings, options.what[1]});
+  return serve_timing(*one.scene, one.choice);
 }
 
 int run(const Options& options) {
-  if (options.worker) {
-    if (options.what.size() != 2) throw InputError("bench --worker takes a scene and a solver");
-    const Case one = make_case({options.what[0], options.settings, options.what[1]});
-    if (std::getenv("SLURM_JOB_ID")) pin(threads_of(one.choice));
-    return serve_timing(*one.scene, one.choice);
-  }
+  if (options.worker) return serve(options);
   require_one_quiet_host();
   if (!options.beside.empty()) {
     if (!options.what.empty()) throw InputError("bench --beside takes no study or scene");
-    print(bench_beside(options.beside, options.rounds), options.format);
+    print(bench_beside(options.beside, options.timing.rounds), options.format);
     return kPass;
   }
   if (!options.keep_build.empty()) {
@@ -104,13 +86,15 @@ int run(const Options& options) {
     progress() << kept << '\n';
   }
   if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
+  Store store(options.out);
   bool slower = false;
   for (const std::string& name : options.what)
     if (!options.against.empty())
-      slower = against(name, options) || slower;
+      slower = against(name, options, store) || slower;
     else
       print(bench_answer(
-                options.solvers.empty() ? timed(name, options) : compared(name, options),
+                options.solvers.empty() ? timed(name, options, store)
+                                        : compared(name, options, store),
                 {options.levels, options.metric, options.tolerance, options.solvers.empty()}),
             options.format);
   return slower ? kRegression : kPass;
@@ -120,8 +104,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("WHAT", o.what, "Studies; or scenes, with --solver");
   app.add_option("--solver", o.solvers, "A solver to time on the scene; repeat it for each");
   app.add_option("--beside", o.beside,
-                 "A checkout of public code, which you fetched yourself: what an iteration of it "
-                 "costs beside ours of the same method (experiments/beside/README.md)");
+                 "A checkout of public code: what an iteration of it costs beside ours of the same "
+                 "method (experiments/beside/README.md)");
   add_settings(app, o.settings);
   add_preset(app, o.preset);
   add_judgement(app, o.metric, o.tolerance);
@@ -129,7 +113,7 @@ void add_options(CLI::App& app, Options& o) {
                  "Errors to ask for (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
       ->delimiter(',')
       ->check(above_zero());
-  add_samples(app, o.rounds, o.seconds);
+  add_samples(app, o.timing.rounds, o.timing.seconds);
   add_results(app, o.out);
   app.add_option(
          "--against", o.against,
@@ -143,7 +127,6 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 }  // namespace
-
 }  // namespace taut::verb::bench
 
 TAUT_VERB(bench) = {
@@ -151,12 +134,11 @@ TAUT_VERB(bench) = {
     .group = VerbGroup::cost,
     .summary = "Measures cost: CPU time of Solver::step alone, with intervals",
     .example =
-        "taut bench trade\n  taut bench equal-error --at 0.004\n  taut bench hang --solver "
-        "jakobsen:iterations=1,substeps=16 --solver "
-        "bullet:iterations=1,substeps=16\n  taut bench --keep-build before && taut bench "
-        "regression "
-        "--against before\n  taut bench effects\n  taut bench scaling\n  "
-        "taut bench --beside ../ShapeOp",
+        "taut bench trade\n"
+        "  taut bench equal-error --at 0.004\n"
+        "  taut bench hang --solver jakobsen:iterations=1,substeps=16 --solver bullet\n"
+        "  taut bench --keep-build before && taut bench regression --against before\n"
+        "  taut bench effects\n  taut bench scaling\n  taut bench --beside ../ShapeOp",
     .answer = {{"facts", "machine host build times"},
                {"scenes", "scene control verdict"},
                {"recommended", "scene target solver setting error cost times answer"},

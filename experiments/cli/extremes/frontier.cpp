@@ -1,12 +1,7 @@
 #include "core/model/text.hpp"
-#include "experiments/baseline/frontier_baseline.hpp"
-#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/plot/plot.hpp"
-#include "experiments/require/require.hpp"
-#include "experiments/study/frontier/frontier_answer.hpp"
-#include "experiments/study/frontier/parameter_frontier.hpp"
-#include "experiments/system/text.hpp"
+#include "experiments/report/every_frontier.hpp"
+#include "experiments/require/accepted_frontiers.hpp"
 
 namespace taut::verb::frontier {
 
@@ -26,37 +21,8 @@ struct Options {
   Format format;
 };
 
-/// What is accepted of the scene: what was asked for, else its own limits.
-std::vector<KeptAnswer> limits_of(const Options& options, const Scene& scene) {
-  if (options.keep.empty()) return default_limits(scene);
-  std::vector<KeptAnswer> limits;
-  read_all(options.keep,
-           [&](const std::string& asked) { limits.push_back(parse_limit(asked, scene)); });
-  return limits;
-}
-
-FrontierQuestion question_of(const Options& options, const std::string& solver) {
-  FrontierQuestion question{options.which.spec(), options.of, {}};
-  question.base.solver = solver;
-  question.range = range_of(question.base, options.of, options.from, options.to);
-  question.range.tolerance = options.tolerance;
-  return question;
-}
-
-BothFrontiers find(const FrontierQuestion& question, const std::vector<KeptAnswer>& limits,
-                   const Options& options, Store& store) {
-  store.begin_session("taut frontier " + make_case(question.at(question.range.from)).id);
-  Progress shown;
-  return find_both(question, store,
-                   {.jobs = options.jobs,
-                    .progress =
-                        [&](const CampaignProgress& campaign, const Record* record) {
-                          if (record) shown.show(campaign, record);
-                        }},
-                   [&](const Case&, const Record& record) { return beyond(record, limits); });
-}
-
-int run_each(const Options& options) {
+/// One setting of one scene.
+int run_setting(const Options& options) {
   std::vector<std::string> solvers{options.which.spec().solver};
   solvers.insert(solvers.end(), options.others.begin(), options.others.end());
   if (options.which.spec().scene.empty() || solvers.front().empty())
@@ -64,88 +30,52 @@ int run_each(const Options& options) {
   check_solvers(solvers);
   Store store(options.out);
   store.prepare();
-  std::vector<std::pair<FrontierQuestion, BothFrontiers>> found;
-  std::vector<KeptAnswer> limits;
-  for (const std::string& solver : solvers) {
-    FrontierQuestion question = question_of(options, solver);
-    if (limits.empty())
-      limits = limits_of(options, *make_case(question.at(question.range.from)).scene);
-    BothFrontiers both = find(question, limits, options, store);
-    if (both.stable.interrupted) return kInterrupted;
-    found.emplace_back(std::move(question), std::move(both));
-  }
-  const auto answered = std::ranges::count_if(found, [](const auto& one) {
-    return one.second.stable.frontier.kind != Frontier::Kind::not_answered;
-  });
-  const auto& [question, both] = found.front();
-  if (solvers.size() > 1) {
-    Answer answer{"frontier", question.base.scene + ": largest " + options.of + " of each solver"};
-    answer.add(Column("of").in_detail(), options.of);
-    answer.add(table_of(found, join(limits, ", ", [](const KeptAnswer& limit) {
-                          return limit.name + " at most " + text(limit, limit.tolerance);
-                        })));
-    print(answer, options.format);
-  } else {
-    if (answered == 0) std::cerr << not_answered_because(both.stable) << '\n';
-    if (answered > 0 || options.format.is_data())
-      print(answer_of(question, both, answered > 0 ? predicted_frontier(question) : std::nullopt),
-            options.format);
-  }
-  return answered > 0 ? kPass : kNothing;
-}
-
-/// Compares with what the baseline has of this solver, or puts this answer in its place.
-int check_or_update(const Options& options, const std::string& solver, const Answer& now) {
-  const FrontierCheck found = check_frontiers(now, solver, options.baselines, options.update);
-  for (const Difference& change : found.changes) std::cerr << printable(change.text) << '\n';
-  progress() << printable(found.news) << '\n';
-  return found.end == CheckEnd::passed  ? kPass
-         : found.end == CheckEnd::moved ? kRegression
-                                        : kNothing;
+  const auto found =
+      find_accepted_frontiers({.base = options.which.spec(),
+                               .solvers = solvers,
+                               .of = options.of,
+                               .from = options.from,
+                               .to = options.to,
+                               .tolerance = options.tolerance,
+                               .keep = options.keep,
+                               .how = {.jobs = options.jobs, .progress = show_ended_cases()}},
+                              store);
+  if (!found) return kInterrupted;
+  const bool answered = found->any_answered();
+  if (!answered && solvers.size() == 1)
+    std::cerr << not_answered_because(found->of_solvers.front().second.stable) << '\n';
+  if (answered || solvers.size() > 1 || options.format.is_data())
+    print(answer_of(*found), options.format);
+  return answered ? kPass : kNothing;
 }
 
 /// Every parameter of one or two solvers.
-int run_all(const Options& options) {
+int run_every_parameter(const Options& options) {
+  using report::Baseline;
   Store store(options.out);
-  std::vector<std::string> solvers;
-  for (const std::string& text : options.all) solvers.push_back(parse_solver(text).brief());
-  if (solvers.size() == 2 && solvers[0] == solvers[1])
-    throw InputError("--all: " + solvers[0] + " twice");
-  store.prepare();
-  store.begin_session("taut frontier --all");
-  std::vector<ParameterFrontier> found;
+  const auto found = report::find_every_frontier(
+      {.solvers = options.all,
+       .baseline = options.update  ? Baseline::update
+                   : options.check ? Baseline::check
+                                   : Baseline::ignore,
+       .baselines = options.baselines,
+       .jobs = options.jobs,
+       .countdown = [](const std::string& solver) { return Countdown("parameter of " + solver); }},
+      store);
+  if (!found) return kInterrupted;
   int code = kPass;
-  for (const std::string& solver : solvers) {
-    const Countdown countdown("parameter of " + solver);
-    const auto frontiers =
-        find_frontiers(solver, store, {.jobs = options.jobs, .frames = true},
-                       [&](std::size_t done, std::size_t all) { countdown(done, all); });
-    if (!frontiers) return kInterrupted;
-    Answer answer = answer_of(*frontiers);
-    answer.subject = solver;
-    store.keep(answer);
-    if (options.check || options.update)
-      code = std::max(code, check_or_update(options, solver, answer));
-    found.insert(found.end(), frontiers->begin(), frontiers->end());
+  for (const FrontierCheck& check : found->checks) {
+    for (const Difference& change : check.changes) std::cerr << printable(change.text) << '\n';
+    progress() << printable(check.news) << '\n';
+    code = std::max(code, exit_code(check.end));
   }
-  Answer answer = answer_of(found);
-  answer.subject = join(solvers, " ");
-  answer.add(commands_of(found));
-  try {
-    std::string stem = slug(solvers[0]);
-    if (solvers.size() == 2) stem += "-and-" + slug(solvers[1]);
-    const auto picture =
-        report::plot_frontiers(found, std::filesystem::path(options.out) / kFrontiersFolder, stem);
-    answer.add({"picture"}, picture.string());
-  } catch (const report::PlotError& error) {
-    std::cerr << "no picture: " << error.what() << '\n';
-  }
-  print(answer, options.format);
+  if (!found->no_picture.empty()) std::cerr << "no picture: " << found->no_picture << '\n';
+  print(found->answer, options.format);
   return code;
 }
 
 int run(const Options& options) {
-  return options.all.empty() ? run_each(options) : run_all(options);
+  return options.all.empty() ? run_setting(options) : run_every_parameter(options);
 }
 
 void add_options(CLI::App& app, Options& options) {

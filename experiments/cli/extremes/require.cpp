@@ -24,11 +24,6 @@ struct Options {
   Format format;
 };
 
-std::size_t full_bytes(const Requirement& found, const Store& store) {
-  const auto record = store.find(found.full);
-  return record ? bytes_of(record->step_cost) : 0;
-}
-
 /// The picture's name; "": there is no renderer.
 std::string draw(const Requirement& found, const Store& store, const fs::path& file) {
   try {
@@ -48,7 +43,8 @@ int exit_code(const Requirement& found) {
 }
 
 /// Adds a row to `scenes`; prints the whole answer of a scene asked for alone.
-int run_one(const Options& options, const std::string& scene, Table& scenes, bool alone) {
+int run_one(const Options& options, const std::string& scene, RequirementTable& scenes,
+            bool alone) {
   const auto start = SteadyClock::now();
   const auto seconds = [&] { return seconds_since(start); };
   const CaseSpec spec{scene, options.settings, parse_solver(options.solver).canonical()};
@@ -56,7 +52,7 @@ int run_one(const Options& options, const std::string& scene, Table& scenes, boo
   for (const std::string& reason :
        full.choice.entry->unsupported(*full.scene, full.choice.params)) {
     if (alone) throw InputError(full.id + ": " + reason);
-    scenes.rows.push_back({full.scene->name, {}, {}, {}, reason, {}});
+    scenes.add_refused(full.scene->name, reason);
     return kPass;
   }
   Store store(options.out);
@@ -64,43 +60,29 @@ int run_one(const Options& options, const std::string& scene, Table& scenes, boo
   store.begin_session("taut require " + full.id);
   const fs::path folder =
       fs::path(options.out) / "require" / (full.scene->name + "-" + full.key.substr(0, 8));
-  Progress shown;
   const Requirement found = find_requirement({.full = spec,
                                               .keep = options.keep,
                                               .patience = options.patience,
                                               .jobs = options.jobs,
-                                              .progress =
-                                                  [&](const CampaignProgress& c, const Record* r) {
-                                                    if (r) shown.show(c, r);
-                                                  }},
+                                              .progress = show_ended_cases()},
                                              store, folder);
   std::string picture;
   if (found.smallest && seconds() + kPictureSeconds < options.patience)
     picture =
         draw(found, store,
              options.output.empty() || !alone ? folder / "models.png" : fs::path(options.output));
-  const RequirementSummary summary = summary_of(found);
-  scenes.rows.push_back({full.scene->name, summary.chaotic, summary.kept, summary.can_go,
-                         summary.required, found.time_ratio});
-  const Answer answer =
-      answer_of(found, full_bytes(found, store), picture, seconds(), options.patience);
+  scenes.add(found);
+  const Answer answer = answer_of(found, store, picture, seconds(), options.patience);
   if (!found.answers.empty()) store.keep(answer);
   if (alone)
     print(answer, options.format);
   else
-    progress() << full.scene->name << ": without " << summary.can_go << '\n';
+    progress() << full.scene->name << ": without " << answer.fact("can_go").text() << '\n';
   return exit_code(found);
 }
 
 int run(const Options& options) {
-  Table scenes{"scenes",
-               "",
-               {{"scene"},
-                {"chaotic"},
-                {"kept"},
-                {"can_go", "can go"},
-                {"required"},
-                {"time_left", "CPU time left", kShare, 2}}};
+  RequirementTable scenes;
   if (options.scene != "all") {
     find_scene(options.scene);
     return run_one(options, options.scene, scenes, true);
@@ -112,7 +94,7 @@ int run(const Options& options) {
     worst = std::max(worst, code);
   }
   Answer answer{"require", "all, " + options.solver};
-  answer.add(std::move(scenes));
+  answer.add(scenes.table());
   print(answer, options.format);
   return worst;
 }

@@ -1,10 +1,7 @@
-#include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/report/study_figures.hpp"
-#include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::verb::plot {
@@ -18,22 +15,6 @@ struct Options {
   bool no_title = false, json = false;
 };
 
-/// "84mm" as 84: a number with this unit. Throws InputError.
-double size_of(const char* option, const std::string& text, const std::string& unit) {
-  if (text.empty()) return 0;
-  const auto value = text.ends_with(unit) ? whole<double>(text.substr(0, text.size() - unit.size()))
-                                          : std::nullopt;
-  if (!value || !(*value > 0 && *value <= 2000))
-    throw InputError(std::string(option) + " " + text + ": expected a number with its unit, as 8" +
-                     unit);
-  return *value;
-}
-
-report::FigureSize figure_size(const Options& options) {
-  return {size_of("--width", options.width, "mm"), size_of("--height", options.height, "mm"),
-          size_of("--font", options.font, "pt")};
-}
-
 /// What the command line asks for; without --kind, --x and --y the pictures that the study asks
 /// for.
 std::vector<report::FigureRequest> wanted(const Options& options, const Study& study) {
@@ -46,29 +27,15 @@ std::vector<report::FigureRequest> wanted(const Options& options, const Study& s
                             .x = options.x,
                             .y = options.y,
                             .title = options.title}});
+  const report::FigureSize size =
+      report::parse_figure_size(options.width, options.height, options.font);
   for (report::FigureRequest& one : all) {
-    one.spec.size = figure_size(options);
+    one.spec.size = size;
     one.title = options.no_title        ? Title::none
                 : options.title.empty() ? Title::single
                                         : Title::always;
   }
   return all;
-}
-
-/// Keeps what was chosen, all if nothing was; throws InputError if the study has no such.
-template <class NameOf>
-void keep(const char* option, std::vector<Record>& records, const std::vector<std::string>& names,
-          NameOf name_of) {
-  std::vector<std::string> known;
-  for (const Record& r : records) push_unique(known, name_of(r));
-  for (const std::string& name : names)
-    if (std::ranges::find(known, name) == known.end())
-      throw InputError(std::string(option) + ": the study has no results of '" + name + "'" +
-                       suggestion(name, known));
-  if (!names.empty())
-    std::erase_if(records, [&](const Record& r) {
-      return std::ranges::find(names, name_of(r)) == names.end();
-    });
 }
 
 int run(const Options& options) {
@@ -85,8 +52,7 @@ int run(const Options& options) {
   if (missing > 0)
     std::cerr << missing << " of the " << result.planned << " cases of study '" << study.name
               << "' are not there and not drawn" << where_else(study, store) << '\n';
-  keep("--solver", result.records, options.solvers, [](const Record& r) { return r.solver; });
-  keep("--scene", result.records, options.scenes, [](const Record& r) { return r.scene; });
+  report::keep_chosen(result, options.solvers, options.scenes);
   const std::filesystem::path out =
       options.output.empty() ? std::filesystem::path(options.results) / "figures" /
                                    (study.name + (study.preset.empty() ? "" : "-" + study.preset))

@@ -1,18 +1,12 @@
 #include <cstdlib>
-#include <map>
 
-#include "core/model/text.hpp"
-#include "experiments/case/record_io.hpp"
 #include "experiments/command_line/main_job_end.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/report/answer/failure_map.hpp"
-#include "experiments/report/plot/plot.hpp"
+#include "experiments/report/questions/failure_map.hpp"
+#include "experiments/report/run_answer.hpp"
 #include "experiments/results/builds.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/study/study_table.hpp"
-#include "experiments/system/distinct.hpp"
 #include "experiments/system/process.hpp"
-#include "experiments/timing/study_bench.hpp"
 
 namespace taut::verb::run {
 
@@ -37,60 +31,6 @@ std::string command_line(const Options& options) {
   return text;
 }
 
-std::vector<Study> load_studies(const Options& options) {
-  std::vector<Study> studies;
-  read_all(options.studies, [&](const std::string& name) {
-    studies.push_back(at_time_steps(load_study_to_plot(name, options.preset), options.steps));
-  });
-  return studies;
-}
-
-std::vector<StudyCases> all_cases(const std::vector<Study>& studies) {
-  std::vector<StudyCases> all;
-  read_all(studies, [&](const Study& study) { all.push_back({study.name, cases_of(study)}); });
-  return all;
-}
-
-/// How the cases ended, and the values that were asked for of every study.
-Answer answer_of(const CampaignProgress& campaign, const std::vector<Study>& studies,
-                 const Options& options, const Store& store) {
-  Answer answer{"run", ""};
-  answer.add(Column("results").in_detail(), options.out);
-  answer.add(Column("store").in_detail(), store.digest());
-  answer.add(Column("cases").in_detail(), campaign.cases);
-  answer.add(Column("ran").in_detail(), campaign.ran);
-  answer.add(Column("stored").in_detail(), campaign.reused);
-  Table statuses{"statuses", "", {{"status"}, {"cases"}}};
-  for (const auto& [kind, count] : campaign.by_status)
-    statuses.rows.push_back({to_string(kind), count});
-  statuses.detail = true;
-  answer.add(std::move(statuses));
-  for (const Study& study : studies)
-    for (const std::string& value : options.values) {
-      const std::string name = studies.size() > 1 ? study.name + " " + value : value;
-      if (value != report::kFailureMap) {
-        answer.add(table_of(study, store, value, name));
-        continue;
-      }
-      const std::vector<Record> records = collect(study, store).records;
-      std::vector<Record> timed;
-      if (const auto benches = stored_benches(store, study.name); !benches.empty())
-        timed = benches.front().records();
-      answer.add(report::failure_map(records, timed, nullptr)).name = name;
-    }
-  return answer;
-}
-
-/// A line for each study: how many cases it has and how they ended.
-void print_studies(const std::vector<Study>& studies, const Store& store) {
-  for (const Study& study : studies) {
-    const std::vector<Record> records = collect(study, store).records;
-    const std::string unequal = report::unequal_work(records);
-    progress() << study.name << ": " << ends_of(records)
-               << (unequal.empty() ? "" : "; unequal work: " + unequal) << '\n';
-  }
-}
-
 void print_next(const Options& options, const Study& leading, bool bare) {
   std::string which;
   for (const std::string& study : options.studies)
@@ -107,28 +47,19 @@ void print_next(const Options& options, const Study& leading, bool bare) {
              << first << more << in << " -o table.csv\n";
 }
 
-/// On the files of all scenes, each once.
-std::vector<std::string> remarks_of(const std::vector<StudyCases>& studies) {
-  std::vector<std::string> all;
-  for (const StudyCases& study : studies)
-    for (const Case& one : study.cases)
-      for (const std::string& remark : one.remarks) push_unique(all, remark);
-  return all;
-}
-
 int run(Options options) {
   const bool bare = options.studies.empty();
   const MainJob job = bare ? main_job() : MainJob{};
   if (bare) {
-    options.studies = job.studies;
-    options.studies.insert(options.studies.end(), job.maps.begin(), job.maps.end());
+    options.studies = job.studies_to_run();
     if (options.preset.empty()) options.preset = job.preset;
   }
   const Shard shard = Shard::parse(options.shard);
   if (!options.build.empty()) setenv("TAUT_BUILD_ID", options.build.c_str(), 1);
   given_build();  // is one
-  const std::vector<Study> studies = load_studies(options);
-  const std::vector<StudyCases> cases = all_cases(studies);
+  const std::vector<Study> studies =
+      load_studies_to_plot(options.studies, options.preset, options.steps);
+  const std::vector<StudyCases> cases = cases_of_each(studies);
   if (std::ranges::all_of(cases, [](const StudyCases& one) { return one.cases.empty(); })) {
     std::cerr << "these studies have no case: their exclusions leave out all\n";
     return kNothing;
@@ -150,7 +81,7 @@ int run(Options options) {
   if (ended != kPass) return ended;
   if (campaign.cases == 0 && options.only == "failed")
     progress() << "no stored failure to run again\n";
-  print_studies(studies, store);
+  for (const Study& study : studies) progress() << report::ends_of(study, store) << '\n';
   const std::string found = bare && !options.no_report
                                 ? end_main_job(job, {.preset = options.preset,
                                                      .results = options.out,
@@ -158,7 +89,7 @@ int run(Options options) {
                                                      .print_check = !options.json})
                                 : "";
   if (!options.values.empty() || options.json)
-    print(answer_of(campaign, studies, options, store), {.json = options.json});
+    print(report::run_answer(campaign, studies, options.values, store), {.json = options.json});
   else if (!bare || options.no_report)
     std::cout << options.out << '\n';
   print_next(options, studies.front(), bare);

@@ -15,26 +15,6 @@ struct Options : BaselineOptions {
   Format format;
 };
 
-int exit_code(CheckEnd end) {
-  switch (end) {
-    case CheckEnd::passed:
-      return kPass;
-    case CheckEnd::not_run:
-      return kIncomplete;
-    case CheckEnd::nothing:
-      return kNothing;
-    case CheckEnd::moved:
-      return kRegression;
-    case CheckEnd::environment:
-      return kEnvironment;
-    case CheckEnd::conflict:
-      return kConflict;
-    case CheckEnd::interrupted:
-      return kInterrupted;
-  }
-  return kUsage;
-}
-
 /// Adds what each study costs over the kept build; whether anything is slower.
 bool add_speed(Answer& answer, const std::vector<std::string>& studies, const Options& options) {
   const std::filesystem::path folder = folder_of_build(options.out, options.against);

@@ -1,4 +1,5 @@
 #include "experiments/command_line/verb.hpp"
+#include "experiments/external/external.hpp"
 #include "experiments/history/history_answer.hpp"
 #include "experiments/history/walk.hpp"
 #include "experiments/report/plot/plot.hpp"
@@ -46,6 +47,7 @@ int history(Options options) {
     const BaselineOptions how = baseline_options();
     options.run = how.run;
     options.say = how.say;
+    options.silence = external::why_silent;
     options.limits.bytes = 1e9 * options.disk;
     options.timing.progress = Countdown("case");
     walked = walk(options, store);

@@ -73,7 +73,7 @@ struct Chart {
 Chart make_chart(std::string kind, const Records&, const std::string& x, const std::string& y,
                  const std::string& along);
 
-/// Draws into the chart below what its y says nothing (ValueSpec::floor), if it says so.
+/// Adds the line below which y says nothing (ValueSpec::floor), if y has one.
 void add_floor(Chart&);
 
 /// Which curves lie within a hundredth of an earlier one at every point, a sentence each: one would
@@ -86,10 +86,11 @@ bool failed(const Point&);
 /// c of a theory line y = c x^slope below the lowest curve; NaN: there is none.
 double theory_factor(const Chart&);
 
-/// Whose line it is: "theory of relaxation: 1/sweeps".
+/// What the theory line is called: "theory of relaxation: 1/sweeps".
 std::string theory_text(const Chart&);
 
-/// The measured points which count that no other beats in both x and y, by ascending x.
+/// The Pareto front: of the measured points that count those that no other beats in both x and y,
+/// by ascending x.
 std::vector<Point> pareto_front(const Chart&);
 
 /// How cases of one solver end over two settings.

@@ -75,17 +75,17 @@ struct Records : std::vector<const Record*> {
 /// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
 std::string solver_title(std::string_view solver);
 
-/// Whether an iteration of it solves for all links at once: it is no sweep.
+/// Whether an iteration of the solver solves for all links at once, and so is no sweep.
 bool solves_all_at_once(const std::string& solver);
 
 /// The record's parameters but for those that are its substeps and sweeps.
 std::map<std::string, std::string> other_settings(const Record&);
 
-/// What this program's solver of that name has in labels beside substeps and sweeps, as its entry
-/// says; none of a solver that it does not have.
+/// The parameters that labels of this solver name beside substeps and sweeps, by its entry; empty
+/// for a solver that this program lacks.
 std::vector<std::string> labelled_parameters(const std::string& solver);
-/// All that a search for a setting may vary, the labelled ones among them: cases that differ in
-/// nothing else are settings of one solver.
+/// The parameters that a search may vary, the labelled ones included: cases that differ in these
+/// alone are settings of one solver.
 std::vector<std::string> searched_parameters(const std::string& solver);
 
 /// Accelerators that this case uses and that a solver with these parameters lacks ("tethers").
@@ -99,12 +99,12 @@ struct Work {
 };
 Work work_of(const Record&);
 
-/// "1 × 16, order=mesh": the work of "jakobsen:substeps=1,iterations=16,...", and what else is not
-/// the default. Of a solver that this program does not have: what follows its name.
+/// "1 × 16, order=mesh" of "jakobsen:substeps=1,iterations=16,...": its work, and whatever differs
+/// from the defaults. For a solver that this program lacks: the text behind its name.
 std::string brief_settings(const std::string& solver);
 
-/// "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps × sweeps), if no such work is common to all
-/// solvers that have sweeps; "": some is.
+/// The work of each solver with sweeps, "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps ×
+/// sweeps), if they have none in common; "" if they have.
 std::string unequal_work(const Records&);
 
 /// Labels of records by those accuracy parameters that take several values among their solver's.

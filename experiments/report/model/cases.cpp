@@ -37,7 +37,7 @@ double rounded(double value, int digits) {
 
 Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& compared,
                               CaseList& refs) {
-  Table table{"settings-" + slug(quoted.question.scene),
+  Table table{"settings-" + slug(quoted.task.scene),
               "Settings each solver used for this scene",
               {Column("setting")},
               {},

@@ -5,10 +5,11 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
-#include "experiments/report/answer/winners.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/report/questions/costs.hpp"
+#include "experiments/report/questions/winners.hpp"
 #include "experiments/timing/profile.hpp"
 
 namespace taut::report {

@@ -8,6 +8,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/report/questions/rows.hpp"
 
 namespace taut::report {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "core/model/text.hpp"
-#include "experiments/case/question.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/case/task.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -212,10 +212,10 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
            {"study", map.study},
            {"x", json_of_axis(refs.use(map.x.name), map.columns)},
            {"y", json_of_axis(refs.use(map.y.name), map.rows)}};
-  std::vector<std::string> common = question_of(*map.cells.front().record).overrides;
+  std::vector<std::string> common = task_of(*map.cells.front().record).overrides;
   for (const StatusMap::Cell& cell : map.cells)
     std::erase_if(common, [&](const std::string& setting) {
-      const auto own = question_of(*cell.record).overrides;
+      const auto own = task_of(*cell.record).overrides;
       return std::ranges::find(own, setting) == own.end();
     });
   add_if(one, "scene_settings", join(common, ", "));

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/report/answer/failure_map.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/report/questions/failure_map.hpp"
 #include "experiments/system/distinct.hpp"
 
 namespace taut::report {

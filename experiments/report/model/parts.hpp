@@ -4,9 +4,10 @@
 
 #include <string>
 
-#include "experiments/report/answer/answer.hpp"
 #include "experiments/report/chart/charts.hpp"
 #include "experiments/report/chart/frame.hpp"
+#include "experiments/report/questions/case_list.hpp"
+#include "experiments/report/questions/compared_solvers.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {

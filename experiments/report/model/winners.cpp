@@ -1,4 +1,4 @@
-#include "experiments/report/answer/winners.hpp"
+#include "experiments/report/questions/winners.hpp"
 
 #include <iterator>
 

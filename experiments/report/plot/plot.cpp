@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
@@ -204,6 +205,27 @@ const PlotKind& find_plot_kind(std::string_view name) {
   }
   throw InputError("unknown kind of plot '" + std::string(name) + "'" +
                    suggestion(std::string(name), names));
+}
+
+namespace {
+
+/// A number with its unit; "" is 0.
+double size_of(const char* option, const std::string& text, const std::string& unit) {
+  if (text.empty()) return 0;
+  const auto value = text.ends_with(unit) ? whole<double>(text.substr(0, text.size() - unit.size()))
+                                          : std::nullopt;
+  if (!value || !(*value > 0 && *value <= 2000))
+    throw InputError(std::string(option) + " " + text + ": expected a number with its unit, as 8" +
+                     unit);
+  return *value;
+}
+
+}  // namespace
+
+FigureSize parse_figure_size(const std::string& width, const std::string& height,
+                             const std::string& font) {
+  return {size_of("--width", width, "mm"), size_of("--height", height, "mm"),
+          size_of("--font", font, "pt")};
 }
 
 void check_value_name(const std::string& name, const Records& records) {

@@ -29,6 +29,11 @@ struct FigureSize {
   double font = 0;               ///< pt
 };
 
+/// Of numbers with their unit: "84mm", "60mm", "8pt"; "" is 0. Throws InputError that names the
+/// option.
+FigureSize parse_figure_size(const std::string& width, const std::string& height,
+                             const std::string& font);
+
 /// What to plot; empty parts are the kind's own.
 struct PlotSpec {
   std::string kind, x, y, along, title;
@@ -50,16 +55,17 @@ struct PlotFiles {
   std::vector<std::string> without;  ///< panels in which nothing can be drawn, and why
 };
 
-/// Draws panels on the same axes with one key beside them, with gnuplot: failures on the upper
-/// edge, on a logarithmic axis zeros on the lower one, where several panels also what is below
-/// 1e-8 of the largest value. Kind "stability" has a panel for each solver and choice. The CSV has
-/// one header and a row for each point. Throws InputError if x or y is not known (with a
-/// suggestion) or there is nothing to draw, and PlotError without gnuplot (script and CSV are
-/// there then).
+/// Draws panels on the same axes with one key beside them, with gnuplot. Failures stand on the
+/// upper edge; on a logarithmic axis zeros stand on the lower one and, in a figure of several
+/// panels, so does what is below 1e-8 of the largest value. Kind "stability" has a panel for each
+/// solver and choice. The CSV has one header and a row for each point. Throws InputError if x or y
+/// is not known (with a suggestion) or there is nothing to draw, and PlotError without gnuplot
+/// (script and CSV are there then).
 PlotFiles make_plot(PlotSpec, const std::vector<PlotPanel>&, const std::filesystem::path& folder);
 
-/// The share of problems, an error `spec.y` to be reached on a scene, in which each solver costs at
-/// most a factor of the best (experiments/timing/profile.hpp). Throws as make_plot().
+/// A problem is an error `spec.y` to be reached on a scene. Draws the share of problems in which
+/// each solver costs at most a factor of the best (experiments/timing/profile.hpp). Throws as
+/// make_plot().
 PlotFiles make_profile_plot(PlotSpec, const StudyBench&, const std::filesystem::path& folder);
 
 /// Throws InputError with a suggestion if no case and no metric has a value of this name.

@@ -125,9 +125,12 @@ Answer answer_of(const FrontierQuestion& question, const BothFrontiers& both,
   return answer;
 }
 
-Table table_of(const std::vector<std::pair<FrontierQuestion, BothFrontiers>>& found,
-               const std::string& acceptable) {
-  const Unit unit = found.empty() ? kNumber : unit_of(found.front().first);
+Answer answer_of(const std::vector<std::pair<FrontierQuestion, BothFrontiers>>& found,
+                 const std::string& acceptable) {
+  const FrontierQuestion& first = found.front().first;
+  const Unit unit = unit_of(first);
+  Answer answer{"frontier", first.base.scene + ": largest " + first.of + " of each solver"};
+  answer.add(Column("of").in_detail(), first.of);
   Table table{"frontiers",
               "acceptable: " + acceptable,
               {{"solver"},
@@ -149,7 +152,8 @@ Table table_of(const std::vector<std::pair<FrontierQuestion, BothFrontiers>>& fo
       table.rows.push_back(
           {solver, value(stable), ends_with(stable), value(accepted), ends_with(accepted)});
   }
-  return table;
+  answer.add(std::move(table));
+  return answer;
 }
 
 std::string not_answered_because(const CaseFrontier& result) {

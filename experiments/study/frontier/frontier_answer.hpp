@@ -14,11 +14,6 @@ struct BothFrontiers {
   CaseFrontier stable, acceptable;
 };
 
-/// Both searches; the second one finds most of its cases stored. What is not stable is not
-/// acceptable, either.
-BothFrontiers find_both(const FrontierQuestion&, Store&, const CampaignOptions&,
-                        const Judge& acceptable);
-
 /// Both searches; the second one finds most of its cases stored. What did not complete is not
 /// acceptable, either; of the rest `unacceptable` says why not.
 BothFrontiers find_both(const FrontierQuestion&, Store&, const CampaignOptions&,
@@ -27,9 +22,9 @@ BothFrontiers find_both(const FrontierQuestion&, Store&, const CampaignOptions&,
 /// The answer of `taut frontier` for one solver.
 Answer answer_of(const FrontierQuestion&, const BothFrontiers&, const std::optional<Prediction>&);
 
-/// The same of several solvers, a row each; `acceptable`: what is, in words.
-Table table_of(const std::vector<std::pair<FrontierQuestion, BothFrontiers>>&,
-               const std::string& acceptable);
+/// Its answer for several solvers of one scene, a row each; `acceptable`: what is, in words.
+Answer answer_of(const std::vector<std::pair<FrontierQuestion, BothFrontiers>>&,
+                 const std::string& acceptable);
 
 /// What the first case that did not end well says; "": all ended well.
 std::string not_answered_because(const CaseFrontier&);

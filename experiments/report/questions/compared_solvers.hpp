@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/case/question.hpp"
+#include "experiments/case/task.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/input.hpp"
 
@@ -19,9 +19,9 @@ struct ComparedSolver {
   Work work = {};  ///< at which single values are quoted: the same for all, or its own
 };
 
-/// The cases of which single values are quoted: the same question for all, each at its work.
+/// The cases of which single values are quoted: the same task for all solvers, each at its work.
 struct QuotedScene {
-  Question question;
+  Task task;
   std::string title;  ///< the scene's name, with the settings that not all of its cases share
   std::vector<const Record*> cases;  ///< of each solver compared; nullptr: was not run like this
 };
@@ -35,11 +35,10 @@ struct ComparedSolvers {
   const QuotedScene* quoted(const std::string& scene) const;
   /// "1 × 16 (substeps × sweeps)"; "": it is not the same for all.
   std::string common_work() const;
-  /// The scene's name with the settings that not all questions on it share; how long they last is
-  /// none.
-  std::string title(Question) const;
+  /// The scene's name with the settings that not all tasks on it share; times do not count.
+  std::string title(Task) const;
 
-  std::set<Question> asked;  ///< for titles
+  std::set<Task> asked;  ///< for titles
 };
 ComparedSolvers compared_solvers_of(const ReportInput&);
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "experiments/answer/answer.hpp"
-#include "experiments/report/answer/case_list.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/questions/case_list.hpp"
 
 namespace taut::report {
 

@@ -1,11 +1,11 @@
-#include "experiments/report/answer/failure_map.hpp"
+#include "experiments/report/questions/failure_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/model/text.hpp"
-#include "experiments/case/question.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/case/task.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/system/distinct.hpp"

@@ -1,11 +1,14 @@
 // Questions of costs: every setting was timed in turns with the others of its scene.
+#include "experiments/report/questions/costs.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "core/model/text.hpp"
-#include "experiments/report/answer/answer.hpp"
+#include "experiments/report/questions/links.hpp"
+#include "experiments/report/questions/rows.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/timing/hardly_moves.hpp"
 #include "experiments/timing/recommendation.hpp"
@@ -31,15 +34,6 @@ std::string setting_text(const SceneBench& bench, std::size_t at, std::string_vi
   if (label.empty()) label = work_of(one).text();
   const std::string order = link_order(one);
   return label + (order.empty() || label.find(order) != std::string::npos ? "" : ", " + order);
-}
-
-std::string link_orders(const std::vector<SceneBench>& scenes) {
-  std::vector<std::string> all;
-  for (const SceneBench& scene : scenes)
-    for (const BenchedCase& c : scene.cases)
-      if (const std::string order = link_order(c.record); !order.empty())
-        push_unique(all, solver_title(c.record.solver) + " " + order);
-  return join(all, ", ");
 }
 
 std::optional<Cell> only_uncounted(const std::vector<Candidate>& candidates,
@@ -180,19 +174,12 @@ class Costs {
       table.rows.push_back(std::move(row));
     }
     const Common common = common_of(table, nothing);
-    std::vector<Cell> last{common.label(table, "mean of")};
-    for (std::size_t c = 1; c < table.columns.size(); ++c) {
+    std::vector<Cell> last = last_row(table, common, "mean of", [&](std::size_t c) {
       double logs = 0;
       for (const std::size_t r : common.rows)
         logs += std::log(std::max(table.rows[r][c].number(), nothing));
-      const bool has = std::ranges::find(common.columns, c) != common.columns.end();
-      last.push_back(!has                  ? why_empty(table, c)
-                     : common.rows.empty() ? no_common_scene()
-                     : common.rows.size() == 1
-                         ? table.rows[common.rows[0]][c]
-                         : Cell(std::exp(logs / static_cast<double>(common.rows.size()))));
-      last.back().best = false;
-    }
+      return Cell(std::exp(logs / static_cast<double>(common.rows.size())));
+    });
     mark_least(last, nothing);
     table.rows.push_back(std::move(last));
     answer.add(std::move(table));
@@ -260,25 +247,19 @@ class Costs {
                                const std::vector<std::vector<std::vector<Interval>>>& ratios,
                                const std::vector<std::vector<bool>>& bounds) {
     const Common common = common_of(table, 0);
-    std::vector<Cell> last{common.label(table, "mean of")};
+    std::vector<Cell> last = last_row(table, common, "mean of", [&](std::size_t c) {
+      std::vector<Interval> costs;
+      for (const std::size_t r : common.rows)
+        costs.push_back(std::get<Interval>(table.rows[r][c].value));
+      return Cell(geometric_mean(costs));
+    });
     const std::size_t n = solvers_.size();
     std::vector<std::vector<Interval>> over(n, std::vector<Interval>(n));
     std::vector<bool> bounded(n, false);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (std::ranges::find(common.columns, i + 1) == common.columns.end()) {
-        last.push_back(why_empty(table, i + 1));
-        continue;
-      }
-      std::vector<Interval> costs;
-      for (const std::size_t r : common.rows) {
-        costs.push_back(std::get<Interval>(table.rows[r][i + 1].value));
-        bounded[i] = bounded[i] || bounds[r][i];
-      }
-      last.push_back(costs.empty()       ? no_common_scene()
-                     : costs.size() == 1 ? table.rows[common.rows[0]][i + 1]
-                                         : Cell(geometric_mean(costs)));
-      last.back().best = false;
-      if (bounded[i] && costs.size() > 1) last.back().note = "at most";
+    for (const std::size_t c : common.columns) {
+      const std::size_t i = c - 1;
+      for (const std::size_t r : common.rows) bounded[i] = bounded[i] || bounds[r][i];
+      if (bounded[i] && common.rows.size() > 1) last[c].note = "at most";
       for (std::size_t j = 0; j < n && !common.rows.empty(); ++j) {
         std::vector<Interval> both;
         for (const std::size_t r : common.rows)

@@ -1,4 +1,4 @@
-#include "experiments/report/answer/case_list.hpp"
+#include "experiments/report/questions/case_list.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "experiments/report/answer/winners.hpp"
+#include "experiments/report/questions/winners.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,8 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
-#include "experiments/report/answer/answer.hpp"
+#include "experiments/report/questions/costs.hpp"
+#include "experiments/report/questions/links.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/timing/hardly_moves.hpp"
 

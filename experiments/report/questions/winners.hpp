@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/report/answer/answer.hpp"
-#include "experiments/report/answer/case_list.hpp"
 #include "experiments/report/input.hpp"
+#include "experiments/report/questions/case_list.hpp"
+#include "experiments/report/questions/links.hpp"
 
 namespace taut::report {
 

@@ -1,17 +1,19 @@
 // The answer of results whose values are chosen; answer_test.py makes every cell of made-up ones
 // again.
+#include "experiments/report/questions/questions.hpp"
+
 #include <gtest/gtest.h>
 
 #include "core/model/text.hpp"
-#include "experiments/report/answer/answer.hpp"
-#include "experiments/report/answer/failure_map.hpp"
-#include "experiments/report/answer/winners.hpp"
 #include "experiments/report/input.hpp"
+#include "experiments/report/questions/failure_map.hpp"
+#include "experiments/report/questions/links.hpp"
+#include "experiments/report/questions/winners.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/timing/hardly_moves.hpp"
 #include "tests/support/synthetic_records.hpp"
 
-namespace taut::report::answers_test {
+namespace taut::report::questions_test {
 namespace {
 
 /// One study of two solvers at 1 x 16.
@@ -512,4 +514,4 @@ TEST(FailureMap, IsOfCasesThatDifferInStiffnessAlone) {
 }
 
 }  // namespace
-}  // namespace taut::report::answers_test
+}  // namespace taut::report::questions_test

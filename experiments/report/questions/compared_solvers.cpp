@@ -1,4 +1,4 @@
-#include "experiments/report/answer/compared_solvers.hpp"
+#include "experiments/report/questions/compared_solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -80,21 +80,21 @@ void choose_work(std::vector<ComparedSolver>& compared) {
     });
 }
 
-/// The question that most compared answered at their work; of equals the time step nearest to 1/64
+/// The task that most solvers ran at their work; of equals the time step nearest to 1/64
 /// s.
 QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& compared) {
   std::vector<QuotedScene> asked;
   for (std::size_t i = 0; i < compared.size(); ++i)
     for (const Record* r : compared[i].cases) {
       if (r->scene != scene || work_of(*r) != compared[i].work) continue;
-      const Question question = question_of(*r);
-      auto at = std::ranges::find(asked, question, &QuotedScene::question);
+      const Task task = task_of(*r);
+      auto at = std::ranges::find(asked, task, &QuotedScene::task);
       if (at == asked.end())
-        at = asked.insert(at, {question, scene, std::vector<const Record*>(compared.size())});
+        at = asked.insert(at, {task, scene, std::vector<const Record*>(compared.size())});
       if (!at->cases[i]) at->cases[i] = r;
     }
   const auto rank = [](const QuotedScene& q) {
-    return std::pair(std::ranges::count(q.cases, nullptr), std::abs(std::log(q.question.dt * 64)));
+    return std::pair(std::ranges::count(q.cases, nullptr), std::abs(std::log(q.task.dt * 64)));
   };
   const auto best = std::ranges::min_element(asked, {}, rank);
   if (best == asked.end())
@@ -106,7 +106,7 @@ QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& c
 
 const QuotedScene* ComparedSolvers::quoted(const std::string& scene) const {
   const auto at =
-      std::ranges::find_if(scenes, [&](const QuotedScene& q) { return q.question.scene == scene; });
+      std::ranges::find_if(scenes, [&](const QuotedScene& q) { return q.task.scene == scene; });
   return at == scenes.end() ? nullptr : &*at;
 }
 
@@ -120,16 +120,16 @@ std::string ComparedSolvers::common_work() const {
 
 namespace {
 
-Question untimed(Question question) {
-  std::erase_if(question.overrides, [](const auto& s) { return s.starts_with("time."); });
-  question.dt = 0;
-  return question;
+Task untimed(Task task) {
+  std::erase_if(task.overrides, [](const auto& s) { return s.starts_with("time."); });
+  task.dt = 0;
+  return task;
 }
 
 }  // namespace
 
-std::string ComparedSolvers::title(Question question) const {
-  return title_among(untimed(std::move(question)), asked);
+std::string ComparedSolvers::title(Task task) const {
+  return title_among(untimed(std::move(task)), asked);
 }
 
 ComparedSolvers compared_solvers_of(const ReportInput& input) {
@@ -142,7 +142,7 @@ ComparedSolvers compared_solvers_of(const ReportInput& input) {
       if (!keys.insert(r.key.empty() ? r.id : r.key).second) continue;
       push_unique(solvers, r.solver);
       push_unique(scenes, r.scene);
-      compared.asked.insert(untimed(question_of(r)));
+      compared.asked.insert(untimed(task_of(r)));
       by_solver[r.solver].push_back(&r);
     }
   for (const std::string& solver : solvers)
@@ -150,7 +150,7 @@ ComparedSolvers compared_solvers_of(const ReportInput& input) {
   choose_work(compared.all);
   for (const std::string& scene : scenes) {
     QuotedScene& quoted = compared.scenes.emplace_back(quote(scene, compared.all));
-    quoted.title = compared.title(quoted.question);
+    quoted.title = compared.title(quoted.task);
   }
   return compared;
 }

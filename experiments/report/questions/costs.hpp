@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/report/questions/case_list.hpp"
+#include "experiments/timing/recommendation.hpp"
+
+namespace taut::report {
+
+/// The value of kErrorMetric whose price the page says.
+inline constexpr double kPricedError = 0.01;
+
+/// The questions of costs; none without a bench.
+void add_costs(Answer&, const ReportInput&, const std::vector<Column>& solvers, CaseList&);
+
+inline constexpr const char* kWithoutExtras =
+    "without accelerators that another solver of the scene lacks";
+/// Without the cases that use a parameter which another solver of the scene lacks.
+SceneBench with_shared_parameters(SceneBench);
+/// "4 × 2, coloured": of cases of one scene those parameters that take several values, without the
+/// one that is said beside it.
+std::string setting_text(const SceneBench&, std::size_t at, std::string_view beside = "");
+
+/// If the settings of a solver that reach the error do not count: a cell of these words, with the
+/// state and the reason, such as "hardly moves: 5 % of the way".
+std::optional<Cell> only_uncounted(const std::vector<Candidate>&, const std::string& solver,
+                                   double error, const std::string& words);
+
+/// Whether a cheaper setting of the same solver may reach what case `at` reaches: none was tried,
+/// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is then
+/// an upper bound.
+bool is_upper_bound(const SceneBench&, const std::vector<Candidate>&, std::size_t at);
+/// "; at most: its cheapest setting tried": behind the setting of an upper bound.
+inline constexpr const char* kUpperBound = "; at most: its cheapest setting tried";
+
+}  // namespace taut::report

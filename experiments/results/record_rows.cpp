@@ -1,0 +1,80 @@
+#include "experiments/results/record_rows.hpp"
+
+#include "core/model/input_error.hpp"
+#include "experiments/case/record_columns.hpp"
+#include "experiments/case/record_io.hpp"
+#include "experiments/results/schema.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+int whole_or_none(const Database::Rows& row, int column) {
+  return row.null(column) ? -1 : static_cast<int>(row.integer(column));
+}
+
+namespace {
+
+// What a column of a record is in the file, and back. Texts of JSON hold what is no single value.
+
+Database::Value kept(const std::string& text) { return text; }
+Database::Value kept(double number) { return number; }
+Database::Value kept(std::size_t count) { return static_cast<std::int64_t>(count); }
+Database::Value kept(int number) {
+  if (number < 0) return nullptr;
+  return std::int64_t{number};
+}
+Database::Value kept(Status::Kind kind) { return std::string(to_string(kind)); }
+template <class Value>
+Database::Value kept(const Value& value) {
+  return to_text(Json(value));
+}
+
+void read(const Database::Rows& row, int column, std::string& text) { text = row.text(column); }
+void read(const Database::Rows& row, int column, double& number) { number = row.number(column); }
+void read(const Database::Rows& row, int column, int& number) {
+  number = whole_or_none(row, column);
+}
+void read(const Database::Rows& row, int column, std::size_t& count) {
+  count = static_cast<std::size_t>(row.integer(column));
+}
+void read(const Database::Rows& row, int column, Status::Kind& kind) {
+  kind = status_kind(row.text(column));
+}
+template <class Value>
+void read(const Database::Rows& row, int column, Value& value) {
+  read_json(row.text(column), case_columns()[static_cast<std::size_t>(column)],
+            [&](const JsonReader& j) { return read_into(j, value), true; });
+}
+
+/// All but the values, of case_columns(). Throws InputError where a text is not what it has to be.
+Record record_in(const Database::Rows& row) {
+  Record r;
+  int at = 0;
+  for (const RecordColumn& column : record_columns())
+    if (!column.column.empty())
+      with_member(r, column, [&](auto& member) { read(row, at++, member); });
+  if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)
+    throw InputError("its time step or its sizes cannot be");
+  return r;
+}
+
+}  // namespace
+
+std::optional<Record> record_of_row(const Database::Rows& row, std::string& why) {
+  try {
+    return record_in(row);
+  } catch (const InputError& error) {
+    why = error.what();
+    return {};
+  }
+}
+
+std::vector<Database::Value> row_of(const Record& record) {
+  std::vector<Database::Value> row;
+  for (const RecordColumn& column : record_columns())
+    if (!column.column.empty())
+      row.push_back(with_member(record, column, [](const auto& member) { return kept(member); }));
+  return row;
+}
+
+}  // namespace taut
