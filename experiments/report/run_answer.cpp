@@ -13,7 +13,7 @@ namespace {
 Table failure_map_of(const Study& study, const Store& store) {
   const std::vector<Record> records = collect(study, store).records;
   std::vector<Record> timed;
-  for (const StudyBench& bench : stored_benches(store, study.name)) {  // the newest first
+  for (const StudyBench& bench : stored_benches(store, study.name)) {  // of this build first
     const std::vector<Record> of_bench = bench.records();
     timed.insert(timed.end(), of_bench.begin(), of_bench.end());
   }
