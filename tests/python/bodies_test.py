@@ -65,6 +65,7 @@ class Body:
 
     def __init__(self, vertices, triangles):
         self.vertices, self.triangles = vertices, triangles
+        self.corners = vertices[np.unique(triangles)]  # files of scanned meshes have places that no triangle uses
         self.a, self.b, self.c = (vertices[triangles[:, k]] for k in range(3))
         self.normals = np.cross(self.b - self.a, self.c - self.a)
         self.low, self.high = np.minimum(np.minimum(self.a, self.b), self.c), np.maximum(np.maximum(self.a, self.b), self.c)
@@ -161,8 +162,8 @@ def passages_of_faces(body, faces, frames):
     for was, now in zip(frames, frames[1:]):
         for face in faces:
             six = np.concatenate([was[face], now[face]])
-            for k in boxes_meet(six.min(0), six.max(0), body.vertices, body.vertices):
-                p = body.vertices[k]
+            for k in boxes_meet(six.min(0), six.max(0), body.corners, body.corners):
+                p = body.corners[k]
                 at = lambda s: was[face] + s * (now[face] - was[face]) - p
                 for s in roots([np.linalg.det(at(s)) for s in np.linspace(0, 1, 4)], 3):
                     t = at(s)
