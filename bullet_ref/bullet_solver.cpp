@@ -119,6 +119,13 @@ BulletSolver::BulletSolver(const Scene& scene, const Params& params, btDiscreteD
   world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
   configure_world_info(info, scene, params.real("voxel"));
   body_ = build_cloth(info, scene, options);
+  if (colliders_.deform())  // called between the search for contacts and their solution
+    world.setInternalTickCallback(
+        [](btDynamicsWorld* ticking, btScalar h) {
+          auto& self = *static_cast<BulletSolver*>(ticking->getWorldUserInfo());
+          self.colliders_.carry(*self.body_, static_cast<double>(h));
+        },
+        this);
 }
 
 void BulletSolver::step(double t, double dt) {
@@ -240,7 +247,7 @@ ResolvedSettings contact_settings(const Scene& scene, const Params& params,
                        "rests 0.06 to 0.1 m above");
   if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.frames != nullptr; }))
     lines.emplace_back("body that deforms",
-                       "contact knows the velocity of the body as a whole, not of its surface");
+                       "each contact is told the velocity of the surface where it touches");
   return lines;
 }
 

@@ -15,6 +15,7 @@
 
 #include "bullet_ref/bullet_solver.hpp"
 #include "core/model/body_frames.hpp"
+#include "core/model/deforming_body.hpp"
 #include "core/model/index.hpp"
 #include "core/model/triangle_mesh.hpp"
 
@@ -239,6 +240,7 @@ struct RigidColliders::Body {
                  ? std::make_unique<TriangleShape>(*std::get<MeshBody>(collider.shape).mesh)
                  : nullptr),
         frames(collider.frames),
+        surface(frames ? std::make_unique<DeformingBody>(collider) : nullptr),
         sides(body ? std::get<MeshBody>(collider.shape).sides : MeshBody::Sides::out),
         hull(body || !std::holds_alternative<MeshBody>(collider.shape)
                  ? nullptr
@@ -281,6 +283,7 @@ struct RigidColliders::Body {
   double follows;                            ///< m, of a slab
   std::unique_ptr<TriangleShape> body;       ///< null: another shape
   std::shared_ptr<const BodyFrames> frames;  ///< of a body that deforms
+  std::unique_ptr<DeformingBody> surface;    ///< of such a one, in this substep
   MeshBody::Sides sides;                     ///< of a body, which Bullet does not know
   std::shared_ptr<const TriangleMesh> hull;  ///< whose corners the shape has; null: another shape
   std::unique_ptr<btCollisionShape> shape;
@@ -307,17 +310,64 @@ void RigidColliders::move(double from, double to) {
     if (!body->moves()) continue;
     body->rigid.setInterpolationWorldTransform(body->at(from));
     body->rigid.setWorldTransform(body->at(to));
-    if (body->frames) deform(*body, to);
+    if (body->frames) deform(*body, from, to);
   }
 }
 
 /// Bullet's soft bodies keep a hull of every triangle that they have met, as it was then, for as
 /// long as the pair of bodies lasts: it begins anew.
-void RigidColliders::deform(Body& body, double t) {
-  body.body->refit(body.frames->at(t));
+void RigidColliders::deform(Body& body, double from, double to) {
+  body.surface->move(from, to);
+  body.body->refit(body.surface->after().vertices());
   world_.updateSingleAabb(&body.rigid);
   world_.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(
       body.rigid.getBroadphaseHandle(), world_.getDispatcher());
+}
+
+bool RigidColliders::deform() const {
+  return std::ranges::any_of(bodies_, [](const auto& body) { return body->frames != nullptr; });
+}
+
+RigidColliders::Body* RigidColliders::deforming(const void* rigid) const {
+  for (const auto& body : bodies_)
+    if (&body->rigid == rigid && body->surface) return body.get();
+  return nullptr;
+}
+
+btRigidBody& RigidColliders::moving_at(const btVector3& velocity, std::size_t contact) {
+  if (contact == carriers_.size())
+    carriers_.push_back(std::make_unique<btRigidBody>(
+        btRigidBody::btRigidBodyConstructionInfo(0, nullptr, nullptr)));
+  carriers_[contact]->setLinearVelocity(velocity);
+  return *carriers_[contact];
+}
+
+void RigidColliders::carry(btSoftBody& cloth, double h) {
+  std::size_t contacts = 0;
+  const auto carry = [&](btSoftBody::sCti& contact,
+                         const btVector3& x) -> std::optional<btVector3> {
+    const Body* const body = deforming(contact.m_colObj);
+    if (!body) return {};
+    const DeformingBody& surface = *body->surface;
+    const Vec3 place = surface.local(from_bullet(x));
+    const PlaceMotion motion = surface.motion_of(surface.after().nearest(place), place);
+    const btVector3 way = to_bullet(surface.world(motion.to) - surface.world_before(motion.from));
+    contact.m_colObj = &moving_at(way / static_cast<btScalar>(h), contacts++);
+    return way;
+  };
+  for (int i = 0; i < cloth.m_rcontacts.size(); ++i) {
+    btSoftBody::RContact& c = cloth.m_rcontacts[i];
+    const btScalar friction = cloth.m_cfg.kDF * c.m_cti.m_colObj->getFriction();
+    const auto way = carry(c.m_cti, c.m_node->m_x);
+    if (!way) continue;
+    // What Bullet has decided from the velocity of the body (btSoftColliders::CollideSDF_RS).
+    const btVector3 slip = c.m_node->m_x - c.m_node->m_q - *way;
+    const btScalar into = slip.dot(c.m_cti.m_normal), holds = into * friction;
+    const btVector3 along = slip - c.m_cti.m_normal * into;
+    c.m_c3 = along.length2() < holds * holds ? 0 : 1 - friction;
+  }
+  for (int i = 0; i < cloth.m_nodeRigidContacts.size(); ++i)
+    carry(cloth.m_nodeRigidContacts[i].m_cti, cloth.m_nodeRigidContacts[i].m_node->m_x);
 }
 
 std::size_t RigidColliders::bytes() const {

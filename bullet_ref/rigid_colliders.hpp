@@ -5,9 +5,10 @@
 
 #include "core/model/scene.hpp"
 
-class btCollisionShape;
 class btDiscreteDynamicsWorld;
 class btRigidBody;
+class btSoftBody;
+class btVector3;
 
 namespace taut {
 
@@ -38,6 +39,13 @@ class RigidColliders {
   /// they were at time from.
   void move(double from, double to);
 
+  /// Whether any body deforms.
+  bool deform() const;
+  /// Bullet asks the body of a contact for its velocity, and a rigid body has none of its surface.
+  /// So each contact with a body that deforms, found and not solved yet, gets a body of its own in
+  /// its place, which moves as the surface does there in this substep [s].
+  void carry(btSoftBody& cloth, double h);
+
   bool empty() const { return bodies_.empty(); }
   /// Bytes of bodies and shapes.
   std::size_t bytes() const;
@@ -48,9 +56,13 @@ class RigidColliders {
 
  private:
   struct Body;
-  void deform(Body&, double t);
+  void deform(Body&, double from, double to);
+  Body* deforming(const void* rigid) const;  ///< null: another one
+  btRigidBody& moving_at(const btVector3& velocity, std::size_t contact);
+
   btDiscreteDynamicsWorld& world_;
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<std::unique_ptr<btRigidBody>> carriers_;  ///< of contacts, in no world
 };
 
 }  // namespace taut

@@ -87,6 +87,13 @@ Vec3 place(const Corners& t, const Vec3& weights) {
   return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
 }
 
+/// w . (u x v) of three ways that change evenly in [0, 1].
+Cubic volume(const Vec3& u, const Vec3& v, const Vec3& w, const Vec3& du, const Vec3& dv,
+             const Vec3& dw) {
+  const Vec3 n0 = u.cross(v), n1 = u.cross(dv) + du.cross(v), n2 = du.cross(dv);
+  return {w.dot(n0), w.dot(n1) + dw.dot(n0), w.dot(n2) + dw.dot(n1), dw.dot(n2)};
+}
+
 Eigen::AlignedBox3d box_of(const Corners& a, const Corners& b) {
   Eigen::AlignedBox3d box;
   for (std::size_t k = 0; k < 3; ++k) box.extend(a[k]).extend(b[k]);
@@ -104,8 +111,7 @@ std::vector<TrianglePass> passes(const Corners& before, const Corners& after, co
   constexpr double kEdge = 1e-9;
   const Vec3 u = before[1] - before[0], v = before[2] - before[0], w = from - before[0];
   const Vec3 du = after[1] - after[0] - u, dv = after[2] - after[0] - v, dw = to - after[0] - w;
-  const Vec3 n0 = u.cross(v), n1 = u.cross(dv) + du.cross(v), n2 = du.cross(dv);
-  const Cubic f{w.dot(n0), w.dot(n1) + dw.dot(n0), w.dot(n2) + dw.dot(n1), dw.dot(n2)};
+  const Cubic f = volume(u, v, w, du, dv, dw);
   std::vector<TrianglePass> all;
   if (keeps_its_sign(f)) return all;
   roots(f, [&](double s, bool rises) {
@@ -116,6 +122,17 @@ std::vector<TrianglePass> passes(const Corners& before, const Corners& after, co
     if (whole > 0 && second >= least && third >= least && whole - second - third >= least)
       all.push_back({s, !rises});
   });
+  return all;
+}
+
+std::vector<LinePass> passes(const MovingEdge& one, const MovingEdge& other) {
+  const Vec3 u = one.before[1] - one.before[0], v = other.before[1] - other.before[0],
+             w = one.before[0] - other.before[0];
+  const Cubic f = volume(u, v, w, one.now[1] - one.now[0] - u, other.now[1] - other.now[0] - v,
+                         one.now[0] - other.now[0] - w);
+  std::vector<LinePass> all;
+  if (keeps_its_sign(f)) return all;
+  roots(f, [&](double s, bool rises) { all.push_back({s, rises}); });
   return all;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,8 +22,8 @@ struct PlaceMotion {
 
 /// A collider whose triangles move by themselves, between two moments: in its own frame, which
 /// moves as the collider's `motion` says, every vertex goes straight from where it is at the one to
-/// where it is at the other. Points are in that frame but for those of local_before(), local() and
-/// world().
+/// where it is at the other. Points are in that frame but for those of local_before(), local(),
+/// world_before() and world().
 class DeformingBody {
  public:
   /// Precondition: the collider has frames. Both moments are t = 0.
@@ -41,6 +42,7 @@ class DeformingBody {
   Vec3 local_before(const Vec3& world) const {
     return axes_before_.transpose() * (world - center_before_);
   }
+  Vec3 world_before(const Vec3& local) const { return center_before_ + axes_before_ * local; }
   Vec3 local(const Vec3& world) const { return axes_.transpose() * (world - pose_.center); }
   Vec3 world(const Vec3& local) const { return pose_.center + axes_ * local; }
   Vec3 turned_to_world(const Vec3& local) const { return axes_ * local; }
@@ -88,5 +90,22 @@ struct TrianglePass {
 };
 std::vector<TrianglePass> passes(const Corners& before, const Corners& after, const Vec3& from,
                                  const Vec3& to);
+
+/// An edge whose ends go straight.
+struct MovingEdge {
+  std::array<Vec3, 2> before, now;  ///< m
+
+  Vec3 end(std::size_t which, double share) const {
+    return before[which] + share * (now[which] - before[which]);
+  }
+};
+/// The shares of the time at which two edges come into one plane, within each other or not, the
+/// start included and the end not; with whether (p - q) . (u x v), of their first ends and of their
+/// ways to the second ones, rises. At most three, in their order.
+struct LinePass {
+  double share = 0;
+  bool rises = false;
+};
+std::vector<LinePass> passes(const MovingEdge& one, const MovingEdge& other);
 
 }  // namespace taut

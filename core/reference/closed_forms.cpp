@@ -143,6 +143,10 @@ double capstan_ratio(double mu, double wrap, double link) {
   return std::pow((1 + t) / (1 - t), wrap / link);
 }
 
+double capstan_ratio_of_links(double mu, double wrap, double link) {
+  return std::exp(std::asinh(mu * std::sin(link)) * wrap / link);
+}
+
 double Catenary::sag() const { return -*std::min_element(y.begin(), y.end()); }
 
 Catenary discrete_catenary(int links, double span, double link, double load, double stiffness) {

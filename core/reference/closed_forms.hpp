@@ -56,6 +56,11 @@ double spring_grid_eigenvalue(int nu, bool shear, bool bend);
 /// (T2 - T1) cos(link/2) = mu (T1 + T2) sin(link/2). Tends to exp(mu wrap) in second order.
 double capstan_ratio(double mu, double wrap, double link);
 
+/// The same where each link, not its ends, touches the cylinder, in its middle: half of what holds
+/// it at either end, so that tension and push grow by r a node, r - 1/r = 2 mu sin(link). Tends to
+/// exp(mu wrap) in second order, from below.
+double capstan_ratio_of_links(double mu, double wrap, double link);
+
 /// A chain of equal links between two supports of equal height, an equal load at every joint.
 struct Catenary {
   std::vector<double> x, y;     ///< [links + 1] m, from (0, 0) to (span, 0)

@@ -1,6 +1,8 @@
+#include <optional>
 #include <set>
 #include <utility>
 
+#include "core/model/deforming_body.hpp"
 #include "core/model/index.hpp"
 #include "core/model/triangle_mesh.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -40,6 +42,18 @@ std::vector<StraightEdge> solid_edges(const Shape& shape) {
   return edges;
 }
 
+/// Whether the places where the lines of two edges are nearest belong to both, their first ends
+/// included: `a` leads from the first end of the one, which goes along `along`, to that of the
+/// other, which goes along `b`.
+bool meet(const Vec3& along, const Vec3& a, const Vec3& b) {
+  const Vec3 normal = along.cross(b);
+  const double twice_area2 = normal.squaredNorm();
+  if (twice_area2 == 0) return false;
+  const double on_one = a.cross(b).dot(normal) / twice_area2,
+               on_other = a.cross(along).dot(normal) / twice_area2;
+  return on_one >= 0 && on_one < 1 && on_other >= 0 && on_other < 1;
+}
+
 /// How often an edge, whose ends go straight from one place to another, passes through one that
 /// does not move: the volume of the tetrahedron between them is a polynomial of second degree in
 /// the share of the way, and where it is 0 they are in one plane.
@@ -50,19 +64,24 @@ int times_through(const StraightEdge& before, const StraightEdge& now, const Str
   const double c = along.dot(a0.cross(b0)), d = along.dot(a0.cross(b1) + a1.cross(b0)),
                e = along.dot(a1.cross(b1));
   const auto meet_at = [&](double share) {
-    if (!(share > 0 && share <= 1)) return 0;
-    const Vec3 a = a0 + share * a1, b = b0 + share * b1, normal = along.cross(b);
-    const double twice_area2 = normal.squaredNorm();
-    if (twice_area2 == 0) return 0;
-    const double on_fixed = a.cross(b).dot(normal) / twice_area2,
-                 on_moving = a.cross(along).dot(normal) / twice_area2;
-    return static_cast<int>(on_fixed >= 0 && on_fixed < 1 && on_moving >= 0 && on_moving < 1);
+    return static_cast<int>(share > 0 && share <= 1 &&
+                            meet(along, a0 + share * a1, b0 + share * b1));
   };
   if (e == 0) return d == 0 ? 0 : meet_at(-c / d);
   const double discriminant = d * d - 4 * e * c;
   if (discriminant <= 0) return 0;
   const double half = -(d + std::copysign(std::sqrt(discriminant), d)) / 2;
   return meet_at(half / e) + (half == 0 ? 0 : meet_at(c / half));
+}
+
+/// The same of two edges that both move.
+int times_through(const MovingEdge& cloth, const MovingEdge& body) {
+  int times = 0;
+  for (const auto& [share, rises] : passes(cloth, body)) {
+    const Vec3 p = cloth.end(0, share), from = body.end(0, share);
+    times += meet(body.end(1, share) - from, p - from, cloth.end(1, share) - p);
+  }
+  return times;
 }
 
 /// Links that are no shortcut across faces, and sides of faces, of which one vertex is free.
@@ -84,10 +103,8 @@ class Edges final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {"edge.passages", kErrorCount,
        "how often an edge of the cloth goes through the axis of a capsule or an edge of a box or a "
-       "rigid body of triangles, returns included: a thread over a rod between two of its "
-       "vertices; "
-       "their "
-       "ways are straight from substep to substep, in the collider's own frame",
+       "body of triangles, returns included: a thread over a rod between two of its vertices; "
+       "their ways are straight from substep to substep, in the collider's own frame",
        false, Window::run, "passages of edges"},
   };
   static bool measures(const Scene& scene) {
@@ -105,8 +122,14 @@ class Edges final : public Metric {
       std::vector<Vec3> now;
       now.reserve(m.state.x.size());
       for (const Vec3& x : m.state.x) now.push_back(collider.local(x, m.t));
-      if (m.step > 0 || !collider.last.empty()) count(collider, now);
+      if (m.step > 0 || !collider.last.empty()) {
+        if (collider.body)
+          count_at_deforming(collider, now, m.t);
+        else
+          count(collider, now);
+      }
       collider.last = std::move(now);
+      collider.last_t = m.t;
     }
   }
   std::vector<double> finish() override { return {static_cast<double>(passages_)}; }
@@ -114,14 +137,19 @@ class Edges final : public Metric {
 
  private:
   static bool has_edges(const Collider& c) {
-    return !c.frames &&
-           (std::holds_alternative<Capsule>(c.shape) || std::holds_alternative<Box>(c.shape) ||
-            std::holds_alternative<MeshBody>(c.shape));
+    return std::holds_alternative<Capsule>(c.shape) || std::holds_alternative<Box>(c.shape) ||
+           std::holds_alternative<MeshBody>(c.shape);
   }
 
-  /// A collider in the frame in which it does not move, and the cloth there at the last time.
+  /// A collider in the frame in which it does not move as a whole, and the cloth there at the last
+  /// time.
   struct Followed {
-    explicit Followed(const Collider& c) : collider(c), edges(solid_edges(c.shape)) {
+    explicit Followed(const Collider& c) : collider(c) {
+      if (c.frames) {
+        body.emplace(c);
+        return;
+      }
+      edges = solid_edges(c.shape);
       for (const StraightEdge& edge : edges) box.extend(edge.from).extend(edge.to);
     }
     /// Where the collider's points would be at the start: x without its motion and, of boxes and
@@ -138,9 +166,11 @@ class Edges final : public Metric {
       return start;
     }
     Collider collider;
+    std::optional<DeformingBody> body;  ///< that deforms; else
     std::vector<StraightEdge> edges;
     Eigen::AlignedBox3d box;
     std::vector<Vec3> last;  ///< empty: nothing yet
+    double last_t = 0;       ///< s
   };
 
   void count(const Followed& collider, const std::vector<Vec3>& now) {
@@ -154,6 +184,34 @@ class Edges final : public Metric {
       for (const StraightEdge& fixed : collider.edges) {
         Eigen::AlignedBox3d around(fixed.from);
         if (around.extend(fixed.to).intersects(way)) passages_ += times_through(was, is, fixed);
+      }
+    }
+  }
+
+  void count_at_deforming(Followed& collider, const std::vector<Vec3>& now, double t) {
+    DeformingBody& body = *collider.body;
+    body.move(collider.last_t, t);
+    const TriangleMesh &mesh = body.after(), &before = body.before();
+    const Vec3 wider = Vec3::Constant(body.longest_way());
+    std::set<int> near;  // 3 triangle + side, of the first of its triangles
+    for (const auto& [a, b] : edges_) {
+      const MovingEdge edge{{collider.last[to_index(a)], collider.last[to_index(b)]},
+                            {now[to_index(a)], now[to_index(b)]}};
+      Eigen::AlignedBox3d way(edge.before[0]);
+      way.extend(edge.before[1]).extend(edge.now[0]).extend(edge.now[1]);
+      near.clear();
+      mesh.in_box({way.min() - wider, way.max() + wider}, [&](int triangle) {
+        for (int side = 0; side < 3; ++side) {
+          const int number = 3 * triangle + side, beyond = mesh.beyond(triangle, side);
+          near.insert(beyond < 0 ? number : std::min(number, beyond));
+        }
+      });
+      for (const int number : near) {
+        const Triangle& corners = mesh.triangles()[to_index(number / 3)];
+        const std::size_t from = to_index(corners[to_index(number % 3)]),
+                          to = to_index(corners[to_index((number + 1) % 3)]);
+        passages_ += times_through(edge, {{before.vertices()[from], before.vertices()[to]},
+                                          {mesh.vertices()[from], mesh.vertices()[to]}});
       }
     }
   }

@@ -1,10 +1,9 @@
 // Section 7, cloth in contact: where it rests, and what one step in contact has to be.
 #include <cmath>
-#include <numbers>
 
 #include "core/model/angle.hpp"
-#include "core/reference/closed_forms.hpp"
 #include "core/reference/implicit_step.hpp"
+#include "experiments/truths/capstan.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -118,38 +117,16 @@ TAUT_TRUTH(strip_over_an_edge, 7, 7,
 TAUT_TRUTH(capstan_holds, 7, 8,
            "a light rope over a rough cylinder holds up to the capstan's ratio, and slides beyond",
            "Euler, Eytelwein; balance of every node") {
-  const int n = 24, below = 4;  // links around the cylinder, and that hang on either side
-  const double mu = 0.3, radius = 0.5, angle = std::numbers::pi / n,
-               l = 2 * radius * std::sin(angle / 2);
-  const double ratio = reference::capstan_ratio(mu, std::numbers::pi, angle);
-  const auto rope = [&](double heavy) {
-    std::vector<Vec3> x;
-    std::vector<Link> rods;
-    std::vector<double> mass;
-    for (int i = -below; i <= n + below; ++i) {
-      const double phi = std::clamp(i, 0, n) * angle;
-      const double down = std::max({0, -i, i - n}) * l;
-      x.push_back(radius * Vec3(-std::cos(phi), std::sin(phi), 0) - Vec3(0, down, 0));
-      mass.push_back(i == -below ? 1 : i == n + below ? heavy : 2e-4);
-      const int at = i + below;
-      if (at > 0) rods.push_back({at - 1, at, l});
-    }
-    Scene s = under_gravity(bare::scene(x, mass, rods));
-    s.stiffness = {1e4, 1e4, 1e4};
-    s.damping = 4;
-    s.colliders = {{Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), radius}, {}, mu}};
-    s.dt = 1.0 / 128;
-    return s;
-  };
+  const Capstan rope;
+  const Shape cylinder = Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), Capstan::kRadius};
   for (const std::string solver :
        {"implicit", "pd:iterations=400", "admm:iterations=400", "vbd:iterations=1000,start=inertia",
         "mass-spring:substeps=64",
         "xpbd:method=global,primal=on,substeps=1,precision=double,iterations=50",
         "xpbd:substeps=16,iterations=64,precision=double"}) {
-    if (!can_run(findings, solver, rope(1))) continue;
+    if (!can_run(findings, solver, rope.scene(cylinder, 1))) continue;
     const auto speed = [&](double share) {
-      const Scene s = rope(share * ratio);
-      return Simulation(s, solver, 256).v(static_cast<int>(s.start.x.size()) - 1).norm();
+      return rope.speed(solver, cylinder, share * rope.ratio());
     };
     const std::string held = "speed of the heavy end after 2 s at 0.9 of the ratio";
     if (solver.starts_with("xpbd:substeps"))

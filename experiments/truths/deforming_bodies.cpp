@@ -68,12 +68,13 @@ Scene by_frames(Scene s, double fps) {
   return s;
 }
 
-/// Their substeps divide a step into 1, 2, 4, ..., 64.
+/// Their substeps divide a step into 1, 2, 4, ..., 64. `implicit` needs as many iterations to
+/// converge in contact: after 30 rounding still chooses who touches, and makes 1e-15 m 1e-4.
 std::vector<std::string> every_solver() {
   return {jakobsen(8),
           "xpbd:substeps=4,iterations=2,precision=double",
           "mass-spring:substeps=64",
-          "implicit:substeps=1,iterations=30",
+          "implicit:substeps=1,iterations=200",
           "vbd:substeps=1,iterations=40,precision=double",
           "avbd:substeps=1,iterations=10,precision=double",
           "pd:substeps=1,iterations=10,precision=double",
@@ -111,8 +112,8 @@ TAUT_TRUTH(body_in_a_moving_frame, 7, 15,
       Scene moves = at_rest;
       moves.colliders[0].motion.velocity = speed;
       for (Vec3& v : moves.start.v) v += speed;
-      // Who touches whom rounding chooses in what has not converged.
-      const int steps = solver_name(solver) == "implicit" ? 3 : kQuarterSecond;
+      // As it swells, 200 iterations do not converge, either.
+      const int steps = swells && solver_name(solver) == "implicit" ? 3 : kQuarterSecond;
       State seen = Simulation(moves, solver, steps).state();
       for (Vec3& x : seen.x) x -= steps * moves.dt * speed;
       findings.below(solver,

@@ -6,10 +6,10 @@
 
 #include <array>
 #include <map>
-#include <random>
 #include <string>
 
 #include "experiments/metrics/metric.hpp"
+#include "tests/support/draw.hpp"
 
 namespace taut {
 
@@ -49,21 +49,6 @@ Values measure(const Scene& scene, const Motion& motion) {
 inline Values measure_at_rest(const Scene& scene, const State& state) {
   return measure(scene, [&](int) { return state; });
 }
-
-/// Numbers at random, the same on every machine.
-class Draw {
- public:
-  explicit Draw(unsigned seed) : random_(seed) {}
-  double number(double low, double high) {
-    return std::uniform_real_distribution<>(low, high)(random_);
-  }
-  Vec3 vector(double size) {  // braces: from left to right, whatever the compiler
-    return Vec3{std::array{number(-size, size), number(-size, size), number(-size, size)}.data()};
-  }
-
- private:
-  std::mt19937 random_;
-};
 
 /// Of a point from a surface [m], negative inside.
 inline double signed_distance(const Shape& shape, const Vec3& p) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +20,19 @@ inline Lines settings(const Scene& scene, const std::string& solver) {
   for (const ResolvedSetting& one : choice.entry->resolved_settings(scene, choice.params))
     lines.emplace_back(one.name, one.text);
   return lines;
+}
+
+/// In double where there is a choice; nothing of Bullet's.
+inline std::vector<std::string> our_solvers() {
+  std::vector<std::string> all;
+  for (const SolverEntry* entry : solvers()) {
+    if (entry->name.starts_with("bullet")) continue;
+    const auto is_precision = [](const ParamSpec& p) { return p.name == "precision"; };
+    const bool chooses = std::ranges::any_of(entry->params, is_precision);
+    all.push_back(std::string(entry->name) + (chooses ? ":precision=double" : ""));
+  }
+  EXPECT_GE(all.size(), 8u);
+  return all;
 }
 
 /// Why a solver cannot run a scene; empty: it can.

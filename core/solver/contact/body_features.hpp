@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/deforming_body.hpp"
 #include "core/model/index.hpp"
 #include "core/model/triangle.hpp"
 #include "core/model/triangle_mesh.hpp"
@@ -55,11 +56,12 @@ inline std::optional<LinesApart> lines_apart(const Vec3& p, const Vec3& q, const
   return apart;
 }
 
-/// Of an edge of the cloth, whose ends go straight from `before` to `now`, that passes through a
-/// fixed one, both ends of which count: where their lines are apart where it first does so, and at
+/// Of an edge of the cloth, whose ends go straight from `before` to `now`, that passes through one
+/// of a body, both ends of which count: where their lines are apart where it first does so, and at
 /// the end; the normals are those on the side from which it comes.
 struct Crossing {
   LinesApart first, end;
+  double share = 0;  ///< of the way, of the first
 };
 /// The volume that the two edges span is a polynomial of second degree in the share of the way.
 inline std::optional<Crossing> first_crossing(const Corners& before, const Corners& now,
@@ -92,7 +94,28 @@ inline std::optional<Crossing> first_crossing(const Corners& before, const Corne
     }
     for (LinesApart* lines : {&*first, &*end})
       if (from < 0) lines->turn();
-    return Crossing{*first, *end};
+    return Crossing{*first, *end, share};
+  }
+  return {};
+}
+/// The same with a body's edge whose ends go straight, too.
+inline std::optional<Crossing> first_crossing(const MovingEdge& cloth, const MovingEdge& body) {
+  for (const auto& [share, rises] : passes(cloth, body)) {
+    if (share == 0) return {};
+    const Vec3 from = body.end(0, share);
+    auto first =
+        lines_apart(cloth.end(0, share), cloth.end(1, share), {from, body.end(1, share) - from});
+    if (!first || !first->meet()) continue;
+    const FixedEdge at_end{body.now[0], body.now[1] - body.now[0]};
+    auto end = lines_apart(cloth.now[0], cloth.now[1], at_end);
+    if (!end || !end->meet()) {  // it has turned away: as it was when it passed
+      end = first;
+      end->height = end->normal.dot(end->on({cloth.now[0], cloth.now[1], cloth.now[1]}) -
+                                    at_end.from - end->on_fixed * at_end.along);
+    }
+    for (LinesApart* lines : {&*first, &*end})
+      if (rises) lines->turn();
+    return Crossing{*first, *end, share};
   }
   return {};
 }
@@ -105,15 +128,21 @@ class BodyFeatures {
  public:
   BodyFeatures(double thickness, std::size_t pieces) : thickness_(thickness), near_(pieces) {}
 
-  /// The farthest way out. `before`: where the corners were before the substep, if what has passed
-  /// through a convex edge since then counts; else null.
+  /// Where a substep began.
+  struct Before {
+    Corners corners;
+    const TriangleMesh* mesh = nullptr;  ///< of a body that deforms; null: it is rigid
+    double longest_way = 0;              ///< m, of the body's vertices since then
+  };
+  /// The farthest way out. `before`: if what has passed through a convex edge since then counts;
+  /// else null.
   Separation out_of(const TriangleMesh& mesh, std::size_t piece, bool is_edge, const Corners& now,
-                    const Corners* before) {
+                    const Before* before) {
     Near& near = near_[piece];
     double moved2 = 0;
     for (std::size_t c = 0; c < (is_edge ? 2u : 3u); ++c) {
       moved2 = std::max(moved2, (now[c] - near.at[c]).squaredNorm());
-      if (before) moved2 = std::max(moved2, ((*before)[c] - near.at[c]).squaredNorm());
+      if (before) moved2 = std::max(moved2, (before->corners[c] - near.at[c]).squaredNorm());
     }
     if (!(moved2 < near.reach * near.reach)) look_up(mesh, is_edge, now, before, near);
     Separation best;
@@ -162,19 +191,19 @@ class BodyFeatures {
     return {a, b - a};
   }
 
-  void look_up(const TriangleMesh& mesh, bool is_edge, const Corners& now, const Corners* before,
+  void look_up(const TriangleMesh& mesh, bool is_edge, const Corners& now, const Before* before,
                Near& near) const {
     Eigen::AlignedBox3d box;
     double side2 = 0, way2 = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       box.extend(now[c]);
       side2 = std::max(side2, (now[(c + 1) % 3] - now[c]).squaredNorm());
-      if (before) way2 = std::max(way2, ((*before)[c] - now[c]).squaredNorm());
+      if (before) way2 = std::max(way2, (before->corners[c] - now[c]).squaredNorm());
     }
     near.at = now;
     near.reach = std::max({thickness_, 0.1 * std::sqrt(side2), 2 * std::sqrt(way2)});
     near.features.clear();
-    const double within = near.reach + thickness_;
+    const double within = near.reach + thickness_ + (before ? before->longest_way : 0);
     box.min().array() -= within;
     box.max().array() += within;
     mesh.in_box(box, [&](int triangle) {
@@ -230,17 +259,49 @@ class BodyFeatures {
     return at;
   }
 
+  static std::array<Vec3, 2> ends_of(const FixedEdge& edge) {
+    return {edge.from, edge.from + edge.along};
+  }
+  /// On the way from one mesh to the other, not normalised.
+  static Vec3 normal_at(const TriangleMesh& from, const TriangleMesh& to, double share,
+                        int triangle) {
+    Corners at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t v = to_index(to.triangles()[to_index(triangle)][k]);
+      at[k] = from.vertices()[v] + share * (to.vertices()[v] - from.vertices()[v]);
+    }
+    return (at[1] - at[0]).cross(at[2] - at[0]);
+  }
+  /// Whether, and how, the cloth's edge has passed through that of the body from outside.
+  static std::optional<Crossing> passed(const TriangleMesh& mesh, int number, const FixedEdge& edge,
+                                        const Corners& now, const Before& before) {
+    const int one = number / 3, other = mesh.beyond(one, number % 3) / 3;
+    std::optional<Crossing> met;
+    if (!before.mesh) {
+      met = first_crossing(before.corners, now, edge);
+      if (met && is_between(met->first.normal, edge.along, mesh.normal(one), mesh.normal(other)))
+        return met;
+      return {};
+    }
+    const MovingEdge body{ends_of(edge_of(*before.mesh, number)), ends_of(edge)};
+    met = first_crossing({{before.corners[0], before.corners[1]}, {now[0], now[1]}}, body);
+    if (met && is_between(met->first.normal, body.end(1, met->share) - body.end(0, met->share),
+                          normal_at(*before.mesh, mesh, met->share, one),
+                          normal_at(*before.mesh, mesh, met->share, other)))
+      return met;
+    return {};
+  }
+
   Separation over_edge(const TriangleMesh& mesh, int number, const Corners& now,
-                       const Corners* before) const {
+                       const Before* before) const {
     const FixedEdge edge = edge_of(mesh, number);
+    if (before)
+      if (const auto met = passed(mesh, number, edge, now, *before))
+        return over(met->end, now, true);
     const auto leaves_sides_below = [&](const Vec3& normal) {
       return is_between(normal, edge.along, mesh.normal(number / 3),
                         mesh.normal(mesh.beyond(number / 3, number % 3) / 3));
     };
-    if (before)
-      if (const auto met = first_crossing(*before, now, edge);
-          met && leaves_sides_below(met->first.normal))
-        return over(met->end, now, true);
     const auto at = lines_over(mesh, number, now);
     if (!at || at->height >= thickness_ || !leaves_sides_below(at->normal)) return {};
     if (at->height < 0) {  // inside, unless it is beyond the whole body: a little further in, too

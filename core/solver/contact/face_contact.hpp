@@ -19,9 +19,8 @@ namespace taut {
 ///     dx_i = w_i b_i s n / sum of w_j b_j^2,
 ///
 /// so that the point moves by s n and momentum changes along n alone. Continuous: an edge that has
-/// passed through a convex edge of a rigid body or the axis of a capsule goes back to the side from
-/// which it came; where a substep ended before it was there, in the next. At a body that deforms
-/// only where the substep ends counts.
+/// passed through a convex edge of a body or the axis of a capsule goes back to the side from which
+/// it came; where a substep ended before it was there, in the next.
 ///
 /// With a solver that has a target y, a piece keeps the force F at its point from sweep to sweep
 /// and from substep to substep, as long as Signorini and Coulomb ask for it, were the corners free
@@ -35,7 +34,7 @@ class FaceContactPass final : public Pass<Real> {
                   std::vector<Triangle> pieces, Pass<Real>* solver)
       : collider_(collider),
         thickness_(thickness),
-        continuous_(continuous && !collider.frames),
+        continuous_(continuous),
         faces_(std::move(pieces)),
         solver_(solver),
         held_(solver ? faces_.size() : 0) {
@@ -53,10 +52,18 @@ class FaceContactPass final : public Pass<Real> {
     held_ = old.held_;
     features_ = old.features_;
     safe_ = old.safe_;
+    if (!deforming_) return;
+    deforming_ = old.deforming_;
+    shape_ = old.shape_;
+    motion_ = old.motion_;
+    to_body_ = old.to_body_;
+    center_ = old.center_;
+    reach_ = old.reach_;
   }
 
   void begin(Particles<Real>& p, double t, double dt) override {
     if (deforming_) {
+      if (continuous_) remember_sides(p);  // they go with the surface of the last substep
       deforming_->move(t, t + dt);
       shape_ = deforming_->body();
       features_->forget();
@@ -82,10 +89,10 @@ class FaceContactPass final : public Pass<Real> {
     if (const MeshBody* body = std::get_if<MeshBody>(&shape_)) {
       const Eigen::AlignedBox3d& box = body->mesh->box();
       center_ = body->center + body->rotation * box.center();
-      reach_ = box.diagonal().norm() / 2 + thickness_;
+      reach_ = box.diagonal().norm() / 2 + thickness_ + longest_way();
       to_body_ = body->rotation.conjugate().toRotationMatrix();
     }
-    if (continuous_) remember_sides(p);
+    if (continuous_ && !deforming_) remember_sides(p);
     for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
       if (held_[f].holds()) {
         held_[f].force = turned(held_[f], at_start(p, faces_[f], held_[f].weights));
@@ -166,35 +173,48 @@ class FaceContactPass final : public Pass<Real> {
     weights[2] = 0;
   }
 
-  /// Where the corners of an edge would be if they had moved with the collider.
+  Vec3 moved(const Vec3& x) const { return point(motion_(vec3t<double>(x))); }
+  /// Where the corners of an edge would be if they had moved with a rigid collider.
   Corners before(const Particles<Real>& p, const Triangle& piece) const {
     Corners t;
-    for (std::size_t c = 0; c < 2; ++c)
-      t[c] = point(motion_(vec3t<double>(at(p.previous, piece[c]))));
+    for (std::size_t c = 0; c < 2; ++c) {
+      const Vec3 x = at(p.previous, piece[c]);
+      t[c] = deforming_ ? x : moved(x);
+    }
     t[2] = t[1];
     return t;
   }
   bool may_have_passed(std::size_t piece, const Corners& t) const {
     if (!continuous_ || !is_edge(faces_[piece])) return false;
     double way2 = 0;
-    for (std::size_t c = 0; c < 2; ++c)
-      way2 = std::max(way2, (t[c] - safe_[piece][c]).squaredNorm());
+    for (std::size_t c = 0; c < 2; ++c) {
+      const Vec3& from = safe_[piece][c];
+      way2 = std::max(way2, (t[c] - (deforming_ ? moved(from) : from)).squaredNorm());
+    }
     return way2 > reach_ * reach_;
   }
 
   /// Where edges come from: where they began the substep, or where they were before they passed
-  /// through what they have not gone back through.
+  /// through what they have not gone back through, which goes with the surface. Of a rigid collider
+  /// where that is at the end of the substep; of one that deforms, at its start.
   void remember_sides(const Particles<Real>& p) {
     const bool first = safe_.empty();
     if (first) safe_.resize(faces_.size());
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       if (!is_edge(faces_[f])) continue;
       const Corners now = before(p, faces_[f]);
-      for (std::size_t c = 0; c < 3 && !first; ++c)
-        safe_[f][c] = point(motion_(vec3t<double>(safe_[f][c])));
-      if (first || !has_passed(f, now)) safe_[f] = now;
+      for (std::size_t c = 0; c < 3 && !first && !deforming_; ++c) safe_[f][c] = moved(safe_[f][c]);
+      if (first || !has_passed(f, now))
+        safe_[f] = now;
+      else if (deforming_)
+        for (Vec3& x : safe_[f]) x = gone_with_surface(x);
     }
   }
+  Vec3 gone_with_surface(const Vec3& x) const {
+    const Vec3 p = deforming_->local_before(x);
+    return deforming_->world(deforming_->motion_of_before(deforming_->before().nearest(p), p)(p));
+  }
+  double longest_way() const { return deforming_ ? deforming_->longest_way() : 0; }
   bool has_passed(std::size_t piece, const Corners& now) {
     if ((now[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2_of(now)) &&
         !may_have_passed(piece, now))
@@ -240,10 +260,16 @@ class FaceContactPass final : public Pass<Real> {
   }
   Separation out_of(const MeshBody& body, std::size_t piece, const Corners& t) {
     const bool edge = is_edge(faces_[piece]);
-    Corners was;
-    if (continuous_ && edge) was = in_body(body, safe_[piece], true);
+    BodyFeatures::Before was;
+    if (continuous_ && edge) was = before_in_body(body, piece);
     return in_world(body, features_->out_of(*body.mesh, piece, edge, in_body(body, t, edge),
                                             continuous_ && edge ? &was : nullptr));
+  }
+  BodyFeatures::Before before_in_body(const MeshBody& body, std::size_t edge) const {
+    if (!deforming_) return {in_body(body, safe_[edge], true)};
+    BodyFeatures::Before was{.mesh = &deforming_->before(), .longest_way = longest_way()};
+    for (std::size_t c = 0; c < 3; ++c) was.corners[c] = deforming_->local_before(safe_[edge][c]);
+    return was;
   }
 
   /// Of a point of the face that the collider may have left.

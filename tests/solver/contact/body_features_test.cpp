@@ -4,28 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "tests/support/bodies.hpp"
+#include "tests/support/draw.hpp"
 
 namespace taut::body_features_test {
 namespace {
 
-class Random {
- public:
-  double within(double bound) { return std::uniform_real_distribution<>(-bound, bound)(engine_); }
-  Vec3 point(double bound) {
-    const double x = within(bound), y = within(bound);
-    return {x, y, within(bound)};
-  }
-  Corners edge(double bound) {
-    const Vec3 a = point(bound), b = point(bound);
-    return {a, b, b};
-  }
-
- private:
-  std::mt19937_64 engine_{99};
-};
+/// Within `bound` of the origin along each axis.
+Corners edge(Draw& draw, double bound) {
+  const Vec3 a = draw.vector(bound), b = draw.vector(bound);
+  return {a, b, b};
+}
 
 /// Shares of pq and of the fixed edge where they are nearest, were they lines: least squares.
 Eigen::Vector2d nearest(const Vec3& p, const Vec3& q, const FixedEdge& edge) {
@@ -35,12 +24,17 @@ Eigen::Vector2d nearest(const Vec3& p, const Vec3& q, const FixedEdge& edge) {
 }
 
 TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
-  Random random;
+  Draw draw(99);
   int crossed = 0, checked = 0;
-  for (int n = 0; n < 4000; ++n) {
-    const Corners before = random.edge(1), now = random.edge(1);
-    const Vec3 from = random.point(1);
-    const FixedEdge edge{from, random.point(1) - from};
+  for (int n = 0; n < 8000; ++n) {
+    const bool both_move = n % 2 == 1;
+    const Corners before = edge(draw, 1), now = edge(draw, 1);
+    MovingEdge body{{draw.vector(1), draw.vector(1)}, {}};
+    body.now = body.before;
+    if (both_move) body.now = {draw.vector(1), draw.vector(1)};
+    const auto edge_at = [&](double share) {
+      return FixedEdge{body.end(0, share), body.end(1, share) - body.end(0, share)};
+    };
     constexpr int kMoments = 4000;
     std::optional<double> first;
     double side = 0, margin = 1;
@@ -48,6 +42,7 @@ TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
       const double share = k / double{kMoments};
       const Vec3 p = before[0] + share * (now[0] - before[0]),
                  q = before[1] + share * (now[1] - before[1]);
+      const FixedEdge edge = edge_at(share);
       const double volume = edge.along.cross(p - edge.from).dot(q - p);
       if (k > 0 && (volume > 0) != (side > 0)) {
         const Eigen::Vector2d at = nearest(p, q, edge);
@@ -60,7 +55,9 @@ TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
     }
     if (margin < 1e-2) continue;  // the moments are too coarse to tell
     ++checked;
-    const auto met = first_crossing(before, now, edge);
+    const MovingEdge cloth{{before[0], before[1]}, {now[0], now[1]}};
+    const auto met =
+        both_move ? first_crossing(cloth, body) : first_crossing(before, now, edge_at(0));
     ASSERT_EQ(met.has_value(), first.has_value()) << n;
     if (!met) continue;
     ++crossed;
@@ -68,15 +65,16 @@ TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
     const double share = std::max(0.0, *first - 2.0 / kMoments);
     const Vec3 p = before[0] + share * (now[0] - before[0]),
                q = before[1] + share * (now[1] - before[1]);
+    const FixedEdge edge = edge_at(share);
     const Eigen::Vector2d at = nearest(p, q, edge);
     const Vec3 apart = p + at.x() * (q - p) - edge.from - at.y() * edge.along;
     if (apart.norm() > 1e-5) {
       EXPECT_GT(apart.dot(met->first.normal), 0) << n;
     }
-    EXPECT_NEAR(met->first.normal.dot(edge.along), 0, 1e-12) << n;
+    EXPECT_NEAR(met->first.normal.dot(edge_at(met->share).along), 0, 1e-12) << n;
   }
-  EXPECT_GT(crossed, 100);
-  EXPECT_GT(checked, 3000);
+  EXPECT_GT(crossed, 200);
+  EXPECT_GT(checked, 6000);
 }
 
 TEST(BodyFeatures, AFaceLeavesATipByItsDepthAndTheThickness) {
@@ -96,7 +94,7 @@ TEST(BodyFeatures, WhatPiecesRememberHidesNothing) {
   const auto mesh = torus(0.3, 0.12, 16, 10, 0.02).mesh();
   constexpr double kThickness = 0.005;
   for (const bool edge : {true, false}) {
-    Random random;
+    Draw draw(99);
     int pushed = 0, same = 0;
     BodyFeatures remembering(kThickness, 1);
     Vec3 at(0.3, 0.15, 0);
@@ -105,13 +103,14 @@ TEST(BodyFeatures, WhatPiecesRememberHidesNothing) {
     for (int n = 0; n < 20000; ++n) {
       Corners now = before;
       const double step = n % 100 == 0 ? 0.1 : 0.003;
-      const Vec3 all = random.point(step);
-      for (Vec3& x : now) x += all + random.point(step / 10);
+      const Vec3 all = draw.vector(step);
+      for (Vec3& x : now) x += all + draw.vector(step / 10);
       if (now[0].norm() > 0.5)
         for (Vec3& x : now) x *= 0.9;
       if (edge) now[2] = now[1];
       BodyFeatures anew(kThickness, 1);
-      const Corners* const path = edge && n % 2 == 0 ? &before : nullptr;
+      const BodyFeatures::Before start{before};
+      const BodyFeatures::Before* const path = edge && n % 2 == 0 ? &start : nullptr;
       const Separation got = remembering.out_of(*mesh, 0, edge, now, path),
                        want = anew.out_of(*mesh, 0, edge, now, path);
       const bool far_inside = want.length > 2 * kThickness && !want.has_passed;

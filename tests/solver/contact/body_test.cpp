@@ -7,28 +7,12 @@
 #include "core/model/solver.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/support/cloths.hpp"
+#include "tests/support/settings.hpp"
 
 namespace taut::body_contact_test {
 namespace {
 
 constexpr int kQuarterSecond = 16;
-
-/// In double where there is a choice; nothing of Bullet's.
-std::vector<std::string> our_solvers() {
-  std::vector<std::string> all;
-  for (const SolverEntry* entry : solvers()) {
-    if (entry->name.starts_with("bullet")) continue;
-    const auto is_precision = [](const ParamSpec& p) { return p.name == "precision"; };
-    const bool chooses = std::ranges::any_of(entry->params, is_precision);
-    all.push_back(std::string(entry->name) + (chooses ? ":precision=double" : ""));
-  }
-  EXPECT_GE(all.size(), 8u);
-  return all;
-}
-
-std::string with(const std::string& solver, const std::string& more) {
-  return solver + (solver.find(':') == std::string::npos ? ":" : ",") + more;
-}
 
 double apart(const State& a, const State& b) {
   double most = 0;

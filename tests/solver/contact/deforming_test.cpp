@@ -9,24 +9,12 @@
 #include "core/model/solver.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/support/cloths.hpp"
+#include "tests/support/settings.hpp"
 
 namespace taut::deforming_contact_test {
 namespace {
 
 constexpr int kQuarterSecond = 16;
-
-/// In double where there is a choice; nothing of Bullet's.
-std::vector<std::string> our_solvers() {
-  std::vector<std::string> all;
-  for (const SolverEntry* entry : solvers()) {
-    if (entry->name.starts_with("bullet")) continue;
-    const auto is_precision = [](const ParamSpec& p) { return p.name == "precision"; };
-    const bool chooses = std::ranges::any_of(entry->params, is_precision);
-    all.push_back(std::string(entry->name) + (chooses ? ":precision=double" : ""));
-  }
-  EXPECT_GE(all.size(), 8u);
-  return all;
-}
 
 /// A level sheet that is about to meet what is below.
 Scene sheet_above(double y) {
@@ -123,7 +111,7 @@ Scene face_above_a_tip(const Motion& motion) {
 TEST(DeformingContact, AndForFaces) {
   for (const std::string& plain : our_solvers())
     for (const double spin : {0.0, 1.0}) {
-      const std::string solver = plain + (plain.find(':') == plain.npos ? ":" : ",") + "faces=on";
+      const std::string solver = with(plain, "faces=on");
       Scene scene = face_above_a_tip({.velocity = {0.3, 0.2, 0}, .spin = {0, spin, 0}});
       const State want = simulate(scene, solver, kQuarterSecond);
       scene.colliders[0].friction = 0;
@@ -174,6 +162,53 @@ TEST(DeformingContact, NothingPassesAThinBodyThatComesFromEitherSide) {
       for (const Vec3& x : state.x)
         EXPECT_GE(side * mesh.nearest(x).distance, 0.005 - 1e-4) << solver << ' ' << side;
     }
+}
+
+/// Of the thread where it is over x = 0 [m].
+double height_over_origin(const State& state) {
+  double highest = -1e9;
+  for (std::size_t i = 1; i < state.x.size(); ++i) {
+    const Vec3 &a = state.x[i - 1], &b = state.x[i];
+    if ((a.x() <= 0) == (b.x() <= 0)) continue;
+    highest = std::max(highest, a.y() - a.x() / (b.x() - a.x()) * (b.y() - a.y()));
+  }
+  return highest;
+}
+
+// It makes four times its own height in a step, between two vertices, and leans as it does so.
+TEST(DeformingContact, NoEdgeOfAThreadPassesARodThatItsFramesRaise) {
+  Scene scene;
+  constexpr int kVertices = 12, kSteps = 12;
+  for (int i = 0; i < kVertices; ++i) {
+    scene.mesh.rest.emplace_back(0.03 * (i - 5.6), 0.01, 0);
+    scene.mesh.mass.push_back(1e-3);
+    if (i > 0) scene.links.push_back({i - 1, i, 0.03});
+  }
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(kVertices, Vec3::Zero())};
+  scene.gravity.setZero();
+  scene.damping = 2;
+  scene.thickness = 0.001;
+  scene.dt = 1.0 / 64;
+  scene.steps = kSteps;
+  const Triangles rod = box_of_triangles({0.002, 0.002, 0.3});
+  auto frames = std::make_shared<BodyFrames>();
+  frames->fps = 64;
+  for (int k = 0; k <= kSteps; ++k) {
+    auto& x = frames->places.emplace_back(rod.vertices);
+    for (Vec3& p : x) p.y() += k / 64.0 * (1 + p.z());
+  }
+  scene.colliders = {{.shape = MeshBody{rod.mesh()}, .friction = 1, .frames = frames}};
+  int discrete = 0;
+  for (const std::string& solver : our_solvers()) {
+    const auto left_behind = [&](const std::string& settings) {
+      const State end = simulate(scene, with(solver, settings), kSteps);
+      return height_over_origin(end) < kSteps / 64.0;
+    };
+    EXPECT_TRUE(left_behind("faces=off")) << solver;
+    discrete += left_behind("faces=edges,contact=discrete");
+    EXPECT_FALSE(left_behind("faces=edges")) << solver;
+  }
+  EXPECT_GE(discrete, 6) << "all but those of many substeps";
 }
 
 // A belt whose points go at speeds that differ from place to place carries each vertex, where it

@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+"""Depths and passages that runs record at a body of triangles, against a second implementation: every triangle, no tree.
+
+Usage: bodies_test.py BUILD [TEST...]
+       bodies_test.py BUILD some.obj [sides=both] [sizes=8,16,32]    the same of a body from elsewhere, under so many vertices a side"""
+
+import math
+import pathlib
+import sys
+import unittest
+
+import module
+import numpy as np
+import taut
+
+SOLVERS = ("jakobsen:substeps=1,precision=double,contact=discrete", "xpbd:substeps=1,precision=double", "implicit:faces=edges", "vbd:precision=double,contact=discrete")
+VELOCITY, SPIN, START = np.array([0.3, 2.5, 0.0]), np.array([0.4, 1.0, -0.7]), np.array([0.03, -0.45, 0.02])
+
+
+def read_obj(path):
+    """Vertices, of which none coincide, and triangles."""
+    places, number, own, triangles = {}, [], [], []
+    for line in pathlib.Path(path).read_text().splitlines():
+        words = line.split()
+        if words[:1] == ["v"]:
+            place = tuple(float(word) for word in words[1:4])
+            number.append(places.setdefault(place, len(places)))
+        elif words[:1] == ["f"]:
+            corners = [int(word.split("/")[0]) for word in words[1:]]
+            corners = [number[c - 1 if c > 0 else c] for c in corners]
+            triangles += [(corners[0], corners[k], corners[k + 1]) for k in range(1, len(corners) - 1)]
+    return np.array(list(places)), np.array(triangles)
+
+
+def write_obj(path, vertices, triangles):
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles.tolist()]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def lumpy_torus(around, across):
+    vertices, triangles = [], []
+    for i in range(around):
+        for j in range(across):
+            u, v = 2 * math.pi * i / around, 2 * math.pi * j / across
+            r = 0.12 + 0.02 * math.sin(7.3 * i + 11.9 * j)
+            vertices.append(((0.3 + r * math.cos(v)) * math.cos(u), r * math.sin(v), (0.3 + r * math.cos(v)) * math.sin(u)))
+            at = lambda a, b: (i + a) % around * across + (j + b) % across
+            triangles += [(at(0, 0), at(0, 1), at(1, 0)), (at(1, 0), at(0, 1), at(1, 1))]
+    return np.array(vertices), np.array(triangles)
+
+
+def turned(t):
+    angle = np.linalg.norm(SPIN) * t
+    x, y, z = SPIN / np.linalg.norm(SPIN)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+
+
+def dot(a, b):
+    return np.einsum("...i,...i", a, b)
+
+
+class Body:
+    """In its own frame."""
+
+    def __init__(self, vertices, triangles):
+        self.vertices, self.triangles = vertices, triangles
+        self.corners = vertices[np.unique(triangles)]  # files of scanned meshes have places that no triangle uses
+        self.a, self.b, self.c = (vertices[triangles[:, k]] for k in range(3))
+        self.normals = np.cross(self.b - self.a, self.c - self.a)
+        self.low, self.high = np.minimum(np.minimum(self.a, self.b), self.c), np.maximum(np.maximum(self.a, self.b), self.c)
+        self.edges = np.unique(np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1), axis=0)
+
+    def contains(self, p):
+        """By the solid angle under which its triangles are seen."""
+        if (p < self.low.min(0)).any() or (p > self.high.max(0)).any():
+            return False
+        a, b, c = self.a - p, self.b - p, self.c - p
+        la, lb, lc = (np.linalg.norm(one, axis=1) for one in (a, b, c))
+        angle = np.arctan2(dot(a, np.cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+        return abs(angle.sum()) > math.pi
+
+    def distance(self, p):
+        least = np.inf
+        for start, end in ((self.a, self.b), (self.b, self.c), (self.c, self.a)):
+            way = end - start
+            share = np.clip(dot(p - start, way) / dot(way, way), 0, 1)[:, None]
+            least = min(least, np.linalg.norm(start + share * way - p, axis=1).min())
+        n = self.normals / np.linalg.norm(self.normals, axis=1)[:, None]
+        height = dot(p - self.a, n)
+        foot = p - height[:, None] * n
+        over = np.ones(len(n), bool)
+        for start, end in ((self.a, self.b), (self.b, self.c), (self.c, self.a)):
+            over &= dot(np.cross(end - start, foot - start), n) >= 0
+        return min(least, abs(height[over]).min(initial=np.inf))
+
+    def hits(self, p, q):
+        """(share, triangle, inward) of all triangles that a straight way goes through."""
+        near = np.flatnonzero((self.low <= np.maximum(p, q)).all(1) & (self.high >= np.minimum(p, q)).all(1))
+        found = []
+        for t in near:
+            before, after = dot(p - self.a[t], self.normals[t]), dot(q - self.a[t], self.normals[t])
+            if (before > 0) == (after > 0):
+                continue
+            share = before / (before - after)
+            at = p + share * (q - p)
+            if all(dot(np.cross(end - start, at - start), self.normals[t]) >= 0
+                   for start, end in ((self.a[t], self.b[t]), (self.b[t], self.c[t]), (self.c[t], self.a[t]))):
+                found.append((share, t, before > 0))
+        return sorted(found)
+
+
+def passages_of_vertices(body, thin, frames):
+    """[steps + 1, n, 3] in the body's frame."""
+    events = 0
+    for way in frames.transpose(1, 0, 2):
+        inside, entry = False, None
+        for p, q in zip(way, way[1:]):
+            for _, triangle, inward in body.hits(p, q):
+                if thin:
+                    events += 1
+                elif inward and not inside:
+                    inside, entry = True, body.normals[triangle]
+                elif not inward and inside:
+                    inside = False
+                    events += dot(entry, body.normals[triangle]) < 0
+    return events
+
+
+def roots(values, degree):
+    """In [0, 1) of a polynomial with these values at equal distances, from 0 to 1."""
+    coefficients = np.polyfit(np.linspace(0, 1, degree + 1), values, degree)
+    return [root.real for root in np.roots(coefficients) if abs(root.imag) < 1e-12 and 0 <= root.real < 1]
+
+
+def boxes_meet(low, high, others_low, others_high):
+    return np.flatnonzero((others_low <= high).all(1) & (others_high >= low).all(1))
+
+
+def passages_of_edges(body, edges, frames):
+    a, b = body.vertices[body.edges[:, 0]], body.vertices[body.edges[:, 1]]
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    count = 0
+    for was, now in zip(frames, frames[1:]):
+        for i, j in edges:
+            four = np.array([was[i], was[j], now[i], now[j]])
+            at = lambda s: (was[i] + s * (now[i] - was[i]), was[j] + s * (now[j] - was[j]))
+            for k in boxes_meet(four.min(0), four.max(0), low, high):
+                def volume(s):
+                    p, q = at(s)
+                    return dot(np.cross(q - p, b[k] - a[k]), p - a[k])
+                values = [volume(s) for s in (0, 0.5, 1)]
+                for s in roots(values, 2):
+                    p, q = at(s)
+                    shares = np.linalg.lstsq(np.array([q - p, a[k] - b[k]]).T, a[k] - p, rcond=None)[0]
+                    count += (shares >= 0).all() and (shares < 1).all()
+    return count
+
+
+def passages_of_faces(body, faces, frames):
+    count = 0
+    for was, now in zip(frames, frames[1:]):
+        for face in faces:
+            six = np.concatenate([was[face], now[face]])
+            for k in boxes_meet(six.min(0), six.max(0), body.corners, body.corners):
+                p = body.corners[k]
+                at = lambda s: was[face] + s * (now[face] - was[face]) - p
+                for s in roots([np.linalg.det(at(s)) for s in np.linspace(0, 1, 4)], 3):
+                    t = at(s)
+                    normal = np.cross(t[1] - t[0], t[2] - t[0])
+                    count += all(dot(np.cross(t[m], t[(m + 1) % 3]), normal) >= 0 for m in range(3))
+    return count
+
+
+def scene(path, scale, center, n, sides):
+    return taut.scene(f"""
+summary = "A body goes through a cloth"
+[cloth]
+grid = [{n}, {n}]
+size = [1.0, 1.0]
+origin = [-0.5, 0, 0.5]
+v = [0, 0, -1]
+mass = 0.2
+thickness = 0.003
+pins = ["top-left", "top-right", "bottom-left", "bottom-right"]
+[[collider]]
+type = "mesh"
+file = "{path}"
+scale = {scale!r}
+center = [{", ".join(repr(float(c)) for c in center)}]
+sides = "{sides}"
+velocity = [{", ".join(map(str, VELOCITY))}]
+spin = [{", ".join(map(str, SPIN))}]
+friction = 0.2
+[time]
+dt = "1/64"
+duration = 0.5
+""")
+
+
+def compare(case, path, solvers, sizes, sides="out", size=0.7):
+    vertices, triangles = read_obj(path)
+    extent = vertices.max(0) - vertices.min(0)
+    scale = float(size / extent.max())
+    center = START - scale * (vertices.max(0) + vertices.min(0)) / 2
+    body = Body(scale * vertices, triangles)
+    met = 0
+    for n in sizes:
+        setup = scene(path, scale, center, n, sides)
+        pins = {0, n - 1, n * (n - 1), n * n - 1}
+        free = [i for i in range(n * n) if i not in pins]
+        faces = setup.triangles
+        edges = {tuple(sorted(pair)) for f in faces.tolist() for pair in (f[:2], f[1:], f[::2])}
+        edges |= {tuple(sorted(link)) for link, family in zip(setup.links.tolist(), setup.families) if family == "structural"}
+        edges = sorted(pair for pair in edges if not set(pair) <= pins)
+        for solver in solvers:
+            if sides == "both" and "faces=" in solver:
+                continue
+            run = taut.simulate(setup, solver)
+            case.assertIn(run.status, ("ok", "extreme"), solver)
+            frames = np.array([(x - center - VELOCITY * t) @ turned(t) for t, x in zip(run.t, run.x)])
+            inside = [body.distance(p) for x in frames for p in x[free] if sides == "out" and body.contains(p)]
+            seen = {"penetration.mesh.peak": max(inside, default=0.0),
+                    "tunnelling.events": passages_of_vertices(body, sides == "both", frames[:, free]),
+                    "edge.passages": passages_of_edges(body, edges, frames),
+                    "face.passages": passages_of_faces(body, faces, frames)}
+            if sides == "both":
+                del seen["penetration.mesh.peak"]
+            what = f"{path.name}, {n} x {n}, {solver}"
+            print(f"  {what}: " + ", ".join(f"{key} {value:.6g} ({run.values[key]:.6g})" for key, value in seen.items()), flush=True)
+            for key, value in seen.items():
+                case.assertAlmostEqual(run.values[key], value, delta=1e-9, msg=f"{what}: {key}")
+            met += seen["tunnelling.events"] + seen["edge.passages"]
+    case.assertGreater(met, 0, "nothing passed: the comparison says nothing")
+
+
+class Bodies(module.Case):
+    def test_depths_and_passages_are_those_of_the_second_implementation(self):
+        path = self.folder / "torus.obj"
+        write_obj(path, *lumpy_torus(9, 6))
+        compare(self, path, SOLVERS, (9,))
+
+    def test_also_of_a_body_with_holes(self):
+        path = self.folder / "open.obj"
+        vertices, triangles = lumpy_torus(9, 6)
+        write_obj(path, vertices, triangles[7:])
+        with self.refused("open.obj:", "closed"):
+            scene(path, 1.0, START, 9, "out")
+        compare(self, path, SOLVERS, (9,), "both")
+
+
+def main():
+    if len(sys.argv) > 2 and sys.argv[2].endswith(".obj"):
+        said = {"sides": "out", "sizes": "8,16,32"} | dict(word.split("=") for word in sys.argv[3:])
+        path, sizes = pathlib.Path(sys.argv[2]).resolve(), [int(n) for n in said["sizes"].split(",")]
+        case = type("Given", (unittest.TestCase,), {"runTest": lambda self: compare(self, path, SOLVERS, sizes, said["sides"])})()
+        sys.exit(not unittest.TextTestRunner(verbosity=2).run(case).wasSuccessful())
+    module.main()
+
+
+if __name__ == "__main__":
+    main()
