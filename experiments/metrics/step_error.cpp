@@ -214,15 +214,20 @@ class StepErrors final : public Metric {
   /// does across that keeps no cloth back. Empty: it cannot be believed.
   std::vector<Vec3> along_the_way(const State& before, const Snapshot& m, double h) {
     std::vector<Vec3> missed = error_->missed(before, m.t - h, h, m.state.x);
+    if (missed.empty()) return missed;
+    std::vector<Vec3> way = m.state.x;
+    for (std::size_t i = 0; i < way.size(); ++i) way[i] += missed[i] - before.x[i];
+    const Vec3 common = scene_.pins.empty()
+                            ? weighted_mean(scene_, way)
+                            : way_of_pins(scene_, m.t) - way_of_pins(scene_, m.t - h);
     double along = 0, square = 0;
-    for (std::size_t i = 0; i < missed.size(); ++i) {
-      const Vec3 way = m.state.x[i] + missed[i] - before.x[i];
-      along += missed[i].dot(way);
-      square += way.squaredNorm();
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      way[i] -= common;
+      along += missed[i].dot(way[i]);
+      square += way[i].squaredNorm();
     }
-    for (std::size_t i = 0; i < missed.size(); ++i)
-      missed[i] = square > 0 ? Vec3(along / square * (m.state.x[i] + missed[i] - before.x[i]))
-                             : Vec3(Vec3::Zero());
+    const double share = square > 0 ? along / square : 0;
+    for (std::size_t i = 0; i < way.size(); ++i) missed[i] = share * way[i];
     return missed;
   }
   /// Beside the exact steps' own path at the times of the samples, in place of `by_steps`.

@@ -56,7 +56,8 @@ Law links(double overhead) {
 
 Candidate rival(double cost, double error) { return {"other", "other", {0, cost, 1e9}, error}; }
 
-constexpr const char* kXpbd = "xpbd:method=sweeps,primal=off,precision=double";
+constexpr const char* kXpbd =
+    "xpbd:method=sweeps,primal=off,order=coloured,tethers=off,precision=double";
 
 // n^2 k has to be 100. Doubling in the first column; from half of that in the second, and down;
 // from half of that in the third, where even the next doubling costs more than 1.3 times the best.
@@ -85,22 +86,27 @@ TEST(SearchPath, ACostThirtyTimesThatOfTheBestRivalIsNotPaid) {
 
 TEST(SearchPath, WithFixedSubstepsTheSweepsAloneAreSearched) {
   const Law law = [](const Setting& s) { return Outcome{s.k, 1 / s.k}; };
-  EXPECT_EQ(way("xpbd:method=sweeps,primal=off,precision=double,substeps=4", within(0.11), law),
-            "4/1 4/2 4/4 4/8 4/16 4/32 4/64 4/12 4/10 4/9")
+  EXPECT_EQ(
+      way("xpbd:method=sweeps,primal=off,order=coloured,tethers=off,precision=double,substeps=4",
+          within(0.11), law),
+      "4/1 4/2 4/4 4/8 4/16 4/32 4/64 4/12 4/10 4/9")
       << "two columns without progress end it";
 }
 
 TEST(SearchPath, WithFixedSweepsTheSubstepsAreSearched) {
   const Law law = [](const Setting& s) { return Outcome{s.n, 1 / s.n}; };
   const std::string way_to_52 = "1/1 2/1 4/1 8/1 16/1 32/1 64/1 48/1 56/1 52/1";
-  EXPECT_EQ(way("xpbd:method=sweeps,primal=off,iterations=1,precision=double", within(0.02), law),
-            way_to_52);
+  EXPECT_EQ(
+      way("xpbd:method=sweeps,primal=off,order=coloured,tethers=off,iterations=1,precision=double",
+          within(0.02), law),
+      way_to_52);
   // Explosions below 48 have no error, and say nothing of whether more substeps help.
   const Law explosive = [](const Setting& s) {
     return Outcome{s.n, s.n < 48 ? std::nan("") : 1 / s.n};
   };
   EXPECT_EQ(
-      way("xpbd:method=sweeps,primal=off,iterations=1,precision=double", within(0.02), explosive),
+      way("xpbd:method=sweeps,primal=off,order=coloured,tethers=off,iterations=1,precision=double",
+          within(0.02), explosive),
       way_to_52);
 }
 
@@ -116,10 +122,11 @@ TEST(SearchPath, AFloorEndsAColumnAndTwoColumnsASearch) {
 TEST(SearchPath, ABudgetIsFilledColumnByColumn) {
   EXPECT_EQ(way(kXpbd, budget(30), links(0.5)), "1/1 19/1 1/2 11/2 1/4 6/4");
   const auto one_column = [](const std::function<double(double)>& cost) {
-    return way("xpbd:method=sweeps,primal=off,precision=double,iterations=1", budget(30),
-               [&](const Setting& s) {
-                 return Outcome{cost(s.n), 1 / s.n};
-               });
+    return way(
+        "xpbd:method=sweeps,primal=off,order=coloured,tethers=off,precision=double,iterations=1",
+        budget(30), [&](const Setting& s) {
+          return Outcome{cost(s.n), 1 / s.n};
+        });
   };
   EXPECT_EQ(one_column([](double n) { return n + n * n / 10; }), "1/1 26/1 8/1 16/1");
   EXPECT_EQ(one_column([](double n) { return 2 + n; }), "1/1 9/1 23/1")
@@ -130,9 +137,10 @@ TEST(SearchPath, ABudgetIsFilledColumnByColumn) {
 
 /// Float costs n and errs by 1/n; double `cost` and `error` times as much.
 std::string way_with_double(const Target& target, double cost, double error) {
-  return way("xpbd:method=sweeps,primal=off,iterations=1", target, [=](const Setting& s) {
-    return Outcome{s.n * (s.in_double ? cost : 1), (s.in_double ? error : 1) / s.n};
-  });
+  return way("xpbd:method=sweeps,primal=off,order=coloured,tethers=off,iterations=1", target,
+             [=](const Setting& s) {
+               return Outcome{s.n * (s.in_double ? cost : 1), (s.in_double ? error : 1) / s.n};
+             });
 }
 
 TEST(SearchPath, AnAlternativeGetsAsManySubstepsAsItNeeds) {
