@@ -130,7 +130,8 @@ TAUT_TRUTH(hook, 7, 12,
           s.damping = 2;
           s.thickness = 0.002;
           s.stiffness = {1e4, 1e4, 1e4};
-          if (solver.starts_with("jakobsen") || solver.starts_with("avbd")) s.stiffness = kRigid;
+          if (const std::string name = solver_name(solver); name == "jakobsen" || name == "avbd")
+            s.stiffness = kRigid;
           s.colliders = {{rod, {}, 2}};
           const std::string text = with(solver, "faces=" + faces);
           if (n == 0 && !can_run(findings, text, s)) break;
@@ -156,7 +157,7 @@ TAUT_TRUTH(ridge, 7, 13,
       Scene s = thread(4, kSpacing, 0.02, 0);
       s.damping = 2;
       s.stiffness = {1e4, 1e4, 1e4};
-      if (solver.starts_with("jakobsen")) s.stiffness = kRigid;
+      if (solver_name(solver) == "jakobsen") s.stiffness = kRigid;
       s.colliders = {{MeshBody{.mesh = prism(roof, 1)}, {}, 2}};
       const std::string text = with(solver, "faces=" + faces);
       if (!can_run(findings, text, s)) continue;
