@@ -20,6 +20,9 @@ using Eigen::Matrix3d;
 
 /// a of rigid links, of the matrix' mean diagonal.
 constexpr double kSoftnessOfRigid = 1e-9;
+/// The same for what contact takes rigid links for: as stiff as they are in the matrix it would be
+/// all that rounding leaves of it.
+constexpr double kSoftnessInContact = 1e-3;
 /// Of a step's slope, that the energy has to fall by; and how often a step is halved, at most.
 constexpr double kFalls = 1e-4;
 constexpr int kMostHalvings = 40;
@@ -141,7 +144,10 @@ class GlobalLinks final : public Pass<Real> {
     std::vector<double> elastic(w_.size(), 0.0);  // N/m
     for (std::size_t j = 0; j < links_.size(); ++j)
       for (const std::size_t v : {springs_[j].a, springs_[j].b})
-        elastic[v] += 1 / (links_[j].softness * h * h);
+        elastic[v] += 1 /
+                      (std::isinf(springs_[j].stiffness) ? kSoftnessInContact * mean_diagonal_
+                                                         : links_[j].softness) /
+                      (h * h);
     contacts_.begin(t, h);
     contacts_.set_stiffness(p, elastic, h);
     contacts_.predict_new(p, h);

@@ -223,6 +223,25 @@ TEST(GlobalXpbd, LiesOnABallWhereItHasTo) {
   EXPECT_LT(off(kGlobal + "primal=on,iterations=20"), 1e-6);
 }
 
+/// Contact a thousand million times as stiff as inertia left the links' matrix without a factor.
+TEST(GlobalXpbd, LaysRigidClothOnABall) {
+  Scene scene = hanging_sheet(9, 9, {true, true, false});
+  scene.pins.clear();
+  for (Vec3& x : scene.start.x) x = {x.x() - 0.5, 0.36, x.y() + 0.5};
+  scene.thickness = 0.005;
+  scene.colliders = {Collider{Ball{Vec3::Zero(), 0.3}, {}, 0.5}};
+  const State end =
+      simulate(scene, "xpbd:method=global,primal=on,iterations=30,precision=double", 48);
+  double nearest = 1;
+  for (const Vec3& x : end.x) nearest = std::min(nearest, x.norm());
+  EXPECT_NEAR(nearest, 0.305, 1e-4);
+  double longest = 0;
+  for (const Link& l : scene.links)
+    longest = std::max(longest,
+                       std::abs((end.x[to_index(l.b)] - end.x[to_index(l.a)]).norm() / l.rest - 1));
+  EXPECT_LT(longest, 0.02);
+}
+
 /// Compressed links push their ends apart along directions that turn: what that does to a sheet
 /// with much of it slack is a status, not a silent result.
 TEST(GlobalXpbd, SaysThatASlackSheetBlowsUp) {
