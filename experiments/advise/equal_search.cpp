@@ -138,7 +138,7 @@ class SolverSearch {
     if (nearest)
       return "at best " + number_text(tried_[*nearest].error, unit_of_value(metric_)) + " (" +
              parse_solver(tried_[*nearest].setting).brief() + ")" + time;
-    return (tried_.empty() ? "nothing was tried" : tried_.back().failure) + time;
+    return (tried_.empty() ? "nothing was tried" : tried_.front().failure) + time;
   }
 
   std::string scene_;
