@@ -326,7 +326,7 @@ TEST(StepErrorMetric, TakesNoRoundingForAWayThatIsMissed) {
   }
   EXPECT_TRUE(std::isnan(share("ball", "jakobsen:iterations=1,substeps=224")));
   // of a finer sheet rounding in contact is far more than that of its places
-  const Case fine = make_case({"ball", {"time.duration=0.6"}, "jakobsen"});
+  const Case fine = make_case({"box", {"time.duration=0.6"}, "jakobsen"});
   const Measured of = measured(*fine.scene, "jakobsen:iterations=1,substeps=224,order=coloured");
   EXPECT_TRUE(std::isnan(of.values.at("step.share")));
 }
