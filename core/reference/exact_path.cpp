@@ -4,10 +4,13 @@
 
 namespace taut::reference {
 
-std::vector<std::vector<Vec3>> exact_path(const Scene& scene, const Stiffness& stiffness,
-                                          const std::vector<int>& steps) {
-  if (scene.bending || scene.self_collision || !scene.colliders.empty() || !scene.releases.empty())
-    return {};
+bool has_exact_path(const Scene& scene) {
+  return !scene.bending && !scene.self_collision && !scene.wind && scene.colliders.empty() &&
+         scene.releases.empty();
+}
+
+std::vector<std::vector<Vec3>> exact_path(const Scene& scene, const std::vector<int>& steps) {
+  if (!has_exact_path(scene)) return {};
   std::vector<std::vector<Vec3>> places;
   State state = scene.start;
   int done = 0;
@@ -15,7 +18,7 @@ std::vector<std::vector<Vec3>> exact_path(const Scene& scene, const Stiffness& s
     for (; done < step; ++done) {
       std::vector<Vec3> ahead = state.x;
       for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += scene.dt * state.v[i];
-      const ImplicitStep exact(scene, state, done * scene.dt, stiffness);
+      const ImplicitStep exact(scene, state, done * scene.dt, scene.stiffness);
       ImplicitStep::Minimum minimum = exact.minimum(ahead);
       if (!minimum.problem.empty()) return {};
       for (std::size_t i = 0; i < state.x.size(); ++i)

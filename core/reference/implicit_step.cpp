@@ -8,6 +8,7 @@
 #include "core/model/collider.hpp"
 #include "core/model/index.hpp"
 #include "core/model/wind.hpp"
+#include "core/solver/panel_factor.hpp"
 
 namespace taut::reference {
 
@@ -144,8 +145,10 @@ struct ImplicitStep::Multiplied {
   std::vector<Eigen::Index> column;
   Eigen::Index size = 0;
   Matrix basis = {};  ///< of the vertices in those that have no relation; empty: unity
-  Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< its pattern is that of the links, x by x
+  Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< with relations
   bool analysed = false;
+  PanelFactor panels = {};             ///< without, where it is several times faster
+  std::vector<std::size_t> rank = {};  ///< of each vertex that moves, in the order of elimination
   /// Of vertex i at collider k, [i][k]: the forces that shift its part of the energy [N].
   struct Touch {
     double push = 0, bound = 0;
@@ -309,14 +312,9 @@ struct ImplicitStep::Multiplied {
     });
     return reduced() ? Vector(basis.transpose() * g) : g;
   }
-  Matrix hessian(const Points& x, bool clamped) const {
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](Eigen::Index row, Eigen::Index col, const Eigen::Matrix3d& m) {
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c)
-          if (row + r >= col + c)
-            entries.emplace_back(static_cast<int>(row) + r, static_cast<int>(col) + c, m(r, c));
-    };
+  /// The Hessian: add(row, column, block) of three rows and columns, in its lower triangle.
+  template <class Add>
+  void each_block(const Points& x, bool clamped, const Add& add) const {
     for (std::size_t i = 0; i < x.size(); ++i)
       if (column[i] >= 0) add(column[i], column[i], step.inertia_[i] * Eigen::Matrix3d::Identity());
     for (std::size_t j = 0; j < stiffness.size(); ++j) {
@@ -336,18 +334,62 @@ struct ImplicitStep::Multiplied {
     each_held(x, [&](std::size_t i, std::size_t, const Held& now) {
       if (now.push > 0) add(column[i], column[i], now.hessian);
     });
-    Matrix h(size, size);
-    h.setFromTriplets(entries.begin(), entries.end());
-    return h;
   }
-  /// Whether it is positive definite.
+  /// Whether the Hessian is positive definite.
   bool factor(const Points& x, bool clamped) {
-    Matrix h = hessian(x, clamped);
-    if (reduced())
-      h = Matrix(basis.transpose() * Matrix(h.selfadjointView<Eigen::Lower>()) * basis);
+    return reduced() ? factor_reduced(x, clamped) : factor_panels(x, clamped);
+  }
+  bool factor_reduced(const Points& x, bool clamped) {
+    std::vector<Eigen::Triplet<double>> entries;
+    each_block(x, clamped, [&](Eigen::Index row, Eigen::Index col, const Eigen::Matrix3d& m) {
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          if (row + r >= col + c)
+            entries.emplace_back(static_cast<int>(row) + r, static_cast<int>(col) + c, m(r, c));
+    });
+    Matrix lower(size, size);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    const Matrix h(basis.transpose() * Matrix(lower.selfadjointView<Eigen::Lower>()) * basis);
     if (!std::exchange(analysed, true)) ldlt.analyzePattern(h);
     ldlt.factorize(h);
     return ldlt.info() == Eigen::Success && ldlt.vectorD().minCoeff() > 0;
+  }
+  bool factor_panels(const Points& x, bool clamped) {
+    if (rank.empty()) analyse_panels();
+    panels.clear();
+    each_block(x, clamped, [&](Eigen::Index row, Eigen::Index col, const Eigen::Matrix3d& m) {
+      const std::size_t a = rank[static_cast<std::size_t>(row / 3)],
+                        b = rank[static_cast<std::size_t>(col / 3)];
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < (a == b ? r + 1 : 3); ++c)
+          *panels.at(std::max(a, b), std::min(a, b), r, c) +=
+              a >= b ? m(static_cast<int>(r), static_cast<int>(c))
+                     : m(static_cast<int>(c), static_cast<int>(r));
+    });
+    return panels.factor();
+  }
+  void analyse_panels() {
+    std::vector<PanelFactor::Pair> pairs;
+    for (const Member& l : step.links_)
+      if (column[l.a] >= 0 && column[l.b] >= 0)
+        pairs.push_back({static_cast<int>(column[l.a] / 3), static_cast<int>(column[l.b] / 3)});
+    rank.resize(static_cast<std::size_t>(size / 3));
+    panels = PanelFactor(rank.size(), pairs, 3, widest());
+    for (std::size_t k = 0; k < rank.size(); ++k) rank[to_index(panels.order()[k])] = k;
+  }
+  /// The inverse of what was factored, times -g.
+  Vector newton_step(const Vector& g) const {
+    if (reduced()) return ldlt.solve(-g);
+    std::vector<double> rows(static_cast<std::size_t>(size));
+    for (std::size_t k = 0; k < rank.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        rows[3 * rank[k] + c] = -g[static_cast<Eigen::Index>(3 * k + c)];
+    panels.solve_one(rows.data());
+    Vector p(size);
+    for (std::size_t k = 0; k < rank.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        p[static_cast<Eigen::Index>(3 * k + c)] = rows[3 * rank[k] + c];
+    return p;
   }
   Points moved(Points x, const Vector& step_of_own, double share) const {
     const Vector p = reduced() ? Vector(basis * step_of_own) : step_of_own;
@@ -361,8 +403,8 @@ struct ImplicitStep::Multiplied {
     for (int k = 0; k < 100; ++k) {
       const Vector g = gradient(x);
       if (g.norm() < enough || size == 0) break;
-      if (!factor(x, false)) factor(x, true);
-      const Vector p = ldlt.solve(-g);
+      if (!factor(x, false) && !factor(x, true)) break;
+      const Vector p = newton_step(g);
       const double before = energy(x), slope = g.dot(p);
       double share = 1;
       Points next = moved(x, p, share);
@@ -416,8 +458,10 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   Points x = start;
   for (std::size_t i = 0; i < x.size(); ++i)
     if (inertia_[i] == 0) x[i] = y_[i];
-  double heaviest = 0;
+  double heaviest = 0, stiffest = 0;
   for (const double m : inertia_) heaviest = std::max(heaviest, m);
+  for (const Member& l : links_)
+    if (std::isfinite(l.stiffness)) stiffest = std::max(stiffest, l.stiffness);
   double hardness = kHardness * heaviest;
   Multiplied problem(*this, hardness);
   x = problem.related(std::move(x));
@@ -428,7 +472,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   double contact = 0;  // m, by which it is not yet settled
   for (int round = 0; round < rounds; ++round) {
     const Points last = x;
-    x = problem.minimise(std::move(x), 1e-10 + kRounding * hardness);
+    x = problem.minimise(std::move(x), 1e-10 + kRounding * (hardness + 10 * stiffest));
     if (round > 0) found.moved = distance(x, last);
     contact = problem.update_contact(x);
     if (!rigid_ && contact < kTouching) break;

@@ -5,7 +5,7 @@
 
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/timing/hardly_moves.hpp"
+#include "experiments/timing/way.hpp"
 
 namespace taut {
 

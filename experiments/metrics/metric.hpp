@@ -65,16 +65,14 @@ enum class Role {
   contact_error,    ///< distance from a law of contact: over sweeps and time steps
 };
 
-/// Cloth that goes less than this share of the dynamic reference's way is not compared by strain:
-/// links keep their lengths where nothing moves.
+/// Cloth that goes less than this share of its way is not compared by strain: links keep their
+/// lengths where nothing moves.
 inline constexpr double kLeastMotion = 0.5;
-/// Where there is no such reference, less than this of its way by what its steps miss: that counts
-/// some of it twice, for a velocity that is lost early is missed by later steps, too. Of twelve
-/// settings on `swing` none that is below it goes half of the way (results/benchmarks).
-inline constexpr double kLeastByStepsAlone = 0.25;
-/// The value that says so.
-inline constexpr std::string_view kShareBySteps = "step.share";
+/// Whose way where there is no dynamic reference: that of exact steps, else by what steps miss.
+inline constexpr std::string_view kShareOfWay = "way.share", kShareBySteps = "step.share";
 
+/// RMS strain at the moment of a run at which it is largest: what the last second hides.
+inline constexpr std::string_view kRmsStretchPeak = "stretch.rms.peak";
 /// Distance from the dynamic reference over the way: 1 of a cloth that stands still.
 inline constexpr std::string_view kMotionError = "motion.error";
 /// RMS strain that the rounding of a file of positions makes. No metric returns it: a case that

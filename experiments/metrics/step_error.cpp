@@ -6,6 +6,7 @@
 
 #include "core/reference/exact_path.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/metrics/own_way.hpp"
 
 namespace taut {
 
@@ -17,49 +18,12 @@ constexpr int kEvery = 16, kMostSamples = 8;
 constexpr std::size_t kMostVertices = 2500;
 /// Of the steps judged, those that must be believed.
 constexpr double kEnough = 0.5;
-/// Of sqrt(L/g), L the scene's extent: in it a cloth shows whether it moves, half a second where a
-/// square metre hangs; steps of it where there is no gravity. In how many of its steps that is
-/// looked at; of L, what the cloth has to move at least.
-constexpr double kFirst = 1.3, kLeastWay = 0.05;
+/// Of the scene's extent, what the cloth has to move at least.
+constexpr double kLeastWay = 0.05;
 /// Of the way that a cloth would have gone, what rounding may seem to miss at most.
 constexpr double kMostRounding = 0.1;
-constexpr int kFirstWithoutGravity = 32, kFirstSamples = 8;
-/// Of L, what the cloth moves at least on the exact steps' own path; N/m, of links there at most:
-/// stiffer ones go the same way and take Newton's method ten times as long.
-constexpr double kLeastExactWay = 0.01, kMostStiffness = 1e3;
-
-/// Steps in which a cloth shows whether it moves.
-int first_steps(const Scene& scene) {
-  const double g = scene.gravity.norm();
-  const double steps =
-      g > 0 ? kFirst * std::sqrt(extent(scene) / g) / scene.dt : kFirstWithoutGravity;
-  return static_cast<int>(std::lround(std::min<double>(steps, scene.steps)));
-}
-
-/// The way [m] of the pins in the mean until time t, which is none of the cloth's own.
-Vec3 way_of_pins(const Scene& scene, double t) {
-  Vec3 sum = Vec3::Zero();
-  for (const int pin : scene.pins)
-    sum += pin_position(scene, pin, t) - scene.start.x[static_cast<std::size_t>(pin)];
-  return sum / static_cast<double>(scene.pins.size());
-}
-
-Vec3 weighted_mean(const Scene& scene, const std::vector<Vec3>& all) {
-  Vec3 sum = Vec3::Zero();
-  double mass = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    sum += scene.mesh.mass[i] * all[i];
-    mass += scene.mesh.mass[i];
-  }
-  return sum / mass;
-}
-
-/// Takes from the ways [m] of all vertices until time t what a cloth does that keeps its shape: the
-/// way of its pins, or without any its fall, which no solver of links can miss.
-void keep_own_way(const Scene& scene, double t, std::vector<Vec3>& ways) {
-  const Vec3 common = scene.pins.empty() ? weighted_mean(scene, ways) : way_of_pins(scene, t);
-  for (Vec3& way : ways) way -= common;
-}
+/// In how many of the first steps that is looked at.
+constexpr int kFirstSamples = 8;
 
 /// The rounding of a place over the place, RMS of what is uniform in half a unit in the last place
 /// to either side: of what was computed in single precision all coordinates are floats.
@@ -110,11 +74,9 @@ class StepErrors final : public Metric {
            "way; none if it would hardly have moved, at most 5 % of its size, or farther than "
            "twice "
            "a fall, or if rounding is above a tenth of the way: l, each step missing |x|/sqrt(3) "
-           "2^-24 of coordinates that are all floats, else 2^-53. Below 25 %, without contact and "
-           "bending, where l may be what links would have held back: the sum of w.e over that of "
-           "|e|^2 at eight times, e the way of exact steps from the scene's start (links of at "
-           "most "
-           "1e3 N/m), none if that is less than 1 % of its size. 0 of a cloth that stands still",
+           "2^-24 of coordinates that are all floats, else 2^-53; where exact steps lead is known "
+           "and "
+           "way.share says it. 0 of a cloth that stands still",
        .window = Window::none,
        .title = "share of the way, by what its steps miss"},
       {"step.error.believed", kSignedShare,
@@ -127,7 +89,7 @@ class StepErrors final : public Metric {
       : scene_(scene),
         stages_(stages(scene)),
         every_(std::max(kEvery, (scene.steps + kMostSamples - 1) / kMostSamples)),
-        first_(first_steps(scene)),
+        first_(reference::has_exact_path(scene) ? 0 : first_steps(scene)),
         first_every_(std::max(1, first_ / kFirstSamples)),
         lost_(scene.start.x.size(), Vec3::Zero()),
         rounded_(scene.start.x.size(), 0.0) {}
@@ -155,10 +117,6 @@ class StepErrors final : public Metric {
     const bool known = m.step > 0 && step_before_ == (substeps > 1 ? m.step : m.step - 1);
     if (known && samples(m.step)) judge(m);
     if (known && samples_first(m.step)) add_missed(m);
-    if (samples_first(m.step)) {
-      sampled_.push_back(m.step);
-      places_.push_back(m.state.x);
-    }
     if (m.step == first_) end_ = m.state.x;
     if (substeps == 1 && (samples(m.step + 1) || samples_first(m.step + 1))) observe_within(m);
   }
@@ -230,34 +188,6 @@ class StepErrors final : public Metric {
     for (std::size_t i = 0; i < way.size(); ++i) missed[i] = share * way[i];
     return missed;
   }
-  /// Beside the exact steps' own path at the times of the samples, in place of `by_steps`.
-  double share_of_path(double by_steps) const {
-    Stiffness stiffness = declared_.stiffness;
-    for (double& k : stiffness) k = std::min(k, kMostStiffness);
-    const std::vector<std::vector<Vec3>> exact = reference::exact_path(scene_, stiffness, sampled_);
-    if (exact.empty()) return by_steps;
-    const std::vector<std::size_t> free = free_vertices(scene_);
-    double along = 0, square = 0, farthest2 = 0;
-    for (std::size_t k = 0; k < exact.size(); ++k) {
-      const std::vector<Vec3> way = own_way(places_[k], sampled_[k]);
-      const std::vector<Vec3> full = own_way(exact[k], sampled_[k]);
-      double here = 0;
-      for (const std::size_t i : free) {
-        along += way[i].dot(full[i]);
-        here += full[i].squaredNorm();
-      }
-      square += here;
-      farthest2 = std::max(farthest2, here / static_cast<double>(free.size()));
-    }
-    const bool moves = std::sqrt(farthest2) >= kLeastExactWay * extent(scene_);
-    return moves ? along / square : Summary::kNone;
-  }
-  /// From the start to these places after so many steps [m], without what keeps the cloth's shape.
-  std::vector<Vec3> own_way(std::vector<Vec3> places, int steps) const {
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] -= scene_.start.x[i];
-    keep_own_way(scene_, steps * scene_.dt, places);
-    return places;
-  }
   double way_share() const {
     if (end_.empty() || first_believed_ < kEnough * first_count_ || first_believed_ == 0)
       return Summary::kNone;
@@ -280,8 +210,7 @@ class StepErrors final : public Metric {
     const bool known = rounding <= kMostRounding * kMostRounding * square;
     const bool moves = rms >= kLeastWay * extent(scene_) && rms <= farthest(scene_, seconds);
     if (!known || !moves) return Summary::kNone;
-    const double share = along / square;
-    return share < kLeastByStepsAlone ? share_of_path(share) : share;
+    return along / square;
   }
   void judge(const Snapshot& m) {
     const double h = substep();
@@ -296,15 +225,13 @@ class StepErrors final : public Metric {
   const Scene& scene_;  ///< of the run, which outlives its metrics
   std::vector<Scene> stages_;
   std::size_t stage_ = 0;
-  int every_, first_, first_every_;  ///< steps
+  int every_, first_, first_every_;  ///< steps; first_ 0: way.share says how far the cloth goes
   DeclaredStep declared_{.none = "no step is declared"};
   std::optional<reference::StepError> error_;  ///< none: no value
   State before_;
   int step_before_ = -1;
-  std::vector<Vec3> lost_, end_;           ///< m; the places after the first steps
-  std::vector<int> sampled_;               ///< of the first steps
-  std::vector<std::vector<Vec3>> places_;  ///< m, after these
-  std::vector<double> rounded_;            ///< m, what of lost_ may be rounding
+  std::vector<Vec3> lost_, end_;  ///< m; the places after the first steps
+  std::vector<double> rounded_;   ///< m, what of lost_ may be rounding
   double first_count_ = 0, first_believed_ = 0;
   int count_ = 0;
   double believed_ = 0, sum_ = 0, peak_ = 0;  ///< steps, m, m

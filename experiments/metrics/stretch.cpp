@@ -53,6 +53,7 @@ struct Group {
     magnitudes.clear();
   }
   double rms() const { return std::sqrt(square.mean()); }
+  double rms_peak() const { return std::sqrt(square.peak()); }
 };
 
 /// The links that have a strain which a solver can change: no seams, nor those between two pins.
@@ -95,6 +96,15 @@ class Stretch final : public Metric {
        .unit = kErrorShare,
        .help = "largest stretch of a structural or shear link over the run",
        .window = Window::run,
+       .floor = kRounding,
+       .falls_with_sweeps = true},
+      {.name = kRmsStretchPeak,
+       .unit = kErrorShare,
+       .help =
+           "strain of the structural and shear links, RMS over links, at that moment of the run "
+           "at which it is largest",
+       .window = Window::run,
+       .title = "largest RMS stretch of the run",
        .floor = kRounding,
        .falls_with_sweeps = true},
       {"compression.max", kErrorShare, "largest shortening of those links in the last second",
@@ -140,8 +150,9 @@ class Stretch final : public Metric {
 
   std::vector<double> finish() override {
     const Group& s = in_plane_;
-    std::vector<double> values{s.rms(),          s.tension.max(),    s.p95.mean(),
-                               s.tension.peak(), s.shortening.max(), s.shortening.peak()};
+    std::vector<double> values{
+        s.rms(),      s.tension.max(),    s.p95.mean(),       s.tension.peak(),
+        s.rms_peak(), s.shortening.max(), s.shortening.peak()};
     for (const Group& f : families_)
       values.insert(values.end(), {f.rms(), f.tension.max(), f.p95.mean(), f.shortening.max()});
     return values;
@@ -155,7 +166,7 @@ class Stretch final : public Metric {
     const auto max = [](const Strain& s) { return s.count > 0 ? s.tension : none; };
     const Strain all = in_plane(strains);
     std::vector<double> values{
-        rms(all), max(all), none, none, all.count > 0 ? all.shortening : none, none};
+        rms(all), max(all), none, none, none, all.count > 0 ? all.shortening : none, none};
     for (const Strain& s : strains) values.insert(values.end(), {rms(s), max(s), none, none});
     return values;
   }

@@ -16,8 +16,8 @@
 #include "experiments/results/database.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/timing/hardly_moves.hpp"
 #include "experiments/timing/timing.hpp"
+#include "experiments/timing/way.hpp"
 
 namespace taut {
 
@@ -144,8 +144,8 @@ std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
   for (const BenchedCase& c : cases) {
     std::string failure = c.timing.failure;
     if (failure.empty() && !c.stable()) failure = describe(c.record.status);
-    const std::string still = failure.empty() && of_strain ? hardly_moves(c.record) : "";
-    if (failure.empty()) failure = still;
+    const std::string off = failure.empty() && of_strain ? hardly_moves(c.record) : "";
+    if (failure.empty()) failure = off;
     const bool refused = failure.empty() && !c.not_accepted.empty();
     if (refused) failure = c.not_accepted;
     all.push_back({.solver = c.record.solver,
@@ -153,7 +153,7 @@ std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
                    .cost = c.cost(),
                    .error = std::abs(c.record.value(metric)),
                    .failure = failure,
-                   .hardly_moves = !still.empty(),
+                   .hardly_moves = !off.empty(),
                    .not_accepted = refused});
   }
   return all;

@@ -3,7 +3,7 @@
 # In the bare system (tests/support/bare_debian.sh) stands this tree with BUILD, under an overlay:
 # it is configured anew with what the root has, and compiled anew where a file differs that the root has, or has not.
 # Usage: bare_root.sh BUILD [--whole]
-#   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call other programs.
+#   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call programs which nothing else here needs.
 # Ends with 77, not run, where no such system can be made; says why.
 set -euo pipefail
 home=$(cd "$(dirname "$0")/../.." && pwd)
@@ -11,7 +11,7 @@ build=$(readlink -f "$1")
 if [[ ${2:-} == --whole ]]; then study= tests=()
 else
   study=regression
-  tests=(-R '^(browser|cluster.container|documents|external_test|format|install_test|launcher_test|layers$|pictures_test|python\.|VideoTest|Plots)')
+  tests=(-R '^(browser|cluster.container|documents|format|launcher_test|layers$|pictures_test|python\.(runs|scores|documents|environments)|VideoTest|Plots)')
 fi
 . "$home/tests/support/bare_debian.sh"
 mkdir -p "$scratch/changed" "$scratch/work" "$root$home"
@@ -47,4 +47,7 @@ unshare --mount --pid --fork --kill-child bash -euc '
   in_root "$home/taut" run $study --out /tmp/runs
   [[ -z $study ]] || in_root "$home/taut" report $study --out /tmp/runs
   in_root "$home/taut" test "$@"
+  # of 90 s of external programs the one that needs a language of its own
+  [[ -z $study ]] ||
+    in_root python3 "$home/tests/external/external_test.py" "$build" Everywhere.test_a_solver_written_from_the_document_runs_beside_bullet
 ' bare_root "${tests[@]}" || { status=$?; [[ $status != 77 ]] || not_here "nothing can be mounted"; exit "$status"; }

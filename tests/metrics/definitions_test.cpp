@@ -158,6 +158,7 @@ TEST(Definitions, Stretch) {
       continue;
     }
     r.expect("stretch.peak", r.peak(longest));
+    r.expect("stretch.rms.peak", std::sqrt(r.peak(square)));
     r.expect("compression.max", r.max(shortest));
     r.expect("compression.peak", r.peak(shortest));
     r.expect_now("compression.max", shortest);

@@ -143,6 +143,7 @@ TEST(Stretch, MeansAreOverTheLastSecondAndPeaksOverTheRun) {
     return state;
   });
   EXPECT_NEAR(v.at("stretch.peak"), 0.2, 1e-12);
+  EXPECT_NEAR(v.at("stretch.rms.peak"), 0.2, 1e-12);
   EXPECT_NEAR(v.at("stretch.max"), 0.03, 1e-12);
   EXPECT_NEAR(v.at("stretch.rms"), std::sqrt((0.0001 + 0.0009) / 2), 1e-12);
 }

@@ -10,7 +10,7 @@
 #include "experiments/report/questions/links.hpp"
 #include "experiments/report/questions/winners.hpp"
 #include "experiments/study/study.hpp"
-#include "experiments/timing/hardly_moves.hpp"
+#include "experiments/timing/way.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::questions_test {
@@ -235,9 +235,16 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   cases[2].record.values["motion.share"] = std::nan("");
   EXPECT_EQ(hardly_moves(cases[2].record),
             "hardly moves: 10\u00A0% of the way, by what its steps miss");
-  EXPECT_TRUE(is_judged_by_steps(cases[2].record));
+  EXPECT_EQ(way_gone(cases[2].record).by, WayGone::By::missed);
+  cases[2].record.values["way.share"] = 0.4;
+  EXPECT_EQ(hardly_moves(cases[2].record), "hardly moves: 40\u00A0% of the way of exact steps");
+  cases[2].record.values["way.share"] = 0.6;
+  EXPECT_EQ(hardly_moves(cases[2].record), "");
+  cases[2].record.values.erase("way.share");
   EXPECT_EQ(made.answer().table("price").rows[0][3].text(), "not reached");
-  cases[2].record.values["step.share"] = 0.3;
+  cases[2].record.values["step.share"] = 0.49;
+  EXPECT_EQ(made.answer().table("price").rows[0][3].text(), "not reached");
+  cases[2].record.values["step.share"] = 0.51;
   EXPECT_EQ(made.answer().table("price").rows[0][3].note, "8 × 1");
 }
 
@@ -455,7 +462,7 @@ TEST(Winners, HaveTheirRangeInASentence) {
   const WinnerRow row = one.map().rows.at(0);
   EXPECT_EQ(row.cells[0].next->links, "1000 N/m");
   EXPECT_EQ(row.cells[0].cheapest[0].links, "");
-  EXPECT_FALSE(row.motion_judged);
+  EXPECT_EQ(row.way, WayGone::By::nothing);
   EXPECT_EQ(line_of(row, 2),
             "hang at 1\u00A0%: Jakobsen 1 × 1, double: 1.1\u00A0ms a frame; 9.0 (9.0 to 9.0) times "
             "cheaper than Projective Dynamics");
@@ -477,8 +484,8 @@ struct Stiffened {
 TEST(FailureMap, SaysTheFirstThatHoldsAndTheNumbersBehindIt) {
   Stiffened made;
   const double none = std::nan("");
-  made.add("1e3", "jakobsen", 0.24, 0.004, 1);
-  made.add("1e6", "jakobsen", 0.26, 0.004, 1);
+  made.add("1e3", "jakobsen", 0.49, 0.004, 1);
+  made.add("1e6", "jakobsen", 0.51, 0.004, 1);
   made.add("1e3", "xpbd", 0.91, 0.004, 0.03);
   made.add("1e6", "xpbd", 0.1, 0.006, 0.01);
   made.add("1e3", "bullet", none, 0.004, 0.01);
@@ -498,7 +505,7 @@ TEST(FailureMap, SaysTheFirstThatHoldsAndTheNumbersBehindIt) {
   EXPECT_EQ(table.rows[3][2].text(), "cannot: no balls");
   EXPECT_EQ(table.rows[3][2].state, Cell::State::refused);
   EXPECT_TRUE(table.rows[3][1].empty()) << "was not run";
-  EXPECT_EQ(table.rows[0][1].note, "24\u00A0% of the way, strain 0.40\u00A0%, energy 1 m g L");
+  EXPECT_EQ(table.rows[0][1].note, "49\u00A0% of the way, strain 0.40\u00A0%, energy 1 m g L");
   EXPECT_EQ(table.rows[2][1].note, "strain 0.40\u00A0%, energy 0.010 m g L")
       << "its way is not known";
 }

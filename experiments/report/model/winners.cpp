@@ -1,5 +1,6 @@
 #include "experiments/report/questions/winners.hpp"
 
+#include <cmath>
 #include <iterator>
 
 #include "experiments/report/model/parts.hpp"
@@ -13,6 +14,7 @@ Json json_of(const Contender& one) {
       {"solver", one.solver}, {"setting", one.setting}, {"arithmetic", one.arithmetic.brief()},
       {"cost", one.cost},     {"error", one.error},     {"case", one.key}};
   add_if(json, "links", one.links);
+  if (std::isfinite(one.largest)) json["largest"] = one.largest;
   if (one.bound) json["at_most"] = true;
   return json;
 }
@@ -51,10 +53,7 @@ Json json_of_winners(const ReportInput& input, CaseList& list) {
             {"frame", kFrame},
             {"certainty", certainty_text(map.noise)}};
   for (const WinnerRow& row : map.rows) {
-    Json one{{"scene", row.scene},
-             {"title", row.title},
-             {"motion_judged", row.motion_judged},
-             {"judged_by_steps", !row.motion_judged && row.judged_by_steps}};
+    Json one{{"scene", row.scene}, {"title", row.title}, {"way", to_string(row.way)}};
     for (const WinnerCell& cell : row.cells) one["cells"].push_back(json_of(cell));
     json["rows"].push_back(std::move(one));
   }

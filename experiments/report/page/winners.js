@@ -21,24 +21,26 @@ const sentences = () => (model.winners?.sentences ?? []).map((parts) => el('p', 
 const frameCost = {unit: 'ms', scale: 1e3 * (model.winners?.frame ?? 1)};
 const plainArithmetic = (text) => text.replace(/ \(\w+\)/g, '');
 
-/** A setting that reaches the error: who, over whom by how much, at what cost, at which setting, in which arithmetic, of which links. */
-function contender(one, over) {
+/** A setting that reaches the error: who, over whom by how much, at what cost, at which setting, in which arithmetic, of which links,
+ *  and its largest error of the whole run, if that is above `level`. */
+function contender(one, over, level) {
   const cost = (one.at_most ? '≤ ' : '') + shown(one.cost[1], frameCost, 2);
   return el('div', {className: 'contender'}, named(one.solver), over,
     el('div', {className: 'price'}, caseLink(one.case, cost), ' ', explained(one.setting)),
-    explained([one.arithmetic, one.links && `springs of ${one.links}`].filter(Boolean).join(', '), {className: 'how'}));
+    explained([one.arithmetic, one.links && `springs of ${one.links}`].filter(Boolean).join(', '), {className: 'how'}),
+    one.largest > level && el('small', {className: 'how'}, `up to ${shown(one.largest, metric(model.winners.metric), 2)} at some moment`));
 }
 
 /** A cell; on a phone, where the columns stand below each other, it says which error it is of. */
 function winnerCell(cell, level) {
-  const node = (props, ...content) => el('td', {...props, 'data-level': level}, el('div', {}, content));
+  const node = (props, ...content) => el('td', {...props, 'data-level': shown(level, metric(model.winners.metric), 2)}, el('div', {}, content));
   if (!cell.cheapest) return node({className: 'none'}, '–', el('small', {}, ' ', cell.why));
   const {cheapest, next, times} = cell, passed = cell.passed_over ?? [];
   const over = cheapest.length === 1 && (next ? el('div', {className: 'over', title:
     `${shown(next.cost[1], frameCost, 2)} by ${solverOf(next.solver).title}, ${next.setting}: ` +
     `${number(times[0])} to ${number(times[2])} times as much`}, el('b', {}, `${number(times[1], 2)}×`),
     ` cheaper than ${short(solverOf(next.solver).title, 24)}`) : el('div', {className: 'over'}, 'no other reaches it'));
-  return node({}, cheapest.map((one) => contender(one, over)),
+  return node({}, cheapest.map((one) => contender(one, over, level)),
     cheapest.length > 1 && el('small', {}, 'noise cannot tell them apart'),
     passed.length > 0 && el('small', {className: 'passed', title: passed.map(({solver, why}) => `${solverOf(solver).title}: ${why}`).join('\n')},
       `not counted: ${passed.map(({solver}) => solverOf(solver).title).join(', ')}`));
@@ -48,10 +50,10 @@ function winnerCell(cell, level) {
 function winnersCard() {
   const {rows, levels, certainty} = model.winners, error = metric(model.winners.metric);
   const titles = (some) => rows.filter(some).map((row) => row.title).join(', ');
-  const bySteps = titles((row) => row.judged_by_steps), unjudged = titles((row) => !row.motion_judged && !row.judged_by_steps);
+  const missed = titles((row) => row.way === 'missed'), unjudged = titles((row) => row.way === 'nothing');
   const line = (row) => {
     const node = el('tr', {}, el('th', {scope: 'row'}, scenes.has(row.scene) ? choice({scene: row.scene, at: 'scenes'}, {}, row.title) : row.title,
-      !row.motion_judged && el('small', {}, row.judged_by_steps ? 'motion judged by its steps' : 'motion not judged')), row.cells.map((cell, i) => winnerCell(cell, shown(levels[i], error, 2))));
+      row.way !== 'reference' && el('small', {}, {'exact steps': 'way of exact steps', missed: 'way by what steps miss', nothing: 'way not judged'}[row.way])), row.cells.map((cell, i) => winnerCell(cell, levels[i])));
     state.watch(() => node.classList.toggle('chosen', chosenScene() === row.scene));
     return node;
   };
@@ -60,9 +62,11 @@ function winnersCard() {
     scrolling('The cheapest solver of each error on each scene', el('tr', {}, el('th', {scope: 'col'}, 'scene'),
       levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))), rows.map(line)),
     note('Each cell: the solver, how many times cheaper it is than the next solver, CPU time of a frame of 1/60\u00A0s, setting, arithmetic, and the stiffness of links that are not rigid. ',
-      'Nothing counts that fails, passes through a body or sinks into it by more than 0.1\u00A0% of the cloth\u2019s diagonal, goes less than half of its way, or is off its way by more than a quarter of it',
-      unjudged && ` (on ${unjudged} there is no reference in motion: not judged, and cloth that lags keeps its links there)`, '. ',
-      bySteps && `On ${bySteps} there is no reference in motion either: cloth counts for nothing that goes less than a quarter of its own way (a fall as a whole is none) by what its steps miss of the exact step, the same bound for all; solvers that declare no step (Bullet\u2019s) and contact that does not settle are not judged there. `,
+      'Nothing counts that fails, passes through a body or sinks into it by more than 0.1\u00A0% of the cloth\u2019s diagonal, or goes less than half of its way: ',
+      'that of the scene\u2019s reference in motion, off which it is by a quarter at most; without one and without contact, that of exact steps of implicit Euler. ',
+      missed && `On ${missed} only what its own steps miss of exact ones is known: solvers that declare no step (Bullet\u2019s) and contact that does not settle are not judged there. `,
+      unjudged && `On ${unjudged} nothing tells, or nothing moves: cloth that lags keeps its links there. `,
+      'The error is that of the last second; a setting that has more of it at some moment of the run says how much. ',
       'Only settings that were timed compete: a rival whose next one just misses the error is out. ', certainty));
 }
 

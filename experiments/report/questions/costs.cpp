@@ -10,8 +10,8 @@
 #include "experiments/report/questions/links.hpp"
 #include "experiments/report/questions/rows.hpp"
 #include "experiments/system/distinct.hpp"
-#include "experiments/timing/hardly_moves.hpp"
 #include "experiments/timing/recommendation.hpp"
+#include "experiments/timing/way.hpp"
 
 namespace taut::report {
 

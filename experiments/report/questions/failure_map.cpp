@@ -40,8 +40,11 @@ std::string row_of(const Record& r) {
 const char* verdict(const Record& r) {
   const auto value = [&](std::string_view name) { return r.value(std::string(name)); };
   if (value("stretch.rms") > kStrained) return "strains";  // its share says nothing
-  if (value(kShareBySteps) < kLeastByStepsAlone) return "freezes";
-  if (value(kShareBySteps) < kLate) return "late";
+  const WayGone gone = way_gone(r);
+  if (gone.by != WayGone::By::nothing) {
+    if (gone.share < kLeastMotion) return "freezes";
+    if (gone.share < kLate) return "late";
+  }
   if (value("energy.peak") > kGained) return "gains energy";
   return "right";
 }
@@ -53,7 +56,8 @@ std::string numbers(const Record& r) {
     const double value = r.value(std::string(name));
     if (std::isfinite(value)) all.push_back(before + quantity(name).text(value) + after);
   };
-  add(kShareBySteps, "", " of the way");
+  if (const WayGone gone = way_gone(r); gone.by != WayGone::By::nothing)
+    all.push_back(shown(kSignedShare, gone.share) + " of the way");
   add("stretch.rms", "strain ", "");
   add("energy.peak", "energy ", " m g L");
   add("cpu.per_second", "", " a simulated second");
@@ -74,15 +78,17 @@ Cell cell_of(const Record& r, CaseList* list) {
 }  // namespace
 
 Table failure_map(const Records& records, const std::vector<Record>& timed, CaseList* list) {
-  Table table{kFailureMap,
-              "Who is right on soft, stiff, taut and slack cloth: who freezes, who strains",
-              {Column("solver")},
-              {},
-              "strains: RMS stretch above " + shown(kShare, kStrained, 1) +
-                  "; freezes: less than " + shown(kShare, kLeastByStepsAlone, 2) +
-                  " of the way, by what steps miss; late: less than " + shown(kShare, kLate, 2) +
-                  "; gains energy: above " + shown(kShare, kGained, 1) +
-                  " of m g L more than at the start; else right. The first of these that holds."};
+  Table table{
+      kFailureMap,
+      "Who is right on soft, stiff, taut and slack cloth: who freezes, who strains",
+      {Column("solver")},
+      {},
+      "strains: RMS stretch above " + shown(kShare, kStrained, 1) + "; freezes: less than " +
+          shown(kShare, kLeastMotion, 2) +
+          " of the way (of a reference in motion, else of exact steps, else by what steps miss); "
+          "late: less than " +
+          shown(kShare, kLate, 2) + "; gains energy: above " + shown(kShare, kGained, 1) +
+          " of m g L more than at the start; else right. The first of these that holds."};
   Records here;
   for (const Record* r : records) {
     if (stiffness_of(*r).empty()) continue;

@@ -16,7 +16,7 @@ inline constexpr const char* kFailureMap = "failure_map";
 ///
 ///     its status   where the case did not complete: exploded, extreme, cannot
 ///     strains      RMS stretch above 0.5 %
-///     freezes      it goes less than a quarter of its way, by what its steps miss (step.share)
+///     freezes      it goes less than half of its way, way_gone (experiments/timing/way.hpp)
 ///     late         less than nine tenths
 ///     gains energy energy.peak is above 2 % of m g L: of cloth that hardly strains, motion
 ///     right        none of these

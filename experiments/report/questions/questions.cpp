@@ -9,7 +9,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/questions/costs.hpp"
 #include "experiments/report/questions/rows.hpp"
-#include "experiments/timing/hardly_moves.hpp"
+#include "experiments/timing/way.hpp"
 
 namespace taut::report {
 

@@ -11,7 +11,6 @@
 #include "experiments/report/questions/costs.hpp"
 #include "experiments/report/questions/links.hpp"
 #include "experiments/system/distinct.hpp"
-#include "experiments/timing/hardly_moves.hpp"
 
 namespace taut::report {
 
@@ -33,14 +32,9 @@ class SceneWinners {
 
   WinnerRow row() {
     WinnerRow row{bench_.cases.empty() ? bench_.scene : bench_.cases.front().record.scene,
-                  bench_.scene,
-                  {},
-                  {},
-                  {}};
-    for (const BenchedCase& c : bench_.cases) {
-      row.motion_judged = row.motion_judged || is_motion_judged(c.record);
-      row.judged_by_steps = row.judged_by_steps || is_judged_by_steps(c.record);
-    }
+                  bench_.scene};
+    for (const BenchedCase& c : bench_.cases)
+      if (const WayGone::By by = way_gone(c.record).by; by != WayGone::By::nothing) row.way = by;
     for (const double level : kErrorLevels) row.cells.push_back(cell(level));
     return row;
   }
@@ -54,6 +48,7 @@ class SceneWinners {
             links_text(r),
             candidates_[at].cost,
             candidates_[at].error,
+            r.value(std::string(kRmsStretchPeak)),
             list_.key(r),
             is_upper_bound(bench_, candidates_, at)};
   }

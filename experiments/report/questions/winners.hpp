@@ -8,6 +8,7 @@
 #include "experiments/report/input.hpp"
 #include "experiments/report/questions/case_list.hpp"
 #include "experiments/report/questions/links.hpp"
+#include "experiments/timing/way.hpp"
 
 namespace taut::report {
 
@@ -19,6 +20,7 @@ struct Contender {
   std::string links;  ///< stiffness of its structural links, if they are not rigid: "1000 N/m"
   Interval cost;      ///< CPU s per simulated s
   double error = 0;
+  double largest = 0;  ///< error at the moment of the run at which it is largest; NaN: unknown
   std::string key;     ///< of its case, short
   bool bound = false;  ///< no cheaper setting of the solver was tried: its cost is at most this
 };
@@ -38,9 +40,8 @@ struct WinnerCell {
 
 struct WinnerRow {
   std::string scene, title;
-  bool motion_judged = false;     ///< against a reference in motion
-  bool judged_by_steps = false;   ///< else by what steps miss, where a solver declares its step
-  std::vector<WinnerCell> cells;  ///< of each of kErrorLevels
+  WayGone::By way = WayGone::By::nothing;  ///< by what it is known who goes its way
+  std::vector<WinnerCell> cells;           ///< of each of kErrorLevels
 };
 
 /// A piece of a sentence: what a number leads to.
