@@ -356,7 +356,9 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
     const Slice slice = hold(records_along(input, scene, x, y), held, held == "dt" ? 1.0 / 64 : 16);
     try {
       Chart chart = make_chart(kind, slice.records, x, y, x);
-      chart.id = scene + "-" + id, chart.scene = scene, chart.caption = caption;
+      chart.id = scene + "-" + id;
+      chart.scene = scene;
+      chart.caption = caption;
       chart.title =
           capitalised(chart.y.title) + " over " + (x == "dt" ? "the time step" : chart.x.title);
       add_floor(chart);
@@ -419,7 +421,8 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 
 Chart cost_chart(const SceneBench& scene, const Records& records) {
   Chart chart = make_chart("cost", records, "cpu.per_second", kErrorMetric, "setting");
-  chart.id = slug(scene.scene) + "-cost", chart.scene = scene.scene;
+  chart.id = slug(scene.scene) + "-cost";
+  chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption = "Down and left is better.";
   chart.front = true;
