@@ -36,7 +36,7 @@ std::string draw(const Answer& answer, const Options& options) {
                               .x = report::kSweeps,
                               .y = step_value(options.kind),
                               .title = answer.subject,
-                              .file = slug("converge-" + step.scene() + "-" + options.kind)};
+                              .file = slug("converge-" + step.titled_scene() + "-" + options.kind)};
   return report::make_plot(spec, {{"", report::step_records(step, options.kind)}}, options.figures)
       .svg.string();
 }
