@@ -242,7 +242,7 @@ TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
   EXPECT_EQ(
       model["differences"]["a"].get<std::string>() + model["differences"]["b"].get<std::string>(),
       "xy");
-  EXPECT_NE(model["differences"]["matched"].get<std::string>().find("not by what is in"),
+  EXPECT_NE(model["differences"]["matched"].get<std::string>().find("not by the content"),
             std::string::npos);
   EXPECT_TRUE(model["answer"]["subject"].get<std::string>().starts_with("B alone, y."));
 }

@@ -123,9 +123,8 @@ std::string caption_of(const ValueSpec& value) {
     return "The reference is the static equilibrium of the same cloth, found without any of these "
            "solvers.";
   if (value.role == Role::step_error)
-    return "From each step's own start, without a reference in motion: cloth that is strained or "
-           "late "
-           "is far from it, in a step or in a substep where the solver has them.";
+    return "The distance is that of each step (of each substep, if the solver has them) from its "
+           "own start, without a reference in motion: cloth that is strained or late is far off.";
   if (value.role == Role::error) return capitalised(std::string(to_string(value.window))) + ".";
   return value.role == Role::vertex_depth || value.role == Role::face_depth
              ? "Peak over the whole run."
