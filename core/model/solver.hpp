@@ -43,12 +43,12 @@ class Solver {
   /// largest size of its resident set, for a solver that computes in it.
   virtual double cpu_seconds() const;       ///< NaN: cannot be measured
   virtual std::size_t peak_bytes() const;   ///< 0: cannot be measured
-  virtual std::string time_remark() const;  ///< why its time is to be doubted or is none; "": fine
+  virtual std::string time_remark() const;  ///< why its time is doubtful or missing; "": neither
   /// The end of what the solver's own program, if it has one, wrote to standard error.
   virtual std::string log() const;
 
-  /// Goes on where `before` is, a solver of the same entry and parameters for the stage before of
-  /// the same scene (stages()). By default what that one has beyond the state is forgotten.
+  /// Continues from the end of `before`, a solver of the same entry and parameters for the previous
+  /// stage of the same scene (stages()). By default it takes over the state and nothing else.
   virtual void go_on(const Solver& before);
 
   /// Calls `visit` with the time at the end of every substep inside a step, where store() returns

@@ -14,7 +14,7 @@
 
 /// The step that solvers of distance constraints share (core/solver/loop.cpp): Verlet, pins and
 /// their motions, wind, damping, contact, self-collision, tethers, substeps, threads, float and
-/// double. A solver of one's own is one file with what differs: a pass that solves the links.
+/// double. A new solver is one file with what differs: a pass that solves the links.
 ///
 ///     template <class Real>
 ///     class MyLinks final : public Pass<Real> {               // core/solver/layout/particles.hpp
@@ -53,7 +53,7 @@
 /// cost() is that of one apply(); its `projections` count where a line solves links one by one.
 namespace taut::loop {
 
-/// Of what a solver makes its passes.
+/// What a solver makes its passes of.
 struct Setup {
   const Scene& scene;
   const Params& params;

@@ -8,6 +8,8 @@
 #include "experiments/advise/expected_cost.hpp"
 #include "experiments/advise/trial.hpp"
 #include "experiments/answer/number.hpp"
+#include "experiments/require/draft.hpp"
+#include "experiments/require/effects.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/require/require.hpp"
+#include "experiments/require/answers.hpp"
 #include "experiments/results/store.hpp"
 #include "experiments/timing/study_bench.hpp"
 

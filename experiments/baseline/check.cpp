@@ -20,7 +20,7 @@ namespace taut {
 
 namespace {
 
-/// Whether the baseline was made with this program's toolchain; if not, that is said.
+/// Whether the baseline was made with this program's toolchain; if not, says so.
 bool same_toolchain(const BaselineStudy& study, const BaselineOptions& options, bool strict) {
   const std::string mine(toolchain());
   if (study.toolchain == mine) return true;
@@ -81,7 +81,8 @@ class Report {
            CheckEnd end) {
     const auto moved = std::ranges::count_if(comparison.findings, &Change::is_regression);
     const auto mismatched = std::ranges::count_if(comparison.findings, &Change::is_mismatch);
-    cases_ += comparison.cases, values_ += comparison.values;
+    cases_ += comparison.cases;
+    values_ += comparison.values;
     const char* verdict = moved                      ? "moved"
                           : mismatched               ? "does not match the study"
                           : end == CheckEnd::passed  ? "passed"

@@ -10,11 +10,11 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/run_case.hpp"
 
-/// What another program computed, as a motion of a scene's cloth: what `taut external score`, the
-/// solver `positions` and taut.score of Python say about it is found here.
+/// What another program computed, as a motion of a scene's cloth. `taut external score`, the solver
+/// `positions` and taut.score of Python all judge it here.
 namespace taut {
 
-/// Frames, and how they are meant; what is not said is inferred.
+/// Frames, and how to read them; what is not given is inferred.
 struct ComputedFrames {
   std::string name;                           ///< in messages: a file, "positions"
   std::shared_ptr<PositionReader> positions;  ///< the start first
@@ -39,11 +39,11 @@ class ComputedMotion {
   const PositionsHeader& header() const { return frames_.positions->header(); }
   /// Why it is no motion of this scene, a sentence each; empty: it is one.
   const std::vector<std::string>& misfits() const { return misfits_; }
-  double frame_dt() const { return frame_dt_; }  ///< s, said, or the scene's
+  double frame_dt() const { return frame_dt_; }  ///< [s] as given, or the scene's
   /// Positions at t = k frame_dt [m]. Precondition: no misfits.
   std::vector<Vec3> frame(int k);
   StrainFloor floor(const Scene&);
-  /// What was said, read or derived, for the record and for people.
+  /// What was given, read or derived, for the record and for people.
   ResolvedSettings settings(const Scene&);
 
  private:

@@ -269,8 +269,9 @@ DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<Pas
     if (is_pinned(scene, pin)) free_mass_[to_index(pin)] = 0;
 }
 
-void DivergenceDetector::explode(const char* reason, int step, std::size_t vertex) {
+bool DivergenceDetector::explode(const char* reason, int step, std::size_t vertex) {
   status_ = {Status::Kind::exploded, reason, step, static_cast<int>(vertex)};
+  return false;
 }
 
 void DivergenceDetector::judge_stretch(int step, const State& state) {
@@ -298,9 +299,8 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
   double energy = 0, fastest = 0;
   std::size_t fastest_vertex = 0;
   for (std::size_t i = 0; i < free_mass_.size(); ++i) {
-    if (!state.x[i].allFinite() || !state.v[i].allFinite())
-      return explode("nonfinite", step, i), false;
-    if (state.x[i].lpNorm<Eigen::Infinity>() > box) return explode("box", step, i), false;
+    if (!state.x[i].allFinite() || !state.v[i].allFinite()) return explode("nonfinite", step, i);
+    if (state.x[i].lpNorm<Eigen::Infinity>() > box) return explode("box", step, i);
     if (free_mass_[i] == 0) continue;
     const double v2 = state.v[i].squaredNorm();
     energy += free_mass_[i] * v2 / 2;
@@ -309,7 +309,7 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
       fastest_vertex = i;
     }
   }
-  if (energy > 10 * budget_.available(t)) return explode("energy", step, fastest_vertex), false;
+  if (energy > 10 * budget_.available(t)) return explode("energy", step, fastest_vertex);
   if (status_.kind != Status::Kind::extreme) judge_stretch(step, state);
   fastest = std::sqrt(fastest);
   peak_ = std::max(peak_, fastest);

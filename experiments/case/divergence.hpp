@@ -100,7 +100,8 @@ class DivergenceDetector {
   const Status& status() const { return status_; }
 
  private:
-  void explode(const char* reason, int step, std::size_t vertex);
+  /// Notes that the run exploded; returns false, which observe() then does.
+  bool explode(const char* reason, int step, std::size_t vertex);
   void judge_stretch(int step, const State&);
   const Scene& scene_;
   EnergyBudget budget_;

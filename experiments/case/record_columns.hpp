@@ -9,9 +9,10 @@
 
 #include "experiments/case/record.hpp"
 
-// The fields of a record, as scene_keys() has the keys of a scene. From the table come its JSON
-// (record_io), its row in a results file (experiments/study), `taut list record` and the tables of
-// the documents. A field more is a member of Record and its row here.
+// The fields of a record, as scene_keys() has the keys of a scene. The table makes its JSON
+// (record_io), its row in a results file (experiments/results), `taut list record` and, by
+// tests/cli/keys_test.py --write, the tables of the documents. A new field is a member of Record
+// and a row here; once a release kRecordSchema and kSchemaVersion say that there are new ones.
 
 namespace taut {
 

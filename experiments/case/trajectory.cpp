@@ -28,7 +28,7 @@ std::vector<Frame> frames_in(std::string_view bytes, int vertices) {
     read_vectors<float>(from + sizeof(double), frames[k].state.x, endian::little);
     if (!std::isfinite(frames[k].t) || (k > 0 && frames[k].t < frames[k - 1].t))
       throw InputError("frame " + std::to_string(k) +
-                       " is at no time, or at an earlier one than the frame before it");
+                       " has no time, or an earlier one than the frame before it");
   }
   return frames;
 }

@@ -252,8 +252,11 @@ int parse_and_run(int argc, char** argv) {
   refuse_empty_values(argc, argv);
   admit_solvers(argc, argv);
   const std::string first = argc == 2 ? argv[1] : "";  // for `cmake --install`
-  if (first == "--man") return std::cout << man_page(app, TAUT_VERSION), flush_output(), kPass;
-  if (first == "--bash-completion") return std::cout << bash_completion(app), flush_output(), kPass;
+  if (first == "--man" || first == "--bash-completion") {
+    std::cout << (first == "--man" ? man_page(app, TAUT_VERSION) : bash_completion(app));
+    flush_output();
+    return kPass;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

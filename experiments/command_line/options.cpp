@@ -99,6 +99,24 @@ CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+CLI::Option* add_scene(CLI::App& app, std::string& scene) {
+  return app.add_option("SCENE", scene, "Name of a shipped scene, or a path");
+}
+
+CLI::Option* add_study(CLI::App& app, std::string& study) {
+  return app.add_option("STUDY", study, "Name of a shipped study, or a path");
+}
+
+CLI::Option* add_solvers(CLI::App& app, std::vector<std::string>& solvers,
+                         const std::string& what) {
+  return app.add_option("--solver", solvers, what + "; repeat it for each")
+      ->allow_extra_args(false);
+}
+
+void add_record(CLI::App& app, bool& record) {
+  app.add_flag("--record", record, "Also keep what is found for the report");
+}
+
 void add_limits(CLI::App& app, Limits& limits) {
   app.add_option("--timeout", limits.seconds,
                  "CPU time limit of a case [s] (default: 120); wall time: five times that")
@@ -173,7 +191,7 @@ void add_format(CLI::App& app, Format& format, const char* details) {
 }
 
 CLI::Option* add_json(CLI::App& app, bool& json, const std::string& what) {
-  return app.add_flag("--json", json, what + " as JSON");
+  return app.add_flag("--json", json, "Print " + what + " as JSON");
 }
 
 Study load_study_to_plot(const std::string& name, const std::string& preset) {
@@ -252,21 +270,27 @@ void tell_remarks(const std::vector<std::string>& remarks) {
   for (const std::string& remark : remarks) progress() << remark << '\n';
 }
 
-void CaseOptions::bind(CLI::App& app) {
-  app.add_option("SCENE", scene_, "Name of a shipped scene, or a path")->required();
-  app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();
+void SceneChanges::bind(CLI::App& app) {
   app.add_option("--dt", dt_, "Time step [s], a number or a fraction such as 1/120");
   app.add_option("--duration", duration_, "Simulated time [s]");
   add_settings(app, settings_);
 }
 
-CaseSpec CaseOptions::spec() const {
-  CaseSpec spec{scene_, settings_, solver_};
-  if (!dt_.empty()) spec.overrides.push_back("time.dt=\"" + dt_ + "\"");
-  if (!duration_.empty()) spec.overrides.push_back("time.duration=\"" + duration_ + "\"");
-  refuse_same_key(spec.overrides);
-  return spec;
+std::vector<std::string> SceneChanges::settings() const {
+  std::vector<std::string> all = settings_;
+  if (!dt_.empty()) all.push_back("time.dt=\"" + dt_ + "\"");
+  if (!duration_.empty()) all.push_back("time.duration=\"" + duration_ + "\"");
+  refuse_same_key(all);
+  return all;
 }
+
+void CaseOptions::bind(CLI::App& app) {
+  add_scene(app, scene_)->required();
+  app.add_option("SOLVER", solver_, "NAME or NAME:key=value,... (taut list solvers)")->required();
+  changes_.bind(app);
+}
+
+CaseSpec CaseOptions::spec() const { return {scene_, changes_.settings(), solver_}; }
 
 Case CaseOptions::make() const { return make_case(spec()); }
 

@@ -38,6 +38,19 @@ CLI::Option* add_preset(CLI::App&, std::string& preset);
 /// Settings of a scene, as --set, once for each.
 CLI::Option* add_settings(CLI::App&, std::vector<std::string>& settings);
 
+/// SCENE, one scene by its name or its file.
+CLI::Option* add_scene(CLI::App&, std::string& scene);
+
+/// STUDY, one study by its name or its file.
+CLI::Option* add_study(CLI::App&, std::string& study);
+
+/// --solver of a verb that takes several; `what` says what each is for, and "repeat it for each"
+/// follows.
+CLI::Option* add_solvers(CLI::App&, std::vector<std::string>& solvers, const std::string& what);
+
+/// --record, which keeps what a verb finds for the report.
+void add_record(CLI::App&, bool& record);
+
 /// --timeout and --memory of a case; they stand for the defaults.
 void add_limits(CLI::App&, Limits&);
 
@@ -65,7 +78,7 @@ void add_baseline_options(CLI::App&, BaselineOptions&);
 /// --json, --csv and --markdown of an answer; --all if it has `details` that people rarely want.
 void add_format(CLI::App&, Format&, const char* details = nullptr);
 
-/// --json, which says `what` is printed instead.
+/// --json, which prints `what` instead.
 CLI::Option* add_json(CLI::App&, bool& json, const std::string& what);
 
 /// load_study(); throws InputError, too, if a figure that the study asks for cannot be drawn.
@@ -89,7 +102,20 @@ void check_solvers(const std::vector<std::string>& texts);
 /// Says on stderr what was skipped of the files of these scenes, a line each.
 void tell_remarks(const std::vector<std::string>& remarks);
 
-/// How verbs name one case: SCENE SOLVER [--dt] [--duration] [--set key=value ...].
+/// How verbs change a scene: [--dt] [--duration] [--fabric] [--set key=value ...].
+class SceneChanges {
+ public:
+  void bind(CLI::App&);
+  /// As settings of the scene. Throws InputError if two of them are of the same key.
+  std::vector<std::string> settings() const;
+  bool has_duration() const { return !duration_.empty(); }
+
+ private:
+  std::string dt_, duration_;
+  std::vector<std::string> settings_;
+};
+
+/// How verbs name one case: SCENE SOLVER and the changes to the scene.
 class CaseOptions {
  public:
   void bind(CLI::App&);
@@ -98,8 +124,8 @@ class CaseOptions {
   Case make() const;
 
  private:
-  std::string scene_, solver_, dt_, duration_;
-  std::vector<std::string> settings_;
+  std::string scene_, solver_;
+  SceneChanges changes_;
 };
 
 /// Replaces this process by the program that can run the choice (same arguments), if it is another

@@ -24,9 +24,9 @@ std::string coloured(std::string_view text, Colour);
 struct Format {
   bool json = false, markdown = false;
   std::string csv;       ///< the table; "true": the first; "": no CSV
-  bool details = false;  ///< to people all that data have
+  bool details = false;  ///< people see all that the data have
 
-  /// Whether it is for programs, who are told nothing else on standard output.
+  /// Whether it is for programs: standard output then holds nothing else.
   bool is_data() const { return json || markdown || !csv.empty(); }
 };
 

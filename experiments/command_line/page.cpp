@@ -100,7 +100,7 @@ report::ReportInput compared_folders(const PageRequest& options) {
   return input;
 }
 
-/// What other verbs found of this build; what cannot be read is said and left out.
+/// What other verbs found of this build; says and leaves out what cannot be read.
 void add_findings(report::ReportInput& input, const Store& store, const std::string& program) {
   const auto add = [&](const char* verb, auto& to, const auto& stored) {
     try {
@@ -160,7 +160,7 @@ report::ReportInput input_of(PageRequest options) {
   if (const std::size_t others = store.keys().size();
       others > 0 && std::ranges::all_of(input.studies, none))
     throw InputError(options.results + ": " + std::to_string(others) +
-                     " cases are there, but none that this build would run for " +
+                     " cases are there, but this build would run none of them for " +
                      join(options.studies, ", ") + "; taut run " + join(studies, " ", study_words) +
                      " makes them" + where_else(studies.front(), store));
   report::add_stored_maps(input, load_all(maps, options.preset), store);

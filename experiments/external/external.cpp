@@ -35,7 +35,7 @@ constexpr ParamSpec kLeading[] = {
 /// Stands for all programs where none is named.
 const SolverEntry kAny = {
     .name = "external",
-    .summary = "Any program that speaks taut-solver/2 or /1: external:cmd='python3 mine.py'",
+    .summary = "Any program that speaks taut-solver/1 to /4: external:cmd='python3 mine.py'",
     .source = "experiments/external/README.md",
     .params = kLeading,
     .make = [](const Scene&, const Params&) -> std::unique_ptr<Solver> {

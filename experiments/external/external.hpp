@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/model/solver.hpp"
 #include "experiments/external/connection.hpp"
 
 namespace taut::external {

@@ -127,7 +127,7 @@ class SpecReader {
     } else if (type == "integer" || type == "real")
       read_number(type == "integer");
     else
-      j.at("type").fail("'" + type + "' is none of integer, real, choice, text");
+      j.at("type").fail("'" + type + "' is not one of integer, real, choice, text");
   }
   const ParamSpec& spec() const { return spec_; }
 
@@ -265,7 +265,7 @@ std::unique_ptr<const Hello> read_hello(const Json& answer) {
   const std::string protocol = j.at("protocol").text();
   const auto known = std::ranges::find(kProtocols, protocol);
   if (known == std::end(kProtocols))
-    j.at("protocol").fail("'" + protocol + "' is none of " + join(kProtocols, ", "));
+    j.at("protocol").fail("'" + protocol + "' is not one of " + join(kProtocols, ", "));
   auto hello = std::make_unique<Hello>();
   hello->version_spoken = static_cast<int>(known - std::begin(kProtocols)) + 1;
   hello->name = j.at("name").text();

@@ -154,7 +154,7 @@ Checkout::Checkout(const Repository& repository, const fs::path& folder)
   make_folder(folder_.parent_path());
   lock_ = open((folder_.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0)
-    throw InputError(folder_.string() + ": another taut history works there");
+    throw InputError(folder_.string() + ": another taut history is at work there");
   std::error_code none;
   if (!git(folder_, {"rev-parse", "--git-dir"}).good) {
     fs::remove_all(folder_, none);  // half a clone of a process that was killed

@@ -32,7 +32,7 @@ struct Walk {
   /// Why a solver's program does not introduce itself, so that nobody knows which cases it would
   /// have; "": it does.
   std::function<std::string(const SolverEntry&)> silence;
-  std::function<void(const std::string&)> say;  ///< is told news for people, a line each
+  std::function<void(const std::string&)> say;  ///< gets news for people, a line each
 };
 
 struct Walked {

@@ -41,7 +41,7 @@ inline constexpr Unit kErrorCount{"1", "", 1, false, true}, kErrorShare{"1", "%"
     kErrorLength{"m", "mm", 1e3, true, true}, kErrorSpeed{"m/s", "m/s", 1, true, true},
     kErrorAcceleration{"m/s^2", "m/s\u00B2", 1, true, true};
 
-/// Of which part of a run a value speaks.
+/// The part of a run that a value describes.
 enum class Window { last_second, run, end, none };
 /// "last second", "whole run", "end of the run", "".
 constexpr std::string_view to_string(Window w) {
@@ -51,18 +51,18 @@ constexpr std::string_view to_string(Window w) {
                                   : "";
 }
 
-/// What a report makes of a value beside listing it: its charts, and its place in sentences. In
-/// this order they are shown.
+/// What a report makes of a value beside listing it: over what its charts draw it, and what
+/// sentences say of it. Reports show the roles in this order.
 enum class Role {
-  none,    ///< drawn if somebody asks for it
-  error,   ///< of what a solver is to keep: over sweeps; its mean over scenes is compared
-  motion,  ///< what a motion loses or lags behind: over sweeps; a strain alone can be deceived
-  vertex_depth,  ///< of a vertex below a surface: over sweeps and time steps; the deepest is said
-  face_depth,    ///< the same of a face
-  passages,      ///< of vertices through colliders: drawn alike; the sum over scenes is said
-  reference_error,  ///< distance from the scene's reference: over sweeps
-  step_error,       ///< distance from the exact step: over sweeps
-  contact_error,    ///< distance from a law of contact: over sweeps and time steps
+  none,    ///< drawn on demand alone
+  error,   ///< of something that a solver must keep; over sweeps; its mean over scenes is compared
+  motion,  ///< what a motion loses or lags behind; over sweeps; strain alone does not show it
+  vertex_depth,     ///< of a vertex below a surface; over sweeps and time steps; the deepest counts
+  face_depth,       ///< the same of a face
+  passages,         ///< of vertices through colliders; drawn as depths; the sum over scenes counts
+  reference_error,  ///< distance from the scene's reference; over sweeps
+  step_error,       ///< distance from the exact step; over sweeps
+  contact_error,    ///< distance from a law of contact; over sweeps and time steps
 };
 
 /// Cloth that goes less than this share of its way is not compared by strain: links keep their
@@ -75,8 +75,8 @@ inline constexpr std::string_view kShareOfWay = "way.share", kShareBySteps = "st
 inline constexpr std::string_view kRmsStretchPeak = "stretch.rms.peak";
 /// Distance from the dynamic reference over the way: 1 of a cloth that stands still.
 inline constexpr std::string_view kMotionError = "motion.error";
-/// RMS strain that the rounding of a file of positions makes. No metric returns it: a case that
-/// plays such a file says it.
+/// RMS strain that the rounding of a file of positions makes. No metric returns it; it is a
+/// resolved setting of a case that plays such a file.
 inline constexpr std::string_view kStrainFloor = "strain.floor";
 
 /// A number that a metric yields.

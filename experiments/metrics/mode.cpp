@@ -101,7 +101,8 @@ class Mode final : public Metric {
         if (!peaks.empty() && peak < kLeast * peaks[0]) break;
         peaks.push_back(peak);
       }
-      passes.push_back((static_cast<double>(n - 1) + part) * dt_), last = n;
+      passes.push_back((static_cast<double>(n - 1) + part) * dt_);
+      last = n;
     }
     if (peaks.size() < 2) return {Summary::kNone, Summary::kNone};
     const auto swings = static_cast<double>(peaks.size());  // half periods

@@ -113,11 +113,8 @@ std::vector<ParameterFrontier> stored_frontiers(const Store& store, std::string_
   return all;
 }
 
-std::vector<Answer> stored_steps(const Store& store, std::string_view program) {
-  return found(store, "converge", program, [](const Answer& answer) {
-    OneStep{answer};  // it can be drawn
-    return answer;
-  });
+std::vector<OneStep> stored_steps(const Store& store, std::string_view program) {
+  return found(store, "converge", program, [](const Answer& answer) { return OneStep(answer); });
 }
 
 std::optional<Truths> stored_truths(const Store& store, std::string_view program) {

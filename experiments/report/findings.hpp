@@ -25,6 +25,6 @@ Json stored_requirements(const Store&, std::string_view program);
 /// Of `taut frontier --all`, solver by solver.
 std::vector<ParameterFrontier> stored_frontiers(const Store&, std::string_view program);
 /// Of `taut converge`, scene by scene.
-std::vector<Answer> stored_steps(const Store&, std::string_view program);
+std::vector<OneStep> stored_steps(const Store&, std::string_view program);
 
 }  // namespace taut::report

@@ -9,6 +9,7 @@
 #include "experiments/answer/answer.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/history/history.hpp"
+#include "experiments/steps/one_step.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/timing/study_bench.hpp"
@@ -119,7 +120,7 @@ struct ReportInput {
   std::optional<Differences> differences = {};  ///< nullopt: one folder alone
   Json required = {};  ///< rows of the model's table; null: no scene was asked about
   std::vector<ParameterFrontier> frontiers = {};  ///< solver by solver, parameter by parameter
-  std::vector<Answer> steps = {};                 ///< of `taut converge`, scene by scene
+  std::vector<OneStep> steps = {};                ///< of `taut converge`, scene by scene
   std::vector<History> histories = {};            ///< of the studies, build by build
   /// Inputs that could not be understood, and why: the page leaves them out and says so.
   std::vector<std::pair<std::string, std::string>> left_out = {};

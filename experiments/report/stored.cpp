@@ -11,7 +11,7 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/questions/case_list.hpp"
 #include "experiments/report/questions/compared_solvers.hpp"
-#include "experiments/require/require.hpp"
+#include "experiments/require/answers.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {

@@ -37,7 +37,7 @@ struct StudyFigures {
 };
 
 /// Draws the first study of the input, panels by scene; of a map, whose panels are by solver, a
-/// figure for each scene. `remark` is told what a figure leaves out. Throws PlotError and
+/// figure for each scene. Calls `remark` with what a figure leaves out. Throws PlotError and
 /// FigureNotWritten.
 StudyFigures draw_figures(const std::vector<FigureRequest>&, const ReportInput&, const Store&,
                           const std::filesystem::path& folder,

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/model/text.hpp"
-#include "experiments/require/require.hpp"
+#include "experiments/require/answers.hpp"
 #include "experiments/system/read_all.hpp"
 
 namespace taut {

@@ -1,3 +1,5 @@
+#include "experiments/require/answers.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -5,8 +7,8 @@
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
-#include "experiments/require/require.hpp"
 #include "experiments/timing/statistics.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut {
 

@@ -1,9 +1,10 @@
+#include "experiments/require/draft.hpp"
+
 #include <algorithm>
 
 #include "core/io/fabrics.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
-#include "experiments/require/require.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

@@ -1,9 +1,9 @@
-// What a case has that it may not need.
+#include "experiments/require/effects.hpp"
+
 #include <algorithm>
 
 #include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
-#include "experiments/require/require.hpp"
 
 namespace taut {
 

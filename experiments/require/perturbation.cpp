@@ -1,10 +1,11 @@
+#include "experiments/require/perturbation.hpp"
 
 #include <algorithm>
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
-#include "experiments/require/require.hpp"
+#include "experiments/require/draft.hpp"
 
 namespace taut {
 

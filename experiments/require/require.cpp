@@ -9,6 +9,9 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/require/draft.hpp"
+#include "experiments/require/effects.hpp"
+#include "experiments/require/perturbation.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
@@ -310,7 +313,8 @@ class Search {
     std::vector<std::optional<Interval>*> wanted{nullptr};
     const auto ask = [&](const ModelTrial& trial, std::optional<Interval>& ratio) {
       if (!trial.done || !trial.why.empty()) return;
-      cases.push_back({trial.spec, trial.steps}), wanted.push_back(&ratio);
+      cases.push_back({trial.spec, trial.steps});
+      wanted.push_back(&ratio);
     };
     if (found_.smallest) ask(*found_.smallest, found_.time_ratio);
     for (EffectTrial& effect : found_.effects)

@@ -43,7 +43,10 @@ void read(const Database::Rows& row, int column, Status::Kind& kind) {
 template <class Value>
 void read(const Database::Rows& row, int column, Value& value) {
   read_json(row.text(column), case_columns()[static_cast<std::size_t>(column)],
-            [&](const JsonReader& j) { return read_into(j, value), true; });
+            [&](const JsonReader& j) {
+              read_into(j, value);
+              return true;
+            });
 }
 
 /// All but the values, of case_columns(). Throws InputError where a text is not what it has to be.

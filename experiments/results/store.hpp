@@ -21,7 +21,7 @@ class Database;
 struct CaseFiles {
   std::string series;  ///< kSeriesFile: values over time, as to_json(Series) has them
   std::string motion;  ///< kFramesFile
-  std::string errors;  ///< stderr.txt: what it said, of which the end is kept
+  std::string errors;  ///< stderr.txt, of which the end is kept
 };
 inline constexpr const char* kSeriesFile = "series.json";
 /// Frames (experiments/case/trajectory.hpp) of about kFrames + 1 moments, first and last included.
@@ -29,9 +29,9 @@ inline constexpr const char* kFramesFile = "frames";
 inline constexpr int kFrames = 32;
 
 /// All that a results folder holds, in one SQLite file, <root>/results.db: its tables and views are
-/// in experiments/results/schema.cpp. Several processes may write, one at a time, and wait for each
-/// other; what was committed survives the loss of power. Of a process that is killed nothing half
-/// done stays.
+/// in experiments/results/schema.cpp. Several processes may write; each waits until the other is
+/// done. What was committed survives the loss of power, and a process that is killed leaves nothing
+/// half done.
 class Store {
  public:
   /// Says what it had to do ("damaged, set aside as ..."); default: stderr.
@@ -56,9 +56,9 @@ class Store {
   bool has_frames(const std::string& key) const;
   Trajectory motion(const std::string& key) const;
 
-  /// Makes sure that results can be written. A damaged file is set aside, which is said, and a new
-  /// one begun. Results of an earlier taut are left alone, which is said. Throws InputError with
-  /// the reason, also if another host writes here through a network file system.
+  /// Makes sure that results can be written. Sets a damaged file aside, with a notice, and begins a
+  /// new one. Leaves results of an earlier taut alone, with a notice. Throws InputError with the
+  /// reason, also if another host writes here through a network file system.
   void prepare();
   /// An empty folder below $TMPDIR for a case to write into. Throws InputError.
   std::filesystem::path stage(const std::string& key);
@@ -68,7 +68,7 @@ class Store {
     same,      ///< the same result was there
     conflict,  ///< another result was there: a determinism alarm; ours is among the conflicts
   };
-  /// Keeps a record, with all that it left or not at all. A result is never replaced; a failure is.
+  /// Keeps a record with all its files, or nothing. A result is never replaced; a failure is.
   /// Throws InputError if the disk refuses.
   Commit commit(const Record&, const CaseFiles& = {});
   /// The same of a staged folder, which goes.
@@ -109,8 +109,8 @@ class Store {
   std::vector<Answer> answers(const std::string& kind, std::string_view program) const;
 
   /// Takes over the cases and sessions of another store: results before failures, nothing twice,
-  /// and what matches its digest alone, in place of what does not. Throws InputError; then nothing
-  /// of it was taken.
+  /// and only what matches its digest, which replaces what does not. Throws InputError; then
+  /// nothing was taken.
   void take(const Store& other);
 
   Database* reading() const;  ///< nullptr: there is no file yet

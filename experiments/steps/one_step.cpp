@@ -16,6 +16,7 @@ namespace taut {
 namespace {
 
 constexpr std::string_view kStep = "step.";
+constexpr const char* kDistance = "step.distance";
 
 constexpr double kGaps[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 constexpr Unit kForce{"N", "N"}, kStiffness{"N/m", "N/m"};
@@ -92,13 +93,14 @@ std::string with_settings(const std::string& scene, const std::string& settings)
   return settings.empty() ? scene : scene + ", " + settings;
 }
 
-Record record_of(const Answer& found, const Table& points, const std::vector<Cell>& row) {
+Record record_of(const std::string& scene, double dt, const Table& points,
+                 const std::vector<Cell>& row) {
   const auto number = [&](const char* column) { return points.at(row, column).number(); };
   Record r;
   const std::string solver = points.at(row, "solver").text();
   const SolverChoice choice = parse_solver(solver);
-  r.scene = found.fact("scene").text();
-  r.dt = found.fact("dt").number();
+  r.scene = scene;
+  r.dt = dt;
   r.spec = {r.scene, {}, solver};
   describe_solver(r, choice);
   r.substeps = 1;
@@ -139,14 +141,29 @@ Answer one_step_answer(const StepState& state, const std::vector<Convergence>& a
   return answer;
 }
 
-OneStep::OneStep(Answer answer) : found(std::move(answer)) {
-  const Table& points = found.table("points");
-  for (const auto& row : points.rows) records.push_back(record_of(found, points, row));
+OneStep::OneStep(const Answer& found)
+    : subject(found.subject),
+      scene(found.fact("scene").text()),
+      settings(found.fact("settings").text()) {
+  const Table &points = found.table("points"), &ends = found.table("solvers"),
+              &reached = found.table("reached");
+  for (const auto& row : points.rows)
+    records.push_back(record_of(scene, found.fact("dt").number(), points, row));
+  for (const auto& end : ends.rows) {
+    const auto number = [&](const char* column) { return ends.at(end, column).number(); };
+    StepSolver& one =
+        solvers.emplace_back(StepSolver{ends.at(end, "solver").text(), number("structural"),
+                                        number("contraction"), number("floor"), number("moved")});
+    for (const Record& r : records)
+      if (r.spec.solver == one.text) one.distances.emplace(r.sweeps, r.value(kDistance));
+    for (const auto& row : reached.rows)
+      if (reached.at(row, "solver").text() == one.text)
+        one.iterations.emplace(reached.at(row, "below").number(),
+                               static_cast<int>(reached.at(row, "iterations").number()));
+  }
 }
 
-std::string OneStep::scene() const {
-  return with_settings(found.fact("scene").text(), found.fact("settings").text());
-}
+std::string OneStep::titled_scene() const { return with_settings(scene, settings); }
 
 std::vector<std::string> step_kinds() { return {"distance", "gap", "stretch", "residual"}; }
 

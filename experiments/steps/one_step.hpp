@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,15 +33,28 @@ struct StepState {
 };
 Answer one_step_answer(const StepState&, const std::vector<Convergence>&);
 
-/// What `taut converge` found, read back from its answer with a record for each of its points, so
-/// that they are drawn as cases are: their sweeps, and the values that step_kinds() names.
+/// How the iterations of a solver end.
+struct StepSolver {
+  std::string text;                       ///< "vbd:structural=800"
+  double structural = 0;                  ///< stiffness [N/m]; NaN: rigid
+  double contraction = 0;                 ///< of the distance, by each further iteration
+  double floor = 0;                       ///< m, where another fixed point ends them; NaN: nowhere
+  double moved = 0;                       ///< m, last correction of the exact step
+  std::map<int, double> distances = {};   ///< from the exact step [m], by iterations
+  std::map<double, int> iterations = {};  ///< until the gap stays below a value, by that value
+};
+
+/// What `taut converge` found, read back from its answer.
 struct OneStep {
-  Answer found;
+  std::string subject;          ///< "one step of drape, cloth.span=0.7"
+  std::string scene, settings;  ///< its name, and what is set of it
+  std::vector<StepSolver> solvers;
+  /// One for each point, so that they are drawn as cases are: their sweeps, and the values that
+  /// step_kinds() names.
   std::vector<Record> records;
 
-  explicit OneStep(Answer);
-  /// Its scene with what is set of it, "drape, cloth.span=0.7".
-  std::string scene() const;
+  explicit OneStep(const Answer&);
+  std::string titled_scene() const;  ///< "drape, cloth.span=0.7"
 };
 
 /// What can be drawn over the iterations of a step: "distance", "gap", "stretch", "residual".

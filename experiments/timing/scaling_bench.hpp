@@ -17,7 +17,7 @@ struct ScalingOptions {
   std::optional<double> error;
   double limit = 20;  ///< s; a case that would take longer, physics, search and timing, is skipped
   int samples = 6;    ///< of each case
-  std::function<void(const std::string&)> say;  ///< is told each case that begins
+  std::function<void(const std::string&)> say;  ///< gets the name of each case that begins
 };
 
 /// Runs and times the study's cases by rising size, and keeps what it measured as a bench of cases

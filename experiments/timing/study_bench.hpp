@@ -42,11 +42,12 @@ std::optional<std::size_t> best_for(const Target&, std::span<const Candidate>,
 /// Where a search for a setting ends.
 inline constexpr int kMostSubsteps = 1024, kMostSweeps = 128;
 
-/// The errors and budgets for which a bench answers, and of what they are unless asked otherwise.
+/// The errors and budgets for which a bench answers, and the metric value that is the error unless
+/// another one is asked for.
 inline constexpr const char* kErrorMetric = "stretch.rms";
 inline constexpr double kErrorLevels[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 inline constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time within it
-/// Of CPU seconds per simulated second, as people are told: of a frame, so many a second.
+/// How people see CPU seconds per simulated second: as ms of a frame, `fps` frames a second.
 constexpr Unit frame_cost(double fps) { return {"s/s", "ms a frame", 1e3 / fps}; }
 inline constexpr Unit kFrameCost = frame_cost(1 / kFrame);
 inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  ///< s per frame
@@ -102,15 +103,14 @@ struct StudyBench {
   std::vector<Record> records() const;
 };
 
-/// Times these cases scene by scene; a scene with other settings is a scene of its own, but not one
-/// with another time step, for a cost is that of a simulated second. `options_of` is asked before
-/// each scene.
+/// Times these cases scene by scene. Other settings of a scene make another scene, except the time
+/// step: costs are those of a simulated second. Calls `options_of` before each scene.
 StudyBench bench_study(
     const std::string& name, const std::vector<Record>&,
     const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of);
 
-/// Times cases of one scene whose physics are known. Whether its scene accepts what a case does is
-/// said by mark_not_accepted().
+/// Times cases of one scene whose physics are known. mark_not_accepted() then says which of them do
+/// what their scene does not accept.
 SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, const TimingOptions&);
 
 /// Names of the solvers in a bench, in order of appearance.

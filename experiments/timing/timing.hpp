@@ -15,8 +15,8 @@
 
 namespace taut {
 
-/// What one sample says of a step, by the solver's CPU clock (Solver::cpu_seconds) and by the
-/// wall's: only Solver::step is inside the clocks.
+/// The time of a step in one sample, by the solver's CPU clock (Solver::cpu_seconds) and by the
+/// wall clock: both run during Solver::step alone.
 struct StepTime {
   double cpu = 0;   ///< s, of all threads together
   double wall = 0;  ///< s; longer than cpu / threads on a busy machine, so only for display
@@ -61,7 +61,7 @@ class TimingWorker {
   /// std::runtime_error if the worker died.
   StepTime pilot_run(int steps);
   StepTime sample(int steps);  ///< see CheckpointedRun::sample
-  /// From then on what is not answered throws TimeIsUp.
+  /// After that, a request that is not answered throws TimeIsUp.
   void give_up_at(std::chrono::steady_clock::time_point deadline) { deadline_ = deadline; }
   std::size_t peak_bytes();  ///< Solver::peak_bytes so far
   std::string remark();      ///< Solver::time_remark
@@ -99,7 +99,7 @@ struct Timing {
   std::vector<double> wall = {};  ///< the same in wall time
   std::size_t peak_bytes = 0;
   std::string failure;      ///< why it could not be timed; empty: it was
-  std::string remark = {};  ///< why its time is to be doubted; empty: it is not
+  std::string remark = {};  ///< why its time is doubtful; empty: it is not
 };
 
 /// A case to be timed, and how many steps it has (or survived).

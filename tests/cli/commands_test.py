@@ -68,7 +68,7 @@ class BadInput(CommandLine):
         self.refuse("run", self.study(scenes=["./none.toml"]), says=f"none.toml: no such scene file, seen from {self.folder}")
         self.taut("run", self.study())
         self.assertIn("before: no results folder to compare with results/runs", self.taut("report", "before", "results/runs", expect=2).err)
-        self.assertIn("results/runs: 1 cases are there, but none", self.taut("report", "--json", "--out", "results/runs", expect=2).err)
+        self.assertIn("results/runs: 1 cases are there, but this build would run none of them", self.taut("report", "--json", "--out", "results/runs", expect=2).err)
         self.assertNotIn("store", json.loads(self.taut("cluster", "merge", "nothing", "--out", "new", "--json", expect=None).out or "{}").get("facts", {}))
 
     def test_numbers(self):

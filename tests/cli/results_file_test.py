@@ -14,7 +14,7 @@ from command_line import CommandLine, main
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = (ROOT / "experiments/results/README.md").read_text()
-HOW_FAR, = re.findall("How far the studies are: `(.*)`", DOCUMENT)
+HOW_FAR, = re.findall("This counts the missing cases of each study: `(.*)`", DOCUMENT)
 
 
 class ResultsFile(CommandLine):

@@ -207,6 +207,13 @@ TEST(SceneRenderer, MaterialSpaceIsLinearBetweenTheVertices) {
   EXPECT_EQ(SceneRenderer(scene, runs, small()).material_space(0, 0, 60).width(), 0);
 }
 
+SceneRendererOptions from_above() {
+  SceneRendererOptions options = small();
+  options.view = parse_view("top");
+  options.range = 0.05;
+  return options;
+}
+
 /// The colour of a panel where this vertex is seen.
 Rgb8 seen_at(const SceneRenderer& renderer, const Image& panel, std::size_t vertex, double t) {
   const auto p = renderer.projected(0, t).at(vertex);
@@ -219,10 +226,7 @@ TEST(SceneRenderer, PinsAreDarkBallsOnTheirVerticesAndNowhereElse) {
   const auto dark = [&](const std::vector<int>& pins) {
     scene.pins = pins;
     const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
-    SceneRendererOptions options = small();
-    options.view = parse_view("top");
-    options.range = 0.05;
-    const SceneRenderer renderer(scene, runs, options);
+    const SceneRenderer renderer(scene, runs, from_above());
     const Image panel = renderer.panel(0, 0.5);
     std::vector<int> found;
     for (const int i : {20, 22, 40, 58, 60})
@@ -284,10 +288,7 @@ TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
 TEST(SceneRenderer, VerticesAreProjectedToWhereTheyAreDrawn) {
   const Scene scene = test::level_sheet(9);
   const std::vector<RecordedRun> runs{test::stretched(scene, 0)};
-  SceneRendererOptions options = small();
-  options.view = parse_view("top");
-  options.range = 0.05;
-  const SceneRenderer renderer(scene, runs, options);
+  const SceneRenderer renderer(scene, runs, from_above());
   const Image panel = renderer.panel(0, 0.5);
   const auto points = renderer.projected(0, 0.5);
   ASSERT_EQ(points.size(), scene.mesh.rest.size());

@@ -46,7 +46,7 @@ Answer found() {
 
 TEST(OneStep, ItsPointsAreCasesWithTheirIterationsAndValues) {
   const OneStep step(found());
-  EXPECT_EQ(step.scene(), "hang, cloth.span=0.7");
+  EXPECT_EQ(step.titled_scene(), "hang, cloth.span=0.7");
   ASSERT_EQ(step.records.size(), 6u);
   const Record& r = step.records[1];
   EXPECT_EQ(r.scene + " " + r.solver + " " + r.spec.solver, "hang vbd vbd:structural=800");
@@ -60,7 +60,7 @@ TEST(OneStep, ItsPointsAreCasesWithTheirIterationsAndValues) {
   EXPECT_EQ(solver_label(step, "vbd"), solver_title("vbd")) << "nothing is set";
   Answer other = found();
   other.facts[1].cell = Cell("");
-  EXPECT_EQ(OneStep(other).scene(), "hang");
+  EXPECT_EQ(OneStep(other).titled_scene(), "hang");
   EXPECT_THROW(step_value("distanse"), InputError);
 }
 
@@ -73,8 +73,9 @@ TEST(OneStep, AChartHasPositiveValuesAndWhereSolversEnd) {
   EXPECT_EQ(drawn("residual"), 2u);
   const Chart distance = step_chart(step, "distance"), gap = step_chart(step, "gap");
   EXPECT_EQ(distance.scene + " | " + distance.title, "hang | One step of hang, cloth.span=0.7");
-  EXPECT_EQ(distance.caption,
-            "On a floor, for their fixed point is another one: Jakobsen 2.0\u00A0mm.");
+  EXPECT_EQ(
+      distance.caption,
+      "These end on a floor, because their fixed point is another one: Jakobsen 2.0\u00A0mm.");
   ASSERT_TRUE(distance.floor);
   EXPECT_EQ(distance.floor->y, 3e-15) << "the largest of all";
   EXPECT_FALSE(gap.floor) << "it is a distance";
@@ -87,7 +88,7 @@ TEST(OneStep, AChartHasPositiveValuesAndWhereSolversEnd) {
 TEST(OneStep, TheTableHasForEverySolverHowFarItComes) {
   ReportInput input{
       .studies = {{"one", "?", {synthetic::record("hang", "jakobsen", 4, 0.01)}, 1, {}}}};
-  input.steps = {found()};
+  input.steps = {OneStep(found())};
   const Json model = parse_json(make_model(input));
   const Json& rows = model["tables"]["steps"]["rows"];
   const std::string scene = "hang, cloth.span=0.7", vbd = solver_title("vbd");

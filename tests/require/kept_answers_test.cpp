@@ -8,6 +8,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/require/require.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::kept_answers_test {
 namespace {

@@ -9,7 +9,9 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/answer/answer.hpp"
-#include "experiments/require/require.hpp"
+#include "experiments/require/draft.hpp"
+#include "experiments/require/effects.hpp"
+#include "experiments/require/perturbation.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::reductions_test {

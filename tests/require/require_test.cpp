@@ -12,6 +12,9 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/require/draft.hpp"
+#include "experiments/require/effects.hpp"
+#include "experiments/require/perturbation.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 

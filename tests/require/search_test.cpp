@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "experiments/case/digest.hpp"
+#include "experiments/require/perturbation.hpp"
 #include "experiments/require/require.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/damaged_results.hpp"

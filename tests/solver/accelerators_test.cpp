@@ -42,6 +42,11 @@ TEST(Tethers, GoFromEveryFreeVertexToEachGroupOfPins) {
   EXPECT_TRUE(make_tethers(scene).empty());
 }
 
+/// The strain that four sweeps leave once the cloth has come to rest.
+double settled(const Scene& scene, const char* more) {
+  return strain(scene, simulate(scene, listing("precision=double,iterations=4") + more, 600));
+}
+
 TEST(Tethers, FollowTheClothWhereTheMeshIsNoGrid) {
   Scene chain = hanging_sheet(1, 5, {true, false, false});
   chain.mesh.grid.reset();
@@ -54,10 +59,7 @@ TEST(Tethers, FollowTheClothWhereTheMeshIsNoGrid) {
 TEST(Tethers, HoldAHangingSheetAndLeaveASlackOneAlone) {
   Scene scene = hanging_sheet(12, 12);
   scene.damping = 2;
-  const auto settled = [&](const char* more) {
-    return strain(scene, simulate(scene, listing("precision=double,iterations=4") + more, 600));
-  };
-  EXPECT_LT(10 * settled(",tethers=on"), settled(""));
+  EXPECT_LT(10 * settled(scene, ",tethers=on"), settled(scene, ""));
   scene.gravity.setZero();
   for (Vec3& x : scene.start.x) x *= 0.9;
   EXPECT_EQ(simulate(scene, listing("tethers=on"), 1).x, simulate(scene, listing(), 1).x);
@@ -161,10 +163,7 @@ TEST(Hierarchy, OfAChainIsThis) {
 TEST(Hierarchy, StiffensAHangingSheetAtFewSweeps) {
   Scene scene = hanging_sheet(17, 17);
   scene.damping = 2;
-  const auto settled = [&](const char* more) {
-    return strain(scene, simulate(scene, listing("precision=double,iterations=4") + more, 600));
-  };
-  EXPECT_LT(2 * settled(",levels=6"), settled(""));
+  EXPECT_LT(2 * settled(scene, ",levels=6"), settled(scene, ""));
 }
 
 TEST(Accelerators, WorkInterleavedAsWellAsPacked) {

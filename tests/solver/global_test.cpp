@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/reference/dense.hpp"
+#include "tests/solver/both_precisions.hpp"
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
 
@@ -266,15 +267,8 @@ TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMass) {
 
 /// The factor and what it solves are in double; in float are places and what links pull with.
 TEST(GlobalSystems, FloatFollowsDouble) {
-  const Scene scene = crumpled(hanging_sheet(12, 10), 0.01);
-  for (const std::string solver : {"pd:iterations=20", "admm:iterations=20"}) {
-    const State in_double = simulate(scene, solver, 16);
-    const State in_float = simulate(scene, solver + ",precision=float", 16);
-    const double way = largest_distance(in_double.x, scene.start.x);
-    EXPECT_GT(way, 0.01) << solver;
-    EXPECT_LT(largest_distance(in_float.x, in_double.x), 3e-4 * way) << solver;
-    EXPECT_GT(largest_distance(in_float.x, in_double.x), 0) << solver;
-  }
+  for (const char* solver : {"pd:iterations=20", "admm:iterations=20"})
+    expect_float_follows_double(solver);
 }
 
 /// Springs so stiff that a factor in float would say nothing of the masses: the cloth falls still.
@@ -291,15 +285,9 @@ TEST(GlobalSystems, InFloatStiffLinksDoNotHoldUpAFall) {
   }
 }
 
-/// A link without a length pulls nowhere.
 TEST(GlobalSystems, ALinkOfNoLengthHasNoDirection) {
-  Scene scene = hanging_sheet(6, 5);
-  scene.start.x[14] = scene.start.x[15];
   for (const char* solver : {"pd:iterations=1", "admm:iterations=1", "mass-spring:substeps=1"})
-    for (const char* precision : {",precision=float", ",precision=double"}) {
-      const State state = simulate(scene, std::string(solver) + precision, 2);
-      for (const Vec3& x : state.x) EXPECT_TRUE(x.allFinite()) << solver << precision;
-    }
+    expect_link_of_no_length_is_harmless(solver);
 }
 
 }  // namespace

@@ -110,7 +110,8 @@ TEST(Relaxation, EveryOrderVisitsEveryLinkOnce) {
     std::vector<std::tuple<int, int, double>> got, want;
     for (const Link& l : links) got.push_back(key(l));
     for (const Link& l : scene.links) want.push_back(key(l));
-    std::sort(got.begin(), got.end()), std::sort(want.begin(), want.end());
+    std::sort(got.begin(), got.end());
+    std::sort(want.begin(), want.end());
     EXPECT_EQ(got, want);
   }
 }

@@ -60,6 +60,35 @@ bool same_bits(const State& a, const State& b) {
   return same(a.x, b.x) && same(a.v, b.v);
 }
 
+/// `method` computes the bits of `reference` with each of these parameters added.
+void expect_same(const Scene& scene, const std::string& method, const std::string& reference,
+                 int steps, const std::vector<std::string>& parameters) {
+  const State want = simulate(scene, reference, steps);
+  for (const std::string& more : parameters)
+    EXPECT_TRUE(same_bits(simulate(scene, method + more, steps), want)) << method << more;
+}
+
+std::vector<std::string> in_threads(const std::vector<int>& numbers) {
+  std::vector<std::string> all;
+  for (const int n : numbers) all.push_back(",threads=" + std::to_string(n));
+  return all;
+}
+
+void expect_same_in_threads(const Scene& scene, const std::string& method, int steps,
+                            const std::vector<int>& threads) {
+  expect_same(scene, method, method, steps, in_threads(threads));
+}
+
+/// Every instruction set that this machine has, and each of these numbers of threads, computes the
+/// bits of the scalar path in one thread.
+void expect_same_everywhere(const Scene& scene, const std::string& method, int steps,
+                            const std::vector<int>& threads = {}) {
+  std::vector<std::string> parameters = in_threads(threads);
+  for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
+    if (available(simd)) parameters.push_back(",simd=" + std::string(to_string(simd)));
+  expect_same(scene, method, method + ",simd=scalar", steps, parameters);
+}
+
 TEST(SameBits, ForEveryInstructionSetAndNumberOfThreads) {
   for (const Scene& scene : scenes())
     for (const char* precision : {"float", "double"})
@@ -68,14 +97,7 @@ TEST(SameBits, ForEveryInstructionSetAndNumberOfThreads) {
           const std::string method =
               std::string("jakobsen:order=coloured,substeps=2,iterations=3,precision=") +
               precision + ",projection=" + projection + ",layout=" + layout;
-          const State want = simulate(scene, method + ",simd=scalar", 5);
-          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
-            if (available(simd)) {
-              const std::string with = method + ",simd=" + std::string(to_string(simd));
-              EXPECT_TRUE(same_bits(simulate(scene, with, 5), want)) << with;
-            }
-          EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=2", 5), want)) << method;
-          EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=5", 5), want)) << method;
+          expect_same_everywhere(scene, method, 5, {2, 5});
         }
 }
 
@@ -86,13 +108,7 @@ TEST(SameBits, OfWindEverywhere) {
       for (const char* layout : {"auto", "batches"}) {
         const std::string method =
             std::string("jakobsen:iterations=2,precision=") + precision + ",layout=" + layout;
-        const State want = simulate(scene, method + ",simd=scalar", 5);
-        for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
-          if (available(simd)) {
-            const std::string with = method + ",simd=" + std::string(to_string(simd));
-            EXPECT_TRUE(same_bits(simulate(scene, with, 5), want)) << with;
-          }
-        EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=2", 5), want)) << method;
+        expect_same_everywhere(scene, method, 5, {2});
       }
   }
 }
@@ -103,12 +119,7 @@ TEST(SameBits, OfTethersForEveryInstructionSet) {
       for (const char* layout : {"auto", "batches"}) {
         const std::string method = std::string("jakobsen:iterations=2,tethers=on,layout=") +
                                    layout + ",projection=" + projection;
-        const State want = simulate(scene, method + ",simd=scalar", 20);
-        for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
-          if (available(simd)) {
-            const std::string with = method + ",simd=" + std::string(to_string(simd));
-            EXPECT_TRUE(same_bits(simulate(scene, with, 20), want)) << with;
-          }
+        expect_same_everywhere(scene, method, 20);
       }
 }
 
@@ -156,12 +167,7 @@ TEST(SameBits, OfContactForEveryInstructionSetAndLayout) {
         const std::string method = std::string("jakobsen:substeps=1,iterations=3,contact=") +
                                    contact + ",precision=" + precision;
         for (const char* order : {",order=mesh", ",order=coloured"}) {
-          const State want = simulate(scene, method + order + ",simd=scalar", 8);
-          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
-            if (available(simd)) {
-              const std::string with = method + order + ",simd=" + std::string(to_string(simd));
-              EXPECT_TRUE(same_bits(simulate(scene, with, 8), want)) << with;
-            }
+          expect_same_everywhere(scene, method + order, 8);
         }
       }
   }
@@ -205,12 +211,7 @@ TEST(SameBits, OfVertexSweepsForEveryInstructionSet) {
         for (const char* precision : {",precision=float", ",precision=double"}) {
           const Scene scene = everything ? with_everything(plain) : plain;
           const std::string method = std::string(solver) + precision;
-          const State want = simulate(scene, method + ",simd=scalar", 3);
-          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
-            if (available(simd)) {
-              const std::string with = method + ",simd=" + std::string(to_string(simd));
-              EXPECT_TRUE(same_bits(simulate(scene, with, 3), want)) << with << everything;
-            }
+          expect_same_everywhere(scene, method, 3);
         }
 }
 
@@ -227,12 +228,7 @@ TEST(SameBits, OfForcesAndGlobalSystemsEverywhere) {
           if (no_choice && std::string_view(precision).ends_with("float")) continue;
           const Scene scene = everything ? with_everything(plain) : plain;
           const std::string method = solver + std::string(no_choice ? "" : precision);
-          const State want = simulate(scene, method + ",simd=scalar", 3);
-          for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
-            if (available(simd)) {
-              const std::string with = method + ",simd=" + std::string(to_string(simd));
-              EXPECT_TRUE(same_bits(simulate(scene, with, 3), want)) << with << everything;
-            }
+          expect_same_everywhere(scene, method, 3);
         }
 }
 
@@ -244,9 +240,7 @@ TEST(SameBits, OfForcesThatThreadsShare) {
       for (const char* precision : {",precision=float", ",precision=double"}) {
         const Scene scene = everything ? with_everything(plain) : plain;
         const std::string method = std::string(solver) + precision;
-        const State want = simulate(scene, method, 2);
-        for (const char* threads : {",threads=2", ",threads=3"})
-          EXPECT_TRUE(same_bits(simulate(scene, method + threads, 2), want)) << method << threads;
+        expect_same_in_threads(scene, method, 2, {2, 3});
       }
   }
 }
@@ -259,9 +253,7 @@ TEST(SameBits, OfVertexSweepsThatThreadsShare) {
       for (const char* precision : {",precision=float", ",precision=double"}) {
         const Scene scene = everything ? with_everything(plain) : plain;
         const std::string method = std::string(solver) + precision;
-        const State want = simulate(scene, method, 2);
-        for (const char* threads : {",threads=2", ",threads=3"})
-          EXPECT_TRUE(same_bits(simulate(scene, method + threads, 2), want)) << method << threads;
+        expect_same_in_threads(scene, method, 2, {2, 3});
       }
   }
 }
@@ -466,13 +458,7 @@ TEST(SameBits, OfCompliantLinksEverywhere) {
         std::string method = "xpbd:structural=1e-4,bend=0.01,substeps=2,iterations=3,precision=";
         method += precision;
         method += more;
-        const State want = simulate(scene, method + ",simd=scalar", 4);
-        for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512})
-          if (available(simd)) {
-            const std::string with = method + ",simd=" + std::string(to_string(simd));
-            EXPECT_TRUE(same_bits(simulate(scene, with, 4), want)) << with;
-          }
-        EXPECT_TRUE(same_bits(simulate(scene, method + ",threads=3", 4), want)) << method;
+        expect_same_everywhere(scene, method, 4, {3});
       }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/reference/dense.hpp"
+#include "tests/solver/both_precisions.hpp"
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
 
@@ -153,26 +154,13 @@ TEST(AugmentedVertexBlockDescent, ItsLinksBecomeRigid) {
 }
 
 TEST(VertexBlocks, FloatFollowsDouble) {
-  const Scene scene = crumpled(hanging_sheet(12, 10), 0.01);
-  for (const std::string solver : {"vbd:iterations=20", "avbd:iterations=20"}) {
-    const State in_double = simulate(scene, solver, 16);
-    const State in_float = simulate(scene, solver + ",precision=float", 16);
-    const double way = largest_distance(in_double.x, scene.start.x);
-    EXPECT_GT(way, 0.01) << solver;
-    EXPECT_LT(largest_distance(in_float.x, in_double.x), 3e-4 * way) << solver;
-    EXPECT_GT(largest_distance(in_float.x, in_double.x), 0) << solver;
-  }
+  for (const char* solver : {"vbd:iterations=20", "avbd:iterations=20"})
+    expect_float_follows_double(solver);
 }
 
-/// A link without a length pulls nowhere: its ends are moved by the others, alike.
 TEST(VertexBlocks, ALinkOfNoLengthHasNoDirection) {
-  Scene scene = hanging_sheet(6, 5);
-  scene.start.x[14] = scene.start.x[15];
   for (const char* solver : {"vbd:iterations=1", "avbd:iterations=1"})
-    for (const char* precision : {",precision=float", ",precision=double"}) {
-      const State state = simulate(scene, std::string(solver) + precision, 2);
-      for (const Vec3& x : state.x) EXPECT_TRUE(x.allFinite()) << solver << precision;
-    }
+    expect_link_of_no_length_is_harmless(solver);
 }
 
 TEST(VertexBlocks, AnyNumberOfThreadsComputesTheSameBits) {

@@ -99,7 +99,8 @@ std::vector<Vec3> nearest_placement(const Scene& scene, const std::vector<Vec3>&
       const Link& l = scene.links[static_cast<std::size_t>(j)];
       const Vec3 d = x[to_index(l.b)] - x[to_index(l.a)];
       c[j] = (d.squaredNorm() - l.rest * l.rest) / 2;
-      jacobian.row(j).segment<3>(3 * l.b) = d, jacobian.row(j).segment<3>(3 * l.a) = -d;
+      jacobian.row(j).segment<3>(3 * l.b) = d;
+      jacobian.row(j).segment<3>(3 * l.a) = -d;
       for (int axis = 0; axis < 3; ++axis)
         for (const auto& [p, q, sign] : {std::tuple(l.a, l.a, 1.0), std::tuple(l.b, l.b, 1.0),
                                          std::tuple(l.a, l.b, -1.0), std::tuple(l.b, l.a, -1.0)})
@@ -119,8 +120,10 @@ std::vector<Vec3> nearest_placement(const Scene& scene, const std::vector<Vec3>&
     for (std::size_t i = 0; i < x.size(); ++i)
       if (w[i] == 0) {
         const auto at = 3 * static_cast<Eigen::Index>(i);
-        h.middleRows<3>(at).setZero(), h.middleCols<3>(at).setZero();
-        h.diagonal().segment<3>(at).setOnes(), g.segment<3>(at).setZero();
+        h.middleRows<3>(at).setZero();
+        h.middleCols<3>(at).setZero();
+        h.diagonal().segment<3>(at).setOnes();
+        g.segment<3>(at).setZero();
         jacobian.middleCols<3>(at).setZero();
       }
     Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n + rows, n + rows);

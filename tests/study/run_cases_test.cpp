@@ -72,8 +72,11 @@ class Runs : public testing::Test {
 TEST_F(Runs, TheLongestGoesFirstAndNothingRunsTwice) {
   std::vector<Case> cases;
   double work = 0;
-  for (const int n : {2, 9, 1, 5})
-    cases.push_back(scripted_case(n)), give(cases.back()), work += estimated_work(cases.back());
+  for (const int n : {2, 9, 1, 5}) {
+    cases.push_back(scripted_case(n));
+    give(cases.back());
+    work += estimated_work(cases.back());
+  }
   const CampaignProgress done = run(cases);
   EXPECT_EQ(order(), (std::vector<int>{9, 5, 2, 1}));
   EXPECT_EQ(
@@ -88,7 +91,8 @@ TEST_F(Runs, TheLongestGoesFirstAndNothingRunsTwice) {
   EXPECT_EQ(ended_.size(), 4u);
   EXPECT_EQ(ended_.front(), cases[1].id);
   EXPECT_TRUE(nothing_staged());
-  cases.push_back(scripted_case(3)), give(cases.back(), Kind::timeout);
+  cases.push_back(scripted_case(3));
+  give(cases.back(), Kind::timeout);
   const CampaignProgress more = run(cases);
   EXPECT_EQ(order(), (std::vector<int>{9, 5, 2, 1, 3}));
   EXPECT_EQ((std::tuple{more.cases, more.ran, more.reused}),
@@ -155,7 +159,8 @@ TEST_F(Runs, AShardIsItsPartAlone) {
   std::vector<Case> cases;
   std::set<int> expected;
   for (int n = 1; n <= 6; ++n) {
-    cases.push_back(scripted_case(n)), give(cases.back());
+    cases.push_back(scripted_case(n));
+    give(cases.back());
     if (Shard{2, 2}.has(cases.back().key)) expected.insert(n);
   }
   const CampaignProgress part = run(cases, {.jobs = 3, .shard = {2, 2}});
@@ -172,7 +177,10 @@ TEST_F(Runs, NoMoreAtATimeThanAreAllowed) {
       "done\nsleep 0.1\nls $folder/on.* | wc -l >>$folder/counts\nrm $folder/on.$$\n" +
       kCopy);
   std::vector<Case> cases;
-  for (int n = 1; n <= 4; ++n) cases.push_back(scripted_case(n)), give(cases.back());
+  for (int n = 1; n <= 4; ++n) {
+    cases.push_back(scripted_case(n));
+    give(cases.back());
+  }
   EXPECT_EQ(run(cases, {.jobs = 2}).ran, 4u);
   std::istringstream counts(scripted_.told("counts"));
   int most = 0;

@@ -38,6 +38,17 @@ inline Scene crumpled(Scene scene, double amount) {
   return scene;
 }
 
+/// A level sheet at this height [m] that is about to meet what is below.
+inline Scene sheet_above(double y) {
+  Scene scene = hanging_sheet(13, 13);
+  for (std::vector<Vec3>* places : {&scene.mesh.rest, &scene.start.x})
+    for (Vec3& x : *places) x = Vec3(x.x() - 0.47, y, x.y() + 0.52);
+  for (Vec3& v : scene.start.v) v = {0.1, -0.4, 0.05};
+  scene.pins.clear();
+  scene.thickness = 0.005;
+  return scene;
+}
+
 /// "jakobsen:..." as Jakobsen lists it, unless `params` ("iterations=8,order=reversed") say
 /// otherwise: one substep, the links in the scene's own order.
 inline std::string listing(const std::string& params = "") {

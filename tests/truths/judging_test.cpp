@@ -244,8 +244,10 @@ TEST(Settle, TakesTenCalmLooksInARow) {
 TEST(Fit, TheErrorIsThatOfTheLinesSlope) {
   const auto error = [](const std::vector<double>& log_y) {
     std::vector<double> x, y;
-    for (std::size_t i = 0; i < log_y.size(); ++i)
-      x.push_back(std::exp(static_cast<double>(i))), y.push_back(std::exp(log_y[i]));
+    for (std::size_t i = 0; i < log_y.size(); ++i) {
+      x.push_back(std::exp(static_cast<double>(i)));
+      y.push_back(std::exp(log_y[i]));
+    }
     return fit_power_law(x, y);
   };
   const PowerLaw four = error({0, 1, 0, 1});  // slope 1/5, rest 0.8, of which two degrees are free

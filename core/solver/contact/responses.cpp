@@ -5,6 +5,7 @@
 
 #include "core/model/index.hpp"
 #include "core/solver/contact/face_contact.hpp"
+#include "core/solver/contact/octree.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/contact/self_collision.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <vector>
 
 #include "core/model/adjacency.hpp"
@@ -14,7 +13,7 @@
 namespace taut {
 
 /// The cloth against itself: every particle is a ball, no two may overlap. Pairs come from a
-/// uniform grid and are projected in every sweep. Three things the octree below lacks:
+/// uniform grid and are projected in every sweep. Three things that OctreePass (octree.hpp) lacks:
 ///
 /// - pairs are found wherever they are, not only within one cell;
 /// - two particles keep at most their distance at rest, so that a radius larger than the spacing
@@ -435,91 +434,6 @@ class SelfCollidePass final : public Pass<Real> {
   Real skin_ = 0;             ///< m
   Points<Real> searched_at_;  ///< m
   bool searched_ = false;
-};
-
-/// Self-collision as published in Vasilovici, Cloth Simulation Report, section 4.2.4: an octree
-/// over the particles, each of them a ball; particles of one leaf are compared all with all. What
-/// happens to two that overlap is not said, but "the cloth will simply not move" if the radius is
-/// large: so both stay where they were before the step. The published failures follow: particles on
-/// two sides of a split never meet ("when opposite corners want to collide it will not work"), and
-/// a cloth whose particles overlap at rest hangs in the air. Pushing them apart instead is worse:
-/// with a radius of 0.6 of the spacing `jam` then flies 2.4 m away, with twice the spacing it
-/// explodes.
-template <class Real>
-class OctreePass final : public Pass<Real> {
- public:
-  explicit OctreePass(const Scene& scene)
-      : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
-        order_(scene.start.x.size()) {}
-
-  void begin(Particles<Real>& p, double, double) override {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    leaves_.clear();
-    Eigen::AlignedBox<Real, 3> box;
-    for (std::size_t i = 0; i < p.size(); ++i) box.extend(p.x[i]);
-    split(p, 0, order_.size(), box, 0);
-  }
-
-  void apply(Particles<Real>& p, double, double) override {
-    for (const auto& [begin, end] : leaves_)
-      for (std::size_t k = begin; k < end; ++k)
-        for (std::size_t m = k + 1; m < end; ++m) put_back(p, order_[k], order_[m]);
-  }
-
-  std::vector<PassCost> cost() const override {
-    return {{.pass = "self-collide octree",
-             .items = order_.size(),
-             .bytes = sizeof(*this) + order_.size() * sizeof order_[0] +
-                      leaves_.capacity() * sizeof(Leaf)}};
-  }
-
- private:
-  using Point = typename Points<Real>::Point;
-  struct Leaf {
-    std::size_t begin, end;  ///< in order_
-  };
-  static constexpr std::size_t kCapacity = 8;
-  static constexpr int kDepth = 12;
-
-  void split(const Particles<Real>& p, std::size_t begin, std::size_t end,
-             const Eigen::AlignedBox<Real, 3>& box, int depth) {
-    if (end - begin < 2) return;
-    if (end - begin <= kCapacity || depth == kDepth) {
-      leaves_.push_back({begin, end});
-      return;
-    }
-    const Point middle = box.center();
-    const auto child_of = [&](std::size_t i) {
-      const Point x = p.x[i];
-      return (x.x() > middle.x() ? 1 : 0) + (x.y() > middle.y() ? 2 : 0) +
-             (x.z() > middle.z() ? 4 : 0);
-    };
-    auto from = order_.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = order_.begin() + static_cast<std::ptrdiff_t>(end);
-    for (int child = 0; child < 8; ++child) {
-      const auto to =
-          std::stable_partition(from, last, [&](std::size_t i) { return child_of(i) == child; });
-      Eigen::AlignedBox<Real, 3> part;
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const bool upper = (child >> axis & 1) != 0;
-        part.min()[axis] = upper ? middle[axis] : box.min()[axis];
-        part.max()[axis] = upper ? box.max()[axis] : middle[axis];
-      }
-      split(p, static_cast<std::size_t>(from - order_.begin()),
-            static_cast<std::size_t>(to - order_.begin()), part, depth + 1);
-      from = to;
-    }
-  }
-
-  void put_back(Particles<Real>& p, std::size_t i, std::size_t j) const {
-    if ((p.x[j] - p.x[i]).squaredNorm() >= diameter_ * diameter_) return;
-    for (const std::size_t k : {i, j})
-      if (p.w[k] != 0) p.x.set(k, p.previous[k]);
-  }
-
-  Real diameter_;                   ///< m
-  std::vector<std::size_t> order_;  ///< particles, leaf after leaf
-  std::vector<Leaf> leaves_;
 };
 
 }  // namespace taut

@@ -61,7 +61,10 @@ std::optional<RegularLinks> regular_links(const Mesh& mesh, std::span<const Link
             kDirections[d].family != link.family))
       ++d;
     if (d == kDirections.size()) return {};
-    if (seen[d].empty()) seen[d].resize(to_index(grid.size())), rest[d] = link.rest;
+    if (seen[d].empty()) {
+      seen[d].resize(to_index(grid.size()));
+      rest[d] = link.rest;
+    }
     if (seen[d][to_index(from)] || !(std::abs(link.rest - rest[d]) <= 1e-9 * rest[d])) return {};
     seen[d][to_index(from)] = true;
     ++count[d];

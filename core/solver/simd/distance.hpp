@@ -52,7 +52,7 @@ template <class T>
 
 /// Moves x1 and x2 by what excess(|delta|^2) says, for every width and precision. share1 and
 /// share2 are w1/(w1 + w2) and w2/(w1 + w2), times the relaxation weight of the link. Only
-/// project_batch (kernels_impl.hpp), whose coordinates lie across the lanes, has these operations
+/// project_batch (batches_impl.hpp), whose coordinates lie across the lanes, has these operations
 /// once more.
 template <class T, class Excess>
 [[gnu::always_inline]] inline void move_ends(Vec3T<T>& x1, Vec3T<T>& x2, T share1, T share2,

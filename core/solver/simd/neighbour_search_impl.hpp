@@ -1,6 +1,6 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; what is said there holds here.
+// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
 
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"

@@ -88,10 +88,11 @@ int run(Options options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "Name or path of a scene");
-  app.add_option("--study", o.study,
-                 "In place of a scene: searches every solver on every scene of this study, with "
-                 "equal CPU time for each, and writes the file that its key `searched` names");
+  add_scene(app, o.scene);
+  app.add_option(
+      "--study", o.study,
+      "In place of a scene: search all solvers on all scenes of this study with equal CPU time, "
+      "and write the file that the study's key `searched` names");
   add_preset(app, o.preset);
   app.add_option("--cpu", o.cpu,
                  "With --study: CPU time of each solver on a scene [s] (default: 8)")
@@ -99,17 +100,18 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--error", o.error, "Reach this error (0.01 or 1%) at the least cost");
   app.add_option("--budget", o.budget, "Reach the least error within this CPU time per frame [ms]")
       ->check(above_zero());
-  app.add_option("--fps", o.fps, "Frames a second, of which one has the budget (default: 60)")
+  app.add_option("--fps", o.fps, "Frames in a second; the budget is that of one (default: 60)")
       ->check(above_zero());
-  app.add_option("--keep", o.keep,
-                 "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in "
-                 "%; repeat it; nothing: only the error counts (default: no passage, no crossing, "
-                 "vertices at most 0.1 % of the cloth deep, a motion within 25 % of its way from "
-                 "the reference, an RMS stretch of at most 10 %, as far as the scene has them)")
+  app.add_option(
+         "--keep", o.keep,
+         "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in %; "
+         "repeat it for each. 'nothing': only the error counts (default: no passage, no crossing, "
+         "depths of at most 0.1 % of the cloth, motion within 25 % of its way from the reference, "
+         "RMS stretch of at most 10 %)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--solver", o.solvers,
-                 "Only this solver; what its text fixes is not searched; repeat it (default: all)");
+                 "Only this solver, keeping what its text sets; repeat it for each (default: all)");
   add_settings(app, o.settings);
   add_judgement(app, o.metric, o.tolerance);
   app.add_option("--patience", o.patience,

@@ -1,5 +1,5 @@
 #include "experiments/command_line/verb.hpp"
-#include "experiments/require/require.hpp"
+#include "experiments/require/answers.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/bench_answer.hpp"
@@ -103,14 +103,14 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("WHAT", o.what, "Studies; or scenes, with --solver");
   app.add_option("--solver", o.solvers, "A solver to time on the scene; repeat it for each");
-  app.add_option("--beside", o.beside,
-                 "A checkout of public code: what an iteration of it costs beside ours of the same "
-                 "method (experiments/beside/README.md)");
+  app.add_option(
+      "--beside", o.beside,
+      "A checkout of public code, timed beside ours of its method (experiments/beside/README.md)");
   add_settings(app, o.settings);
   add_preset(app, o.preset);
   add_judgement(app, o.metric, o.tolerance);
   app.add_option("--at", o.levels,
-                 "Errors to ask for (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
+                 "Errors to be reached (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
       ->delimiter(',')
       ->check(above_zero());
   add_samples(app, o.timing.rounds, o.timing.seconds);

@@ -110,7 +110,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::Range(0, 1024));
   add_samples(app, o.rounds, o.seconds);
   app.add_option("--copies", o.copies,
-                 "Also so many sheets of each scene at once on two threads; in wall time")
+                 "Also run so many sheets of each scene at once on two threads, in wall time")
       ->check(CLI::Range(1, 4096));
   add_format(app, o.format, "Print every sample, too");
 }

@@ -32,12 +32,12 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("STUDY", o.study,
                  "A study that varies the cloth's grid (default: scaling, or scaling-error)");
   add_preset(app, o.preset);
-  app.add_option("--error", o.error,
-                 "Each solver with as many substeps of one sweep, or sweeps if it has more than "
-                 "one, as this RMS stretch takes: 0.005 or 0.5%");
+  app.add_option(
+      "--error", o.error,
+      "Search for each solver the fewest substeps (of one sweep), or sweeps if it has more "
+      "than one, that reach this RMS stretch: 0.005 or 0.5%");
   app.add_option("--limit", o.limit,
-                 "Skip a case that would take longer than this, physics, search and timing [s] "
-                 "(default: 20)")
+                 "Skip a case that would take longer than this in all [s] (default: 20)")
       ->check(above_zero_seconds());
   app.add_option("--samples", o.samples, "Samples of each case (default: 6)")
       ->check(CLI::Range(1, 1000));

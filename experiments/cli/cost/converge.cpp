@@ -36,7 +36,7 @@ std::string draw(const Answer& answer, const Options& options) {
                               .x = report::kSweeps,
                               .y = step_value(options.kind),
                               .title = answer.subject,
-                              .file = slug("converge-" + step.scene() + "-" + options.kind)};
+                              .file = slug("converge-" + step.titled_scene() + "-" + options.kind)};
   return report::make_plot(spec, {{"", report::step_records(step, options.kind)}}, options.figures)
       .svg.string();
 }
@@ -57,21 +57,20 @@ int run(const Options& options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "Name of a shipped scene, or a scene file")->required();
-  app.add_option("--solver", o.solvers, "Solver, once for each; its iterations are set")
-      ->required()
-      ->allow_extra_args(false);
-  app.add_option("--at", o.at, "Time of the state [s]; 0: the scene's start")
+  add_scene(app, o.scene)->required();
+  add_solvers(app, o.solvers, "A solver, of which only the iterations vary")->required();
+  app.add_option("--at", o.at,
+                 "Time of the state from which the step is made [s]; 0: the scene's start")
       ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--from", o.from, "Solver whose run gives the state");
-  app.add_option("--most", o.most, "Iterations, at most")->check(CLI::Range(1, 1 << 20));
+  app.add_option("--from", o.from, "The solver whose run gives that state");
+  app.add_option("--most", o.most, "The most iterations")->check(CLI::Range(1, 1 << 20));
   add_settings(app, o.settings);
   CLI::Option* const figures =
-      add_output(app, o.figures, "Draw it into this folder, as SVG with its data and script");
+      add_output(app, o.figures, "Draw the curves into this folder, as SVG with data and script");
   app.add_option("--kind", o.kind, "What is drawn: distance, gap, stretch, residual")
       ->check(known("kind", step_kinds()))
       ->needs(figures);
-  app.add_flag("--record", o.record, "Also keep what is found for the report");
+  add_record(app, o.record);
   add_results(app, o.out);
   add_format(app, o.format);
 }
@@ -83,7 +82,7 @@ void add_options(CLI::App& app, Options& o) {
 TAUT_VERB(converge) = {
     .name = "converge",
     .group = VerbGroup::cost,
-    .summary = "Error over iterations inside one step, against the exact step",
+    .summary = "Shows the error over the iterations of one step, against the exact step",
     .example = "taut converge chain --solver jakobsen --solver admm --at 0.5 -o figures",
     .answer = {{"facts", "scene settings at from dt picture"},
                {"points", "solver iterations residual stretch gap distance cpu"},

@@ -84,15 +84,16 @@ void add_options(CLI::App& app, Options& options) {
   auto* others =
       app.add_option("OTHERS", options.others, "Further solvers: then one table, a row for each");
   app.add_option("--keep", options.keep,
-                 "METRIC:LIMIT up to which a case is acceptable, in SI units, in the unit shown "
-                 "(stretch.rms:5%); repeat it (default: what the scene accepts, as advise has it)")
+                 "METRIC:LIMIT up to which a case is acceptable, in SI units or in the unit shown "
+                 "(stretch.rms:5%); repeat it for each (default: what the scene accepts, see `taut "
+                 "advise --help`)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   auto* all =
       app.add_option(
              "--all", options.all,
              "One or two solvers: every parameter of theirs and of a small standard scene, with "
-             "what goes wrong first, as a table and a picture; a minute or so")
+             "what goes wrong first, as a table and a picture; takes about a minute")
           ->expected(1, 2)
           ->excludes("SCENE")
           ->excludes("SOLVER")
@@ -101,8 +102,7 @@ void add_options(CLI::App& app, Options& options) {
   for (const char* name : {"--dt", "--duration", "--set", "--fabric"})
     app.get_option(name)->excludes(all);
   add_baselines(app, options.baselines);
-  app.add_flag("--check", options.check,
-               "Exit 1 if a frontier of --all is another one than in the baseline")
+  app.add_flag("--check", options.check, "Exit 1 if a frontier of --all differs from the baseline")
       ->needs(all);
   app.add_flag("--update", options.update, "Keep what --all finds as the baseline")->needs(all);
   app.add_option("--of", options.of,

@@ -4,6 +4,7 @@
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/probe.hpp"
 #include "experiments/external/protocol.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::verb::external_program {
@@ -46,7 +47,7 @@ void add_options_probe(CLI::App& app, Options& o) {
 }
 
 void add_options_scene(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "Name or path of a scene")->required();
+  add_scene(app, o.scene)->required();
   add_output(app, o.output, "File to write")->required();
   add_settings(app, o.settings);
 }
@@ -62,14 +63,14 @@ int write_scene(const Options& o) {
 TAUT_VERB(external) = {
     .name = "external",
     .group = VerbGroup::one_case,
-    .summary = "Solvers from outside: programs that speak taut-solver/2 or /1",
+    .summary = "Probes and scores solvers from outside: programs that speak taut-solver/1 to /4",
     .example =
         "taut external probe 'python3 mine.py'\n  taut case hang \"external:cmd='python3 "
         "mine.py',iterations=8\""};
 
 TAUT_VERB(external_probe) = {
     .name = "external probe",
-    .summary = "Says in sentences whether a program may be scored, and what is wrong with it",
+    .summary = "Says whether a program may be scored, and if not, what is wrong with it",
     .example = "taut external probe 'python3 mine.py'\nExit: 0 it may be scored; 1 it may not",
     .answer = {{"facts", "passed"}, {"checks", "verdict check said"}},
     .bind = taut::bind_verb<taut::verb::external_program::add_options_probe,

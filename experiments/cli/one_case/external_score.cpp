@@ -19,9 +19,10 @@ struct Options {
 };
 
 int run(const Options& o) {
-  if (o.solvers.size() > 3) throw InputError("--solver: three to draw beside, at most");
+  if (o.solvers.size() > 3)
+    throw InputError("--solver: at most three are drawn beside the positions");
   if (!o.picture.empty() && !o.picture.ends_with(".png"))
-    throw InputError("--picture " + o.picture + ": what is drawn here ends in .png");
+    throw InputError("--picture " + o.picture + ": expected a name that ends in .png");
   check_solvers(o.solvers);
   const std::string solver = external::solver_text(o.motion);
   admit_solver(solver);
@@ -53,7 +54,7 @@ int run(const Options& o) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene, "Name of a shipped scene, or a path")->required();
+  add_scene(app, o.scene)->required();
   app.add_option("POSITIONS", o.motion.file, "A .npy, a .pc2, or one .obj of a sequence")
       ->required();
   app.add_option("--fps", o.motion.fps, "Frames in a second (default: one a step of the scene)")
@@ -62,14 +63,14 @@ void add_options(CLI::App& app, Options& o) {
                  "The file's unit [m]: 0.01 for centimetres (default: 1)")
       ->check(above_zero());
   app.add_flag("--z-up", o.motion.z_up, "The file's z points up, not its y");
-  app.add_option("--rest", o.motion.rest,
-                 "A file with the cloth at rest in the file's order, if it does not begin as the "
-                 "scene does");
+  app.add_option(
+      "--rest", o.motion.rest,
+      "A file with the cloth at rest in the same order of vertices, if the positions do not "
+      "begin as the scene does");
   add_settings(app, o.settings);
   app.add_option("--series", o.series, "Write values over time (CSV)");
   app.add_option("--picture", o.picture, "Draw the end (.png), beside every --solver");
-  app.add_option("--solver", o.solvers, "A solver to draw beside; repeat it for each")
-      ->allow_extra_args(false);
+  add_solvers(app, o.solvers, "A solver to draw beside them");
   add_format(app, o.format);
 }
 
@@ -78,7 +79,7 @@ void add_options(CLI::App& app, Options& o) {
 
 TAUT_VERB(external_score) = {
     .name = "external score",
-    .summary = "All metrics of positions that another program computed, from its file",
+    .summary = "Computes all metrics of positions in the file of another program",
     .example =
         "taut external score hang blender.pc2 --fps 24 --series blender.csv\n  taut external "
         "score hang houdini.pc2 --scale 0.01 --z-up --solver jakobsen --picture hang.png",

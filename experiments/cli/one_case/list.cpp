@@ -29,7 +29,7 @@ void add_options(CLI::App& app, Options& o) {
 TAUT_VERB(list) = {.name = "list",
                    .group = VerbGroup::one_case,
                    .summary =
-                       "Names scenes, solvers with parameters, metrics, studies, keys, fabrics, "
+                       "Lists scenes, solvers with parameters, metrics, studies, keys, fabrics, "
                        "assertions",
                    .example = "taut list solvers\n  taut list jakobsen",
                    .answer = {{"solvers", "name summary source"},

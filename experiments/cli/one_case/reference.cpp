@@ -61,7 +61,7 @@ void add_options(CLI::App& app, Options& options) {
   add_settings(app, options.settings);
   add_output(app, options.output, "Where references are kept (default: " + options.output + ")");
   app.add_flag("--replace", options.replace, "Compute again what is there of the same scene");
-  add_json(app, options.format.json, "What became of each");
+  add_json(app, options.format.json, "what became of each scene");
 }
 
 }  // namespace

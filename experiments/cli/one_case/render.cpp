@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 struct Options {
   RunRequest what;
   std::vector<std::string> at;
-  std::string duration, dt, view = "three-quarter", colour = "strain", output;
+  SceneChanges changes;
+  std::string view = "three-quarter", colour = "strain", output;
   std::string size, quality;
   double range = 0;
   bool sheet = false, video = false, dark = false, json = false;
@@ -42,16 +43,16 @@ fs::path output_of(const Options& options, const std::string& scene) {
   return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
 }
 
-/// What is wrong with the name of the output is said before anything is simulated.
+/// Throws InputError before anything is simulated: the name of the output is wrong.
 void check_output(const Options& options) {
   if (options.video && options.sheet)
-    throw InputError("only one of --video (or -o NAME.mp4) and --sheet");
+    throw InputError("give only one of --video (or -o NAME.mp4) and --sheet");
   if (options.output.empty()) return;
   if (fs::is_directory(options.output))
     throw InputError("-o " + options.output + " is a folder; name the file");
   const std::string suffix = options.video ? ".mp4" : ".png";
   if (!options.output.ends_with(suffix))
-    throw InputError("-o " + options.output + ": what is drawn here ends in " + suffix);
+    throw InputError("-o " + options.output + ": expected a name that ends in " + suffix);
 }
 
 /// What the options say of the drawing, but its moments. Throws InputError before anything is run.
@@ -81,7 +82,7 @@ std::vector<double> times_of(const Options& options, std::vector<std::string>& o
     throw InputError("--at " + number_text(times.back()) + " is after the end at " +
                      number_text(scene.duration()) + " s: see --duration");
   const double seen = times.back() + 1e-4;
-  if (!options.video && options.duration.empty() && seen < scene.duration())
+  if (!options.video && !options.changes.has_duration() && seen < scene.duration())
     overrides.push_back("time.duration=" + std::to_string(seen));
   return times;
 }
@@ -93,9 +94,7 @@ int run(Options options) {
   if (what.solvers.empty() || what.solvers.size() > std::size_t{kMostPanels})
     throw InputError("one to nine --solver, for example --solver jakobsen --solver bullet");
   check_solvers(what.solvers);
-  if (!options.dt.empty()) what.overrides.push_back("time.dt=\"" + options.dt + "\"");
-  if (!options.duration.empty())
-    what.overrides.push_back("time.duration=\"" + options.duration + "\"");
+  what.overrides = options.changes.settings();
   Drawing drawing = drawing_of(options);
   drawing.times = times_of(options, what.overrides);
   const RunSet set = record_runs(what, [](const std::string& text) { progress() << text << '\n'; });
@@ -113,10 +112,10 @@ int run(Options options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.what.scene, "Name of a shipped scene, or a path")->required();
-  app.add_option("--solver", o.what.solvers, "NAME or NAME:key=value,...; one to nine of them")
+  add_scene(app, o.what.scene)->required();
+  add_solvers(app, o.what.solvers, "A solver to draw, at most nine");
+  app.add_option("--at", o.at, "A moment to draw [s]; repeat it for each (default: the end)")
       ->allow_extra_args(false);
-  app.add_option("--at", o.at, "Moments to draw [s]; default: the end")->allow_extra_args(false);
   app.add_flag("--sheet", o.sheet, "One picture, a row for each moment");
   app.add_flag("--video", o.video, "H.264 video in real time (so does -o NAME.mp4)");
   app.add_option("--view", o.view,
@@ -124,15 +123,13 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--colour", o.colour, "strain, penetration or speed");
   app.add_option("--range", o.range, "End of the colour bar, in its unit (%, mm, m/s)")
       ->check(above_zero());
-  app.add_option("--duration", o.duration, "Simulated time [s]");
-  app.add_option("--dt", o.dt, "Time step [s], a number or a fraction such as 1/120");
-  add_settings(app, o.what.overrides);
+  o.changes.bind(app);
   app.add_option("--size", o.size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
   app.add_option("--quality", o.quality, "draft, video or still")
       ->check(known("quality", {"draft", "video", "still"}));
   app.add_flag("--dark", o.dark, "The dark background of the report");
   add_output(app, o.output, "File (.png or .mp4)");
-  add_json(app, o.json, "The names of the files");
+  add_json(app, o.json, "the names of the files");
 }
 
 }  // namespace
@@ -142,7 +139,7 @@ void add_options(CLI::App& app, Options& o) {
 TAUT_VERB(render) = {
     .name = "render",
     .group = VerbGroup::one_case,
-    .summary = "Pictures and videos of solvers side by side",
+    .summary = "Draws pictures and videos of solvers side by side",
     .example =
         "taut render ball --solver jakobsen --solver bullet:substeps=5 --at 0.6\n"
         "  taut render flag --solver jakobsen --solver bullet:substeps=5 --video --duration 4\n"

@@ -41,14 +41,15 @@ int run(const Options& o) {
   answer.add(sentences("foreign", plan.foreign));
   answer.add(sentences("conflicts", plan.conflicts));
   print(answer, o.format);
-  const auto tell = [](const char* what, const std::vector<std::string>& all) {
-    std::cerr << "not merged: " << all.size() << ' ' << what << ", the first: " << all.front()
+  const auto refused = [](const char* why, const std::vector<std::string>& all, ExitCode code) {
+    std::cerr << "not merged: " << all.size() << ' ' << why << ", the first: " << all.front()
               << '\n';
+    return code;
   };
-  if (!plan.foreign.empty()) return tell("foreign", plan.foreign), kUsage;
-  if (!plan.conflicts.empty()) return tell("in conflict", plan.conflicts), kConflict;
+  if (!plan.foreign.empty()) return refused("foreign", plan.foreign, kUsage);
+  if (!plan.conflicts.empty()) return refused("in conflict", plan.conflicts, kConflict);
   if (plan.cases.empty()) return kNothing;
-  if (!may) tell("missing", missing);
+  if (!may) return refused("missing", missing, kIncomplete);
   return missing.empty() ? kPass : kIncomplete;
 }
 
@@ -67,7 +68,7 @@ void add_options(CLI::App& app, Options& o) {
 
 TAUT_VERB(cluster_merge) = {
     .name = "cluster merge",
-    .summary = "Unites results, if none is missing, foreign or in conflict; else says which",
+    .summary = "Unites results; if any are missing, foreign or in conflict, says which",
     .example =
         "taut cluster merge results/cluster/iterations\n"
         "  taut cluster merge results/shard1 results/shard2 --out results/runs",

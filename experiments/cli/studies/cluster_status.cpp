@@ -26,7 +26,7 @@ void add_options(CLI::App& app, Options& o) {
 
 TAUT_VERB(cluster_status) = {
     .name = "cluster status",
-    .summary = "Done and failed cases of every shard, and the command that starts the rest",
+    .summary = "Shows done and failed cases of every shard, and the command that starts the rest",
     .example = "taut cluster status results/cluster/iterations",
     .answer = {{"facts", "cases done start again"},
                {"shards", "shard state cases done host started"},

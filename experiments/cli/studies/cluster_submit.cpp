@@ -73,12 +73,13 @@ int run(const Options& o) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("STUDY", o.study, "Name or path of a study")->required();
+  add_study(app, o.study)->required();
   app.add_option("--on", o.on, "Who starts the shards: slurm or parallel")
       ->required()
       ->check(known("scheduler", {"slurm", "parallel"}));
-  auto* shards = app.add_option("--shards", o.shards, "Parts")->check(CLI::Range(1, kMostShards));
-  app.add_option("--hours", o.hours, "As few shards as end within that time (default: 1)")
+  auto* shards =
+      app.add_option("--shards", o.shards, "How many shards")->check(CLI::Range(1, kMostShards));
+  app.add_option("--hours", o.hours, "The fewest shards that end within that time (default: 1)")
       ->check(above_zero())
       ->excludes(shards);
   add_preset(app, o.preset);
@@ -91,7 +92,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::ExistingFile);
   add_limits(app, o.limits);
   app.add_flag("--dry-run", o.dry_run, "Write the folder and start nothing");
-  add_json(app, o.format.json, "Folder and sizes");
+  add_json(app, o.format.json, "the folder and its sizes");
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ int run(const Options& options) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("STUDY", options.study, "Name or path of a study that was run")->required();
+  add_study(app, options.study)->required();
   add_stored(app, options.preset, options.results);
   auto* tidy = app.add_flag("--tidy", options.tidy, "A row for each value of each case");
   app.add_flag("--series", options.series, "A row for each value over time of each case")
@@ -55,7 +55,7 @@ void add_options(CLI::App& app, Options& options) {
 TAUT_VERB(export) = {
     .name = "export",
     .group = VerbGroup::studies,
-    .summary = "Writes a study as CSV: a row a case, a value or a moment; SI units, costs",
+    .summary = "Writes a study as CSV in SI units: a row for each case, each value or each moment",
     .example = R"(taut export iterations --preset quick -o x.csv
   taut export iterations --series -o motion.csv
 Python:

@@ -45,7 +45,7 @@ void add_options(CLI::App& app, Options& o) {
       ->required()
       ->check(known("kind", {"study", "scene"}));
   app.add_option("NAME", o.name, "NAME or path; the file is NAME.toml")->required();
-  add_json(app, o.json, "The name of the file");
+  add_json(app, o.json, "the name of the file");
 }
 
 }  // namespace
@@ -54,6 +54,6 @@ void add_options(CLI::App& app, Options& o) {
 TAUT_VERB(new) = {
     .name = "new",
     .group = VerbGroup::studies,
-    .summary = "Writes a commented study or scene that runs, to begin with",
+    .summary = "Writes a commented study or scene to start from",
     .example = "taut new study mine\n  taut new scene my/cloth",
     .bind = taut::bind_verb<taut::verb::creating::add_options, taut::verb::creating::run>};

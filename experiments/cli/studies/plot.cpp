@@ -89,26 +89,25 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& options) {
   std::vector<std::string> names;
   for (const report::PlotKind& kind : report::plot_kinds()) names.emplace_back(kind.name);
-  app.add_option("STUDY", options.study, "Name or path of a study that was run")->required();
+  add_study(app, options.study)->required();
   add_stored(app, options.preset, options.results);
   app.add_option("--kind", options.kind,
                  "One of: " + join(names, ", ") + " (default: what the study asks for)")
       ->check(known("kind of plot", names));
   app.add_option("--x", options.x, "Value on x: dt, iterations, projections or a metric's value");
   app.add_option("--y", options.y, "Value on y, such as stretch.rms");
-  app.add_option("--solver", options.solvers, "Only this solver; repeat it for each")
-      ->allow_extra_args(false);
+  add_solvers(app, options.solvers, "Only this solver");
   app.add_option("--scene", options.scenes, "Only this scene; repeat it for each")
       ->allow_extra_args(false);
   app.add_option("--title", options.title, "Title above the figure");
   app.add_flag("--no-title", options.no_title, "No title above the figure")->excludes("--title");
   app.add_option("--width", options.width,
-                 "Width of the figure on paper, as 84mm; its key then stands below");
+                 "Width of the figure on paper, as 84mm; puts the key below the figure");
   app.add_option("--height", options.height, "Its height, as 60mm (default: from its width)");
   app.add_option("--font", options.font, "Size of its text, as 8pt (default with --width: 8pt)");
   add_output(app, options.output,
              "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
-  add_json(app, options.json, "The names of the files");
+  add_json(app, options.json, "the names of the files");
 }
 
 }  // namespace

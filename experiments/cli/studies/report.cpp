@@ -28,13 +28,14 @@ void add_options(CLI::App& app, Options& options) {
                  "Names or paths of studies; none: the main job, preset quick. After two results "
                  "folders A and B: what differs");
   add_stored(app, options.preset, options.results);
-  app.add_option("--film", options.films,
-                 "Also films this scene (name or path), which no study ran; none and no STUDY: a "
-                 "picture of every shipped scene but those with bodies that deform")
+  app.add_option(
+         "--film", options.films,
+         "Also film this scene (name or path), which no study ran; without --film and STUDY: "
+         "pictures of all shipped scenes without bodies that deform")
       ->allow_extra_args(false);
-  app.add_flag("--no-media", options.no_media, "Without pictures and videos");
+  app.add_flag("--no-media", options.no_media, "Leave out pictures and videos");
   add_json(app, options.model,
-           "The model of the page (experiments/report/model/MODEL.md), without pictures");
+           "the model of the page (experiments/report/model/MODEL.md), without pictures,");
   add_output(app, options.output,
              "The page (default: report.html), or the model (default: standard output)");
 }

@@ -102,30 +102,33 @@ void add_options(CLI::App& app, Options& options) {
                  "Names or paths of studies; none: the main job, preset quick, with its report");
   add_preset(app, options.preset);
   add_jobs(app, options.jobs);
-  app.add_option("--shard", options.shard,
-                 "Only part i of n of the cases, as i/n (default: a Slurm array's, else all)");
+  app.add_option(
+      "--shard", options.shard,
+      "Only part i of n of the cases, as i/n (default: this task's part of a Slurm array, else "
+      "all)");
   app.add_option("--only", options.only, "failed: run stored failures again, nothing else")
       ->check(CLI::IsMember({"failed"}));
   add_results(app, options.out);
   app.add_option(
       "--build-id", options.build,
-      "Which build this is of taut and of the external programs, for taut history: ID or "
-      "ID@TIME, as 1.2.0@2026-05-04; programs' results are addressed by it in place of "
-      "their files");
+      "Names this build of taut and of the external programs for taut history: ID or ID@TIME, as "
+      "1.2.0@2026-05-04; a program's results then belong to this build, not to its files");
   add_limits(app, options.limits);
-  app.add_option("--dt", options.steps,
-                 "Time step [s] in place of those of the study, as 1/30; repeat it to compare two, "
-                 "with --table")
+  app.add_option(
+         "--dt", options.steps,
+         "Time step [s] in place of those of the study, as 1/30; repeat it to compare several "
+         "with --table")
       ->allow_extra_args(false)
       ->needs("STUDY");
-  app.add_option("--table", options.values,
-                 "Then print this value of a metric, settings by scenes, or failure_map, who is "
-                 "right at which stiffness; repeat it for each")
+  app.add_option(
+         "--table", options.values,
+         "Then print a table, settings by scenes, of this metric value; or failure_map: which "
+         "solver is right at which stiffness; repeat it for each")
       ->allow_extra_args(false)
       ->check(metric_value() | CLI::IsMember({report::kFailureMap}));
   app.add_flag("--verbose", options.verbose, "A line for each case as it ends");
   app.add_flag("--no-report", options.no_report, "Run the main job without its report");
-  add_json(app, options.json, "How the cases ended, and the tables,");
+  add_json(app, options.json, "how the cases ended, and the tables,");
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ int update(Options options) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("STUDY", options.study, "Name or path")->required();
+  add_study(app, options.study)->required();
   add_baseline_options(app, options);
   add_format(app, options.format);
 }
@@ -102,7 +102,7 @@ TAUT_VERB(baseline) = {.name = "baseline",
 
 TAUT_VERB(baseline_update) = {
     .name = "baseline update",
-    .summary = "Takes what is different as the new baseline",
+    .summary = "Takes what differs as the new baseline",
     .example = "taut baseline update regression --why \"contacts are continuous\"",
     .answer = {{"facts", "cases"},
                {"findings", "study kind case change command solver scene value before now"}},

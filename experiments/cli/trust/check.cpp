@@ -45,19 +45,20 @@ int check(const Options& options) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("STUDY", options.studies, "Names or paths; none: all that have a baseline");
+  app.add_option("STUDY", options.studies,
+                 "Names or paths of studies; none: all that have a baseline");
   add_baseline_options(app, options);
   app.add_option("--junit", options.junit, "Also write a JUnit file for continuous integration");
   app.add_flag(
       "--speed", options.speed,
-      "Also time every case in turns with the build of --against; 1 if this one is slower");
+      "Also time every case in turns with the build of --against; exit 1 if this one is slower");
   app.add_option("--against", options.against,
                  "A folder with another build of taut, or the name of a kept one (taut bench "
                  "--keep-build)")
       ->default_str("before")
       ->needs("--speed");
   add_format(app, options.format, "Print every change with the command that runs its case");
-  app.add_flag("--record", options.record, "Also keep the findings for the report");
+  add_record(app, options.record);
   app.add_flag("--strict-env", options.strict,
                "Fail with 5 if the baseline was made with another toolchain");
 }

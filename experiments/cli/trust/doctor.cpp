@@ -128,7 +128,7 @@ int run(const Format& format) {
 }
 
 void add_options(CLI::App& app, Format& format) {
-  add_format(app, format, "the digests of solvers and of their layers");
+  add_format(app, format, "Print the digests of solvers and of their layers, too");
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ void add_options(CLI::App& app, Format& format) {
 TAUT_VERB(doctor) = {
     .name = "doctor",
     .group = VerbGroup::trust,
-    .summary = "Versions, precision, cores, load: what can be trusted here?",
+    .summary = "Shows versions, precision, cores and load: what can be trusted here?",
     .example = "taut doctor",
     .answer = {{"facts", "timing_trusted"},
                {"findings", "name value good"},

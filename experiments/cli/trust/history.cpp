@@ -65,7 +65,7 @@ int history(Options options) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("STUDY", o.study, "Name or path of the study")->required();
+  add_study(app, o.study)->required();
   add_preset(app, o.preset);
   app.add_option("--metric", o.metric, "Value of the tables and of the figure")
       ->check(metric_value())
@@ -74,23 +74,25 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--junit", o.junit, "Also write a JUnit file about the last build");
   add_results(app, o.out);
   add_baselines(app, o.baselines);
-  CLI::Option* git = app.add_option("--git", o.repository,
-                                    "A repository: first run what the store lacks of its commits");
+  CLI::Option* git = app.add_option(
+      "--git", o.repository, "A repository; runs the commits whose results are missing first");
   const auto of_git = [&](CLI::Option* option) { option->needs(git)->group("With --git"); };
-  CLI::Option* commits = app.add_option("--commits", o.range, "A..B: A, and what leads to B");
+  CLI::Option* commits =
+      app.add_option("--commits", o.range, "A..B: A and all commits from there to B");
   git->needs(commits);
   of_git(commits);
-  of_git(app.add_option("--build", o.build, "Builds a commit: a command of the shell, run there"));
+  of_git(app.add_option("--build", o.build,
+                        "The shell command that builds a commit, run in its checkout"));
   of_git(app.add_option("--solver", o.solver,
-                        "The solver, run there: 'python3 mine.py', or mine:cmd='...',iterations=8; "
-                        "it replaces those of the study"));
+                        "The solver, run in the checkout: 'python3 mine.py', or "
+                        "mine:cmd='...',iterations=8; it replaces those of the study"));
   of_git(app.add_option("--taut", o.taut,
-                        "Without a solver: taut's own program there, which runs the study itself")
+                        "Without --solver: the taut of that commit, which runs the study itself")
              ->capture_default_str());
   of_git(app.add_option("--bisect", o.bisect,
                         "Run only what it takes to name the first commit at which this value "
                         "changed; cpu.per_step and wall.per_step: the cost"));
-  of_git(app.add_flag("--speed", o.speed, "Also time neighbours in turns"));
+  of_git(app.add_flag("--speed", o.speed, "Also time each build in turns with the one before"));
   of_git(app.add_flag("--again", o.again, "Try again what could not be built"));
   of_git(app.add_option("--build-timeout", o.limits.seconds, "Seconds that a build may take")
              ->check(above_zero_seconds())
@@ -110,7 +112,7 @@ void add_options(CLI::App& app, Options& o) {
 TAUT_VERB(history) = {
     .name = "history",
     .group = VerbGroup::trust,
-    .summary = "Which build, or which commit, changed what a study measures",
+    .summary = "Finds which build, or which commit, changed what a study measures",
     .example =
         "taut history iterations\n"
         "  taut history ./mine.toml --git . --commits v1.0..HEAD --solver 'python3 mine.py'\n"

@@ -96,20 +96,20 @@ int run(const Options& options) {
 void add_options(CLI::App& app, Options& options) {
   std::vector<std::string> names;
   for (const TruthEntry* truth : truths()) names.emplace_back(truth->name);
-  app.add_option("TRUTH", options.names, "Truths to check by name; all if none is given")
+  app.add_option("TRUTH", options.names, "Names of truths (default: all)")
       ->check(known("truth", std::move(names)));
   app.add_option("--solver", options.solvers,
-                 "Only what binds these solvers (\"reference\": the references)");
+                 "Only what holds for these solvers (\"reference\": for the references)");
   app.add_option("--section", options.section, "Only one section of the truths")
       ->check(CLI::Range(1, 10));
   app.add_option("-j,--jobs", options.jobs,
                  "Truths at a time, each in a process of its own (default: " +
                      std::to_string(options.jobs) + ")")
       ->check(CLI::Range(1, 64));
-  app.add_flag("--record", options.record, "Also keep the findings for the report");
+  add_record(app, options.record);
   add_results(app, options.out);
   app.add_flag("--assertions", options.assertions,
-               "Only what holds the assertions of publications, and their verdicts");
+               "Only the truths behind assertions of publications, and the verdicts");
   add_baselines(app, options.baselines);
   app.add_flag("--update", options.update,
                "With --assertions: keep their verdicts as the baseline");

@@ -96,7 +96,8 @@ class JsonParser {
     Json v;
     switch (next()) {
       case '{':
-        ++at_, v.kind = Json::Kind::object;
+        ++at_;
+        v.kind = Json::Kind::object;
         if (accept('}')) return v;
         do {
           next();
@@ -107,27 +108,33 @@ class JsonParser {
         if (!accept('}')) fail();
         return v;
       case '[':
-        ++at_, v.kind = Json::Kind::array;
+        ++at_;
+        v.kind = Json::Kind::array;
         if (accept(']')) return v;
         do v.items.push_back(value(depth + 1));
         while (accept(','));
         if (!accept(']')) fail();
         return v;
       case '"':
-        v.kind = Json::Kind::text, v.text = string();
+        v.kind = Json::Kind::text;
+        v.text = string();
         return v;
       case 't':
-        expect("true"), v.kind = Json::Kind::boolean, v.number = 1;
+        expect("true");
+        v.kind = Json::Kind::boolean;
+        v.number = 1;
         return v;
       case 'f':
-        expect("false"), v.kind = Json::Kind::boolean;
+        expect("false");
+        v.kind = Json::Kind::boolean;
         return v;
       case 'n':
         expect("null");
         return v;
       default: {
         char* end = nullptr;
-        v.kind = Json::Kind::number, v.number = std::strtod(at_, &end);
+        v.kind = Json::Kind::number;
+        v.number = std::strtod(at_, &end);
         if (end == at_) fail();
         at_ = end;
         return v;

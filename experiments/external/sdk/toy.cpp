@@ -33,7 +33,8 @@ struct Toy {
   }
 
   void load(const double* now, const double* v) {
-    x.assign(now, now + 3 * w.size()), before = x;
+    x.assign(now, now + 3 * w.size());
+    before = x;
     for (std::size_t k = 0; k < x.size(); ++k) before[k] -= h * v[k];
   }
 
@@ -50,12 +51,18 @@ struct Toy {
         const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         if (both == 0 || length == 0) continue;
         const double share = (length - rest) / (length * both);
-        for (int k = 0; k < 3; ++k) p[k] += w[a] * share * d[k], q[k] -= w[b] * share * d[k];
+        for (int k = 0; k < 3; ++k) {
+          p[k] += w[a] * share * d[k];
+          q[k] -= w[b] * share * d[k];
+        }
       }
   }
 
   void store(double* now, double* v) const {
-    for (std::size_t k = 0; k < x.size(); ++k) now[k] = x[k], v[k] = (x[k] - before[k]) / h;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      now[k] = x[k];
+      v[k] = (x[k] - before[k]) / h;
+    }
   }
 
   std::string extras() const {

@@ -35,15 +35,15 @@ struct Film {
   void add(const std::string& solver, const std::string& label, const std::string& key);
 };
 
-/// A film of every scene that a study ran: each contender under the settings at which single cases
-/// are quoted, in the order of the report, beside the reason of whoever refuses the scene. Those of
-/// `others` are smaller, or pictures. Throws InputError if one of the others is no scene.
+/// A film of every scene that a study ran, in the order of the report: each contender at the
+/// settings at which single cases are quoted, and the reasons of solvers that refuse the scene. The
+/// films of `others` are smaller, or pictures. Throws InputError if one of the others is no scene.
 std::vector<Film> films_of(const report::ComparedSolvers&, const std::vector<OtherScene>& others);
 
-/// Their videos and posters and, of scenes that no study ran, strain over time; two scenes at a
-/// time. A film is kept in `folder` under a key of all that it depends on, and made once. `say` is
-/// told, from any thread but one at a time, which scene was made. A scene that cannot be drawn is
-/// left out and `say` is told why; so it is with all of them where there is no renderer.
+/// Makes their videos and posters, two scenes at a time, and strain over time for scenes that no
+/// study ran. A film is made once and kept in `folder` under a key of all that it depends on. Calls
+/// `say` with each scene that was made, and with the reason for each that cannot be drawn (all of
+/// them, if there is no renderer) and is left out; from any thread, but one at a time.
 std::vector<FilmResult> make_films(const std::vector<Film>&, const std::filesystem::path& folder,
                                    const std::function<void(const std::string&)>& say);
 

@@ -123,9 +123,8 @@ std::string caption_of(const ValueSpec& value) {
     return "The reference is the static equilibrium of the same cloth, found without any of these "
            "solvers.";
   if (value.role == Role::step_error)
-    return "From each step's own start, without a reference in motion: cloth that is strained or "
-           "late "
-           "is far from it, in a step or in a substep where the solver has them.";
+    return "The distance is that of each step (of each substep, if the solver has them) from its "
+           "own start, without a reference in motion: cloth that is strained or late is far off.";
   if (value.role == Role::error) return capitalised(std::string(to_string(value.window))) + ".";
   return value.role == Role::vertex_depth || value.role == Role::face_depth
              ? "Peak over the whole run."
@@ -356,7 +355,9 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
     const Slice slice = hold(records_along(input, scene, x, y), held, held == "dt" ? 1.0 / 64 : 16);
     try {
       Chart chart = make_chart(kind, slice.records, x, y, x);
-      chart.id = scene + "-" + id, chart.scene = scene, chart.caption = caption;
+      chart.id = scene + "-" + id;
+      chart.scene = scene;
+      chart.caption = caption;
       chart.title =
           capitalised(chart.y.title) + " over " + (x == "dt" ? "the time step" : chart.x.title);
       add_floor(chart);
@@ -419,7 +420,8 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 
 Chart cost_chart(const SceneBench& scene, const Records& records) {
   Chart chart = make_chart("cost", records, "cpu.per_second", kErrorMetric, "setting");
-  chart.id = slug(scene.scene) + "-cost", chart.scene = scene.scene;
+  chart.id = slug(scene.scene) + "-cost";
+  chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption = "Down and left is better.";
   chart.front = true;

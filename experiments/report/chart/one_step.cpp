@@ -11,10 +11,9 @@
 namespace taut::report {
 
 std::string solver_label(const OneStep& step, const std::string& solver) {
-  const Table& solvers = step.found.table("solvers");
   const std::string title = solver_title(solver_name(solver));
-  const auto same = std::ranges::count_if(solvers.rows, [&](const auto& row) {
-    return solver_title(solver_name(solvers.at(row, "solver").text())) == title;
+  const auto same = std::ranges::count_if(step.solvers, [&](const StepSolver& one) {
+    return solver_title(solver_name(one.text)) == title;
   });
   const std::size_t params = solver.find(':');
   if (same < 2 || params == std::string::npos) return title;
@@ -32,21 +31,20 @@ Records step_records(const OneStep& step, std::string_view kind) {
 
 Chart step_chart(const OneStep& step, std::string_view kind) {
   Chart chart = make_chart("step", step_records(step, kind), kSweeps, step_value(kind), kSweeps);
-  chart.scene = step.found.fact("scene").text();
-  chart.id = slug(step.scene() + "-step-" + std::string(kind));
-  chart.title = capitalised(step.found.subject);
-  const Table& solvers = step.found.table("solvers");
+  chart.scene = step.scene;
+  chart.id = slug(step.titled_scene() + "-step-" + std::string(kind));
+  chart.title = capitalised(step.subject);
   std::string floors;
   double moved = 0;
-  for (const auto& row : solvers.rows) {
-    moved = std::fmax(moved, solvers.at(row, "moved").number());
-    if (const double floor = solvers.at(row, "floor").number(); floor > 0)
-      floors += (floors.empty() ? "" : ", ") +
-                solver_label(step, solvers.at(row, "solver").text()) + " " +
-                shown(kLength, floor, 2);
+  for (const StepSolver& one : step.solvers) {
+    moved = std::fmax(moved, one.moved);
+    if (one.floor > 0)
+      floors += (floors.empty() ? "" : ", ") + solver_label(step, one.text) + " " +
+                shown(kLength, one.floor, 2);
   }
   if (!floors.empty())
-    chart.caption = "On a floor, for their fixed point is another one: " + floors + ".";
+    chart.caption =
+        "These end on a floor, because their fixed point is another one: " + floors + ".";
   if (kind == "distance" && moved > 0)
     chart.floor = Chart::Floor{moved, "last correction of the exact step"};
   return chart;

@@ -312,6 +312,14 @@ std::optional<std::string> setting_of(const Record& r, const std::string& name) 
   return at->second;
 }
 
+/// "" for a solver or a parameter that this program lacks.
+std::string_view default_of(const std::string& solver, const std::string& name) {
+  const SolverEntry* entry = find_entry(solver);
+  if (!entry) return "";
+  const auto spec = std::ranges::find(entry->params, name, &ParamSpec::name);
+  return spec == entry->params.end() ? "" : spec->default_value;
+}
+
 std::vector<std::string> names_in_labels(const std::string& solver) {
   std::vector<std::string> all{kSubsteps, kSweeps};
   for (const std::string& name : labelled_parameters(solver)) push_unique(all, name);
@@ -328,21 +336,25 @@ SettingLabels::SettingLabels(const Records& all) {
 
 std::string SettingLabels::of(const Record& record, std::string_view beside) const {
   std::string text;
-  bool work = false;
+  bool any = false, work = false;
   for (const std::string& name : names_in_labels(record.solver)) {
     const auto value = setting_of(record, name);
-    if (!value || *value == "off" || name == beside) continue;
+    if (!value || name == beside) continue;
     const auto seen = seen_.find({record.solver, name});
     const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(*value);
     if (!varies) continue;
+    any = true;
     if (name == kSubsteps || name == kSweeps)
       work = true;
+    else if (*value == default_of(record.solver, name))
+      continue;
     else if (*value == "on")
       text += ", " + name;
     else
-      text += ", " + (std::isfinite(number(*value)) ? name + "=" + *value : *value);
+      text +=
+          ", " + (std::isfinite(number(*value)) || *value == "off" ? name + "=" + *value : *value);
   }
-  if (work) return work_of(record).text() + text;
+  if (work || (any && text.empty())) return work_of(record).text() + text;
   return text.empty() ? "" : text.substr(2);
 }
 

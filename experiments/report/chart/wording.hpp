@@ -1,6 +1,6 @@
 #pragma once
 
-// How people are told of numbers, quantities, solvers and their settings.
+// Numbers, quantities, solvers and their settings in words for people.
 
 #include <compare>
 #include <map>
@@ -41,7 +41,7 @@ double value_of(const Record&, std::string_view name);
 /// name itself of any other.
 std::string own_parameter(std::string_view solver, std::string_view name);
 
-/// What people are told of a quantity.
+/// A quantity in words for people.
 struct Quantity {
   std::string name;
   std::string title;  ///< "RMS stretch"
@@ -111,7 +111,8 @@ std::string unequal_work(const Records&);
 class SettingLabels {
  public:
   explicit SettingLabels(const Records&);
-  /// "2 × 8, coloured"; "" if nothing varies. Without the parameter that is said beside it.
+  /// "2 × 8, mesh": what varies, first the work, then what differs from the solver's defaults; if
+  /// nothing does, the work. "" if nothing varies. Without the parameter that is shown beside it.
   std::string of(const Record&, std::string_view beside = "") const;
 
  private:

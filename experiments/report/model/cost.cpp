@@ -101,14 +101,13 @@ Table profile_table(const std::vector<SceneBench>& scenes) {
               "How often each solver is within a factor of the cheapest",
               {Column("solver")},
               {},
-              "Share of " + std::to_string(problems) + " problems: an error of " +
+              "Share of " + std::to_string(problems) + " problems, each an error of " +
                   quantity(kErrorMetric).title +
-                  " to be reached on a scene. Every solver has equally many settings of a scene, " +
+                  " to be reached on a scene. All solvers have equally many settings of a scene, " +
                   kWithoutExtras + "."};
   if (const std::string bounds = upper_bounds(scenes); !bounds.empty())
     table.caption +=
-        " Problems that the cheapest setting tried reaches already, whose solver may "
-        "stand higher: " +
+        " Problems that a solver's cheapest setting already solves, so that it may rank higher: " +
         bounds + ".";
   constexpr std::pair<double, const char*> kFactors[] = {
       {1, "the cheapest"}, {1.5, "within 1.5 ×"},

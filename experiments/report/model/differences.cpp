@@ -171,12 +171,12 @@ Table costs_table(const Differences& differences) {
 }  // namespace
 
 Json json_of(const Differences& differences, CaseList& refs, Answer& tables) {
-  Json one{
-      {"a", differences.a},
-      {"b", differences.b},
-      {"matched",
-       "Cases are matched by the names of scene and solver and by their settings, not by what is "
-       "in a scene's file: one that was changed between A and B differs here as a solver does."}};
+  Json one{{"a", differences.a},
+           {"b", differences.b},
+           {"matched",
+            "Cases are matched by the names of scene and solver and by their settings, not by the "
+            "content of a scene's file: a change of that file between A and B shows like one of a "
+            "solver."}};
   add_table(one, ends_table(differences), tables);
   const std::vector<ComparedCase> cases = compared_cases(differences);
   add_table(one, compared_table(differences, cases, refs), tables);

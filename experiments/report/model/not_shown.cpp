@@ -8,6 +8,7 @@
 #include "core/model/text.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
+#include "experiments/report/questions/links.hpp"
 #include "experiments/system/distinct.hpp"
 
 namespace taut::report {
@@ -33,7 +34,7 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
           (sweeps.empty() ? ""
                           : ", other work than " + range(substeps, kSubsteps) + " substeps of " +
                                 range(sweeps, kSweeps) + " sweeps") +
-          "; not each was run with each."};
+          "; not all combinations were run."};
   points.push_back(input.bench
                        ? "Cost on another machine than " + input.bench->machine +
                              ", or at settings between those timed (taut advise searches them)."
@@ -60,12 +61,10 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
         "Solvers that were not run here: " + joined(absent) + "." +
         (shown.contains("implicit")
              ? ""
-             : " Implicit Euler is not among the main job's solvers: each of its iterations "
-               "factors the "
-               "whole system anew, so that 16 of them are equal work to nothing here; its "
-               "converged "
-               "step is what Projective Dynamics and VBD approach (Inside one step), and taut run "
-               "elastic compares it where links are elastic."));
+             : " Each iteration of implicit Euler factors the whole system anew, so that no number "
+               "of them is the work of 16 sweeps. Projective Dynamics and VBD approach its "
+               "converged step (Inside one step), and taut run elastic compares it where links are "
+               "elastic."));
   points.emplace_back(
       "Real cloth: errors are distances from constraints, a reference or a closed form, not from a "
       "measured fabric.");

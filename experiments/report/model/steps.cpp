@@ -1,7 +1,5 @@
 // Inside one step: how near each solver's iterations come to the exact one.
-#include <algorithm>
 #include <cmath>
-#include <list>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
@@ -15,50 +13,36 @@ namespace {
 
 constexpr int kLooked = 16;  ///< iterations, as in the comparison at equal work
 
-/// The first row of this solver for which `holds`; nullptr: none.
-template <class Holds>
-const std::vector<Cell>* first_of(const Table& table, const std::string& solver, Holds holds) {
-  const auto row = std::ranges::find_if(table.rows, [&](const auto& one) {
-    return table.at(one, "solver").text() == solver && holds(one);
-  });
-  return row == table.rows.end() ? nullptr : &*row;
+/// After so many iterations [m]; NaN: not measured.
+double distance_after(const StepSolver& solver, int iterations) {
+  const auto at = solver.distances.find(iterations);
+  return at == solver.distances.end() ? std::nan("") : at->second;
 }
 
-/// Of one solver: what its links are, and how its iterations go.
-std::vector<Cell> row_of(const OneStep& step, const std::vector<Cell>& own) {
-  const Answer& found = step.found;
-  const Table &solvers = found.table("solvers"), &points = found.table("points"),
-              &reached = found.table("reached");
-  const std::string solver = solvers.at(own, "solver").text();
-  const auto after = [&](int iterations) {
-    const auto* row = first_of(points, solver, [&](const auto& one) {
-      return points.at(one, "iterations").number() == iterations;
-    });
-    return row ? points.at(*row, "distance") : Cell();
-  };
+/// What the solver's links are, and how its iterations go.
+std::vector<Cell> row_of(const OneStep& step, const StepSolver& solver) {
   const auto below = [&](double gap) {
-    const auto* row = first_of(
-        reached, solver, [&](const auto& one) { return reached.at(one, "below").number() == gap; });
-    return row ? reached.at(*row, "iterations") : Cell::lacking(Cell::State::none, "not reached");
+    const auto at = solver.iterations.find(gap);
+    return at == solver.iterations.end() ? Cell::lacking(Cell::State::none, "not reached")
+                                         : Cell(at->second);
   };
-  const double k = solvers.at(own, "structural").number();
-  return {step.scene(),
-          solver_label(step, solver),
-          std::isnan(k) ? Cell("rigid") : Cell(shown({"N/m", "N/m"}, k, 2)),
-          after(1),
-          after(kLooked),
-          solvers.at(own, "contraction"),
-          solvers.at(own, "floor"),
+  return {step.titled_scene(),
+          solver_label(step, solver.text),
+          std::isnan(solver.structural) ? Cell("rigid")
+                                        : Cell(shown({"N/m", "N/m"}, solver.structural, 2)),
+          distance_after(solver, 1),
+          distance_after(solver, kLooked),
+          solver.contraction,
+          solver.floor,
           below(1e-1),
           below(1e-2),
           below(1e-4)};
 }
 
-/// The solver, if kLooked iterations leave it farther from the exact step than one, by more than
-/// the tolerance; else "".
-std::string leaving(const OneStep& step, const std::vector<Cell>& own) {
-  const std::vector<Cell> row = row_of(step, own);
-  return row[4].number() > (1 + kTolerance) * row[3].number() ? row[1].text() : "";
+/// Whether kLooked iterations leave it farther from the exact step than one, by more than the
+/// tolerance.
+bool is_leaving(const StepSolver& solver) {
+  return distance_after(solver, kLooked) > (1 + kTolerance) * distance_after(solver, 1);
 }
 
 }  // namespace
@@ -76,23 +60,22 @@ Json json_of_steps(const ReportInput& input, CaseList& refs, DrawnCharts& drawn,
        Column("floor", "ends at", kLength), Column("to_1e-1", "iterations to a gap of 0.1"),
        Column("to_1e-2", "to 0.01"), Column("to_1e-4", "to 0.0001")},
       {},
-      "From one state, which all share. Distance: RMS over the vertices; gap: of springs (G "
-      "- G*)/(G0 - G*), of rigid links the squared distance over that of the prediction. "
-      "Links of a solver are its own: the exact step of springs is implicit Euler's, that "
-      "of rigid links the nearest placement that keeps all lengths."};
+      "All solvers start from the same state. Distance: RMS over the vertices. Gap: for springs (G "
+      "- G*)/(G0 - G*), for rigid links the squared distance over that of the prediction. Each "
+      "solver has its own links: the exact step of springs is implicit Euler's; that of rigid "
+      "links is the nearest placement that keeps all lengths."};
   std::vector<std::string> away;
   std::vector<Chart> charts;
-  const std::list<OneStep> all(input.steps.begin(), input.steps.end());  // charts point into them
-  for (const OneStep& step : all) {
+  for (const OneStep& step : input.steps) {
     try {
       charts.push_back(step_chart(step, "distance"));
     } catch (const InputError&) {  // no exact step
     }
-    for (const auto& own : step.found.table("solvers").rows)
-      if (const std::string solver = leaving(step, own); !solver.empty())
-        push_unique(away, solver + " on " + step.scene());
-    for (const auto& own : step.found.table("solvers").rows)
-      table.rows.push_back(row_of(step, own));
+    for (const StepSolver& solver : step.solvers) {
+      table.rows.push_back(row_of(step, solver));
+      if (is_leaving(solver))
+        push_unique(away, solver_label(step, solver.text) + " on " + step.titled_scene());
+    }
   }
   for (Figure& figure : figures_of(charts)) {
     figure.title = "Distance from the exact step";

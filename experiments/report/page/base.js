@@ -1,7 +1,7 @@
 'use strict';
-// What every other file of the page uses: elements and numbers; the model, its entries by id, and what the reader
-// chose, which is kept in the address: every view has a permalink. Whatever comes from the model becomes a text node
-// or an attribute, never markup.
+// What every other file of the page uses: elements and numbers; the model, its entries by id, and
+// what the reader chose, which is kept in the address: every view has a permalink. Whatever comes
+// from the model becomes a text node or an attribute, never markup.
 
 /** A text of any length; a very long one scrolls in a box of its own. */
 function boxed(child) {
@@ -11,13 +11,18 @@ function boxed(child) {
   return box;
 }
 
-/** An element. `props` are properties (`className`, `onclick`), else attributes; children are elements or texts. */
+/**
+ * An element. `props` are properties (`className`, `onclick`), else attributes; children are
+ * elements or texts.
+ */
 function el(name, props = {}, ...children) {
   const node = document.createElement(name);
   for (const [key, value] of Object.entries(props)) {
     if (value === undefined || value === null || value === false) continue;
-    if (key in node) node[key] = value;
-    else node.setAttribute(key, value === true ? '' : value);
+    if (key in node)
+      node[key] = value;
+    else
+      node.setAttribute(key, value === true ? '' : value);
   }
   node.append(...children.flat(Infinity).filter((child) => child || child === 0).map(boxed));
   return node;
@@ -25,21 +30,25 @@ function el(name, props = {}, ...children) {
 
 const note = (...content) => el('p', {className: 'note'}, content);
 const item = (...content) => el('li', {}, content);
-const folded = (title, ...content) => el('details', {className: 'card'}, el('summary', {}, title), content);
+const folded = (title, ...content) =>
+    el('details', {className: 'card'}, el('summary', {}, title), content);
 /** A row of a table: its head and its cells. */
 const row = (head, ...cells) =>
-  el('tr', {}, el('th', {scope: 'row'}, head), cells.map((cell) => el('td', {}, cell)));
+    el('tr', {}, el('th', {scope: 'row'}, head), cells.map((cell) => el('td', {}, cell)));
 
 /** A table that scrolls in its box where it is too wide. */
 const scrolling = (title, heads, rows) =>
-  el('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': short(title, 100)},
-    el('table', {}, el('caption', {className: 'hidden'}, short(title, 120)), el('thead', {}, heads), el('tbody', {}, rows)));
+    el('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': short(title, 100)},
+       el('table', {}, el('caption', {className: 'hidden'}, short(title, 120)),
+          el('thead', {}, heads), el('tbody', {}, rows)));
 const tableOf = (title, columns, rows) =>
-  scrolling(title, el('tr', {}, columns.map((text) => el('th', {scope: 'col'}, text))), rows);
+    scrolling(title, el('tr', {}, columns.map((text) => el('th', {scope: 'col'}, text))), rows);
 
 /** Names and values. */
-const factList = (facts) => facts?.length
-  ? el('dl', {className: 'facts'}, facts.map(({name, value}) => [el('dt', {}, name), el('dd', {}, value)])) : null;
+const factList = (facts) => facts?.length ?
+    el('dl', {className: 'facts'},
+       facts.map(({name, value}) => [el('dt', {}, name), el('dd', {}, value)])) :
+    null;
 
 /** A text as a heading or a chip can hold it. */
 function short(text, length = 60) {
@@ -54,15 +63,18 @@ function number(value, digits = 3) {
   const size = Math.abs(value);
   if (size >= 1e-4 && size < 1e6)
     return String(size >= 10 ** digits ? Math.round(value) : Number(value.toPrecision(digits)))
-        .replace('-', '−').replace(/\B(?=(\d{3})+$)/g, size >= 1e4 ? '\u202F' : '');
+        .replace('-', '−')
+        .replace(/\B(?=(\d{3})+$)/g, size >= 1e4 ? '\u202F' : '');
   const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
-  const power = String(Number(exponent)).replace(/./g, (c) => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
+  const raised = (c) => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c];
+  const power = String(Number(exponent)).replace(/./g, raised);
   const factor = String(Number(mantissa)).replace('-', '−');
   return factor === '1' ? '10' + power : factor + '×10' + power;
 }
 
 /** The glossary's entry of a metric; an unknown one is shown in SI under its own name. */
-const metric = (name) => Object.hasOwn(model.metrics, name) ? model.metrics[name] :
+const metric = (name) => Object.hasOwn(model.metrics, name) ?
+    model.metrics[name] :
     {title: name, help: '', unit: '', scale: 1, axis: 'linear', window: '', better: ''};
 
 /** An SI value in the unit of `quantity` (a metric, or an axis of a chart). */
@@ -80,15 +92,24 @@ function interval(low, high, quantity) {
 const titled = (quantity) => quantity.title + (quantity.unit ? ` [${quantity.unit}]` : '');
 const count = (n, one, many = one + 's') => `${n} ${n === 1 ? one : many}`;
 
-/** A field of a CSV file. A spreadsheet would run a text that begins like a formula: such a text gets an apostrophe. */
+/**
+ * A field of a CSV file. A spreadsheet would run a text that begins like a formula: such a text
+ * gets an apostrophe.
+ */
 function csvField(value) {
   if (value === null || value === undefined) return '';
   if (typeof value === 'number') return Number.isFinite(value) ? String(value) : '';
-  const text = /^[=+\-@\t\r]/.test(value) ? "'" + value : String(value);
+  const text = /^[=+\-@\t\r]/.test(value) ? '\'' + value : String(value);
   return /[",\r\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text;
 }
 
-/** A button that hands a text to the clipboard; where that is refused, the text is shown to be copied by hand. */
+/** The text of a CSV file, of its lines as lists of fields. */
+const csvText = (lines) => lines.map((fields) => fields.join(',') + '\r\n').join('');
+
+/**
+ * A button that hands a text to the clipboard; where that is refused, the text is shown to be
+ * copied by hand.
+ */
 function copyButton(text) {
   const button = el('button', {type: 'button', className: 'copy'}, 'copy');
   button.onclick = async () => {
@@ -102,7 +123,9 @@ function copyButton(text) {
       button.textContent = document.execCommand('copy') ? 'copied' : 'press Ctrl+C';
       if (button.textContent === 'copied') area.remove();
     }
-    setTimeout(() => { button.textContent = 'copy'; }, 2500);
+    setTimeout(() => {
+      button.textContent = 'copy';
+    }, 2500);
   };
   return button;
 }
@@ -115,7 +138,8 @@ function command(text) {
 const model = JSON.parse(document.getElementById('model').textContent);
 
 const index = (list, key = 'id') => new Map((list ?? []).map((entry) => [entry[key], entry]));
-const cases = index(model.cases, 'key'), charts = index(model.charts), maps = index(model.maps), films = index(model.films);
+const cases = index(model.cases, 'key'), charts = index(model.charts), maps = index(model.maps),
+      films = index(model.films);
 const scenes = index(model.scenes), statuses = index(model.statuses);
 const solvers = new Map(model.solvers.map((solver, order) => [solver.id, {...solver, order}]));
 
@@ -125,52 +149,75 @@ const all = (ids, from) => (ids ?? []).map((id) => from.get(id)).filter(Boolean)
 /** Figures of a part of the page. */
 const figuresOf = (part) => (model.figures ?? []).filter(({of}) => of === part);
 
+/** What the reader chose, by the keys of the address. */
 const state = {
-  params: () => new URLSearchParams(location.hash.slice(1)),
-  get: (key) => state.params().get(key) ?? '',
+  watchers: [],
+  params() { return new URLSearchParams(location.hash.slice(1)); },
+  get(key) { return state.params().get(key) ?? ''; },
   /** The section asked for: `at=cost`, or an address that ends in `#cost`. */
-  section: () => state.get('at') || [...state.params()].filter(([, value]) => !value).map(([key]) => key)[0] || '',
-  /** Changes some choices ("" takes one back); `step` makes it one that the browser's "back" undoes. */
+  section() {
+    const bare = [...state.params()].find(([, value]) => !value);
+    return state.get('at') || bare?.[0] || '';
+  },
+  /**
+   * Changes some choices ("" takes one back); `step` makes it one that the browser's "back" undoes.
+   */
   set(changes, step = true) {
     const next = state.params();
-    for (const [key, value] of [...next]) if (!value) next.delete(key);
+    for (const [key, value] of [...next])
+      if (!value) next.delete(key);
     for (const [key, value] of Object.entries(changes)) {
       next.delete(key);
-      for (const one of [value].flat()) if (one) next.append(key, one);
+      for (const one of [value].flat())
+        if (one) next.append(key, one);
     }
     history[step ? 'pushState' : 'replaceState'](null, '', '#' + next);
     state.tell();
   },
-  watchers: [],
   watch(watcher) { state.watchers.push(watcher); },
-  tell() { for (const watcher of state.watchers) watcher(); },
+  tell() {
+    for (const watcher of state.watchers) watcher();
+  },
 };
 addEventListener('popstate', () => state.tell());
 
 /** A link that is a permalink by itself and, clicked, keeps all other choices. */
 function choice(changes, props, ...children) {
-  return el('a', {...props, href: '#' + new URLSearchParams(changes), onclick: (event) => {
-    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
-    event.preventDefault();
-    state.set(changes);
-  }}, ...children);
+  return el(
+      'a', {
+        ...props,
+        href: '#' + new URLSearchParams(changes),
+        onclick: (event) => {
+          if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+          event.preventDefault();
+          state.set(changes);
+        }
+      },
+      ...children);
 }
 
 const isOff = (solver) => state.params().getAll('off').includes(solver);
 
-/** Colours of the solvers and statuses as custom properties, and the rules by which switched-off solvers vanish. */
+/**
+ * Colours of the solvers and statuses as custom properties, and the rules by which switched-off
+ * solvers vanish.
+ */
 function paint() {
   const sheet = document.styleSheets[0];
   const safe = (colour) => /^#[0-9a-f]{6}$/i.test(colour ?? '') ? colour : '#777777';
-  const variables = (theme) => [
-    ...[...solvers.values()].map((s) => `--s${s.order}:${safe(s.colour?.[theme])}`),
-    ...model.statuses.flatMap((s, i) => [`--c${i}:${safe(s.colour?.[theme])}`, `--i${i}:${safe(s.ink?.[theme])}`])];
+  const variables = (theme) =>
+      [...[...solvers.values()].map((s) => `--s${s.order}:${safe(s.colour?.[theme])}`),
+       ...model.statuses.flatMap(
+           (s, i) => [`--c${i}:${safe(s.colour?.[theme])}`, `--i${i}:${safe(s.ink?.[theme])}`])];
   sheet.insertRule(`:root{${variables('light').join(';')}}`, sheet.cssRules.length);
-  sheet.insertRule(`@media (prefers-color-scheme:dark){:root{${variables('dark').join(';')}}}`, sheet.cssRules.length);
+  sheet.insertRule(
+      `@media (prefers-color-scheme:dark){:root{${variables('dark').join(';')}}}`,
+      sheet.cssRules.length);
   for (const {order} of solvers.values())
     sheet.insertRule(`.off-${order} [data-s="${order}"]{display:none}`, sheet.cssRules.length);
   state.watch(() => {
-    for (const {id, order} of solvers.values()) document.body.classList.toggle('off-' + order, isOff(id));
+    for (const {id, order} of solvers.values())
+      document.body.classList.toggle('off-' + order, isOff(id));
   });
 }
 const solverColour = (id) => `var(--s${solverOf(id).order})`;

@@ -1,5 +1,6 @@
 'use strict';
-// What a point or a cell says at the pointer and at the focus, and how the arrow keys move between them.
+// What a point or a cell says at the pointer and at the focus, and how the arrow keys move between
+// them.
 
 const tip = document.getElementById('tip');
 
@@ -15,12 +16,18 @@ function showTip(anchor, lines) {
   tip.style.left = Math.max(gap, left) + 'px';
   tip.style.top = (below ? at.bottom + gap : at.top - gap - size.height) + 'px';
 }
-const hideTip = () => { tip.hidden = true; };
+const hideTip = () => {
+  tip.hidden = true;
+};
 addEventListener('scroll', () => {
-  if (!tip.hidden && document.activeElement === told.anchor) showTip(told.anchor, told.lines);
-  else hideTip();
+  if (!tip.hidden && document.activeElement === told.anchor)
+    showTip(told.anchor, told.lines);
+  else
+    hideTip();
 }, {passive: true, capture: true});
-addEventListener('keydown', (event) => { if (event.key === 'Escape') hideTip(); });
+addEventListener('keydown', (event) => {
+  if (event.key === 'Escape') hideTip();
+});
 
 /** Gives an element its text at the pointer and at the focus, and to readers of the screen. */
 function describe(node, lines) {
@@ -32,37 +39,57 @@ function describe(node, lines) {
   node.addEventListener('blur', hideTip);
 }
 
-/** What is said of a case: how it ended, which one it is, and that more is to be had. */
+/** Lines about a case: how it ended, which one it is, and how to see more of it. */
 function caseLines(status, reason, key) {
   const entry = statusOf(status), known = cases.get(key), why = reason ?? known?.reason;
-  return [`status: ${entry.title}${why ? ` (${short(why, 120)})` : ''}`,
-          ...(known ? [`case ${key}: ${short(known.id, 160)}`, 'Enter or click: settings, values, command'] : [])];
+  return [
+    `status: ${entry.title}${why ? ` (${short(why, 120)})` : ''}`,
+    ...(known ?
+            [`case ${key}: ${short(known.id, 160)}`, 'Enter or click: settings, values, command'] :
+            [])
+  ];
 }
 
 /**
- * One stop of the Tab key for all items of a box, which have `data-group` (a series, a row of a map): left and right
- * move within the group, up and down to the nearest item of the group before and behind.
+ * One stop of the Tab key for all items of a box, which have `data-group` (a series, a row of a
+ * map): left and right move within the group, up and down to the nearest item of the group before
+ * and behind.
  */
 function rove(box, selector) {
-  const items = () => [...box.querySelectorAll(selector)].filter((item) => item.getClientRects().length);
-  const at = (item) => { const r = item.getBoundingClientRect(); return r.left + r.width / 2; };
+  const items =
+      () => [...box.querySelectorAll(selector)].filter((item) => item.getClientRects().length);
+  const at = (item) => {
+    const r = item.getBoundingClientRect();
+    return r.left + r.width / 2;
+  };
   const stop = (item) => {
-    for (const other of box.querySelectorAll(selector)) other.setAttribute('tabindex', other === item ? 0 : -1);
+    for (const other of box.querySelectorAll(selector))
+      other.setAttribute('tabindex', other === item ? 0 : -1);
   };
   const reset = () => {
     const shown = items();
-    if (shown.length && !shown.some((item) => item.getAttribute('tabindex') === '0')) stop(shown[0]);
+    if (shown.length && !shown.some((item) => item.getAttribute('tabindex') === '0'))
+      stop(shown[0]);
   };
-  box.addEventListener('focusin', (event) => { if (event.target.matches(selector)) stop(event.target); });
+  box.addEventListener('focusin', (event) => {
+    if (event.target.matches(selector)) stop(event.target);
+  });
   box.addEventListener('keydown', (event) => {
     const here = event.target.closest(selector);
-    if (!here || !['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End'].includes(event.key)) return;
+    if (!here ||
+        !['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End'].includes(event.key))
+      return;
     event.preventDefault();
     const groups = d3.nest().key((item) => item.dataset.group).entries(items());
     const mine = groups.findIndex((group) => group.key === here.dataset.group);
-    const row = (groups[mine]?.values ?? []).sort((a, b) => at(a) - at(b)), place = row.indexOf(here);
-    const next = {ArrowLeft: row[place - 1], ArrowRight: row[place + 1], Home: row[0], End: row[row.length - 1]}
-        [event.key];
+    const row = (groups[mine]?.values ?? []).sort((a, b) => at(a) - at(b)),
+          place = row.indexOf(here);
+    const next = {
+      ArrowLeft: row[place - 1],
+      ArrowRight: row[place + 1],
+      Home: row[0],
+      End: row[row.length - 1]
+    }[event.key];
     const other = groups[mine + {ArrowUp: -1, ArrowDown: 1}[event.key]];
     (next ?? (other && d3.least(other.values, (item) => Math.abs(at(item) - at(here)))))?.focus();
   });

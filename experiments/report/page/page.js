@@ -1,22 +1,33 @@
 'use strict';
 // The page from top to bottom: its contents, the solvers' switches, printing.
 
-const name = (part) => part.id === 'answer' && !model.differences ? 'Answer' : part.querySelector('h2').textContent;
+const name = (part) =>
+    part.id === 'answer' && !model.differences ? 'Answer' : part.querySelector('h2').textContent;
 
-/** What goes on paper, by the ids of sections in the address: all scenes and all cases are many pages. */
-const toPaper = () => state.get('print') ? state.params().getAll('print') : ['differences', 'answer', 'charts', 'cost'];
+/**
+ * What goes on paper, by the ids of sections in the address: all scenes and all cases are many
+ * pages.
+ */
+const toPaper = () => state.get('print') ? state.params().getAll('print') :
+                                           ['differences', 'answer', 'charts', 'cost'];
 function printChooser(sections) {
-  const boxes = sections.map(({id}) => el('input', {type: 'checkbox', onchange: () => {
-    const chosen = sections.filter((_, i) => boxes[i].checked).map((part) => part.id);
-    state.set({print: chosen.length ? chosen : ['none']}, false);
-  }}));
+  const boxes =
+      sections.map(({id}) => el('input', {
+                     type: 'checkbox',
+                     onchange: () => {
+                       const chosen =
+                           sections.filter((_, i) => boxes[i].checked).map((part) => part.id);
+                       state.set({print: chosen.length ? chosen : ['none']}, false);
+                     }
+                   }));
   state.watch(() => sections.forEach((part, i) => {
     boxes[i].checked = toPaper().includes(part.id);
     part.classList.toggle('unprinted', !boxes[i].checked);
   }));
-  return el('details', {className: 'to-paper'}, el('summary', {}, 'Print'),
-    sections.map((part, i) => el('label', {}, boxes[i], ' ', name(part))),
-    el('button', {type: 'button', onclick: () => print()}, 'print these'));
+  return el(
+      'details', {className: 'to-paper'}, el('summary', {}, 'Print'),
+      sections.map((part, i) => el('label', {}, boxes[i], ' ', name(part))),
+      el('button', {type: 'button', onclick: () => print()}, 'print these'));
 }
 
 /** The contents, which stay in sight, and the solvers' switches. */
@@ -32,11 +43,17 @@ function contents(sections) {
     state.set({off: off.includes(id) ? off.filter((other) => other !== id) : [...off, id]}, false);
   };
   const ids = [...solvers.keys()];
-  const switches = ids.map((id) =>
-    el('button', {type: 'button', className: 'switch', onclick: () => flip(id)}, swatch({solver: id}), ' ', short(solverOf(id).title, 40)));
+  const switches = ids.map(
+      (id) =>
+          el('button', {type: 'button', className: 'switch', onclick: () => flip(id)},
+             swatch({solver: id}), ' ', short(solverOf(id).title, 40)));
   state.watch(() => ids.forEach((id, i) => switches[i].setAttribute('aria-pressed', !isOff(id))));
-  const group = el('div', {className: 'switches', role: 'group', 'aria-label': 'Solvers shown'}, switches);
-  document.getElementById('contents').append(el('ul', {}, links.map((link) => item(link))), ids.length > 1 ? group : '', printChooser(sections));
+  const group =
+      el('div', {className: 'switches', role: 'group', 'aria-label': 'Solvers shown'}, switches);
+  document.getElementById('contents')
+      .append(
+          el('ul', {}, links.map((link) => item(link))), ids.length > 1 ? group : '',
+          printChooser(sections));
 }
 
 /** All scenes and folded parts of what goes on paper; afterwards as it was. */
@@ -45,7 +62,8 @@ function watchPrinting() {
   const begin = () => {
     if (document.body.classList.contains('printing')) return;
     document.body.classList.add('printing');
-    for (const {showAll, isPrinted} of oneOf.views) if (isPrinted()) showAll();
+    for (const {showAll, isPrinted} of oneOf.views)
+      if (isPrinted()) showAll();
     closed = [...document.querySelectorAll('main section:not(.unprinted) details:not([open])')];
     for (const part of closed) part.open = true;
     for (const {draw} of drawn) draw(330);
@@ -61,15 +79,20 @@ function watchPrinting() {
   matchMedia('print').addEventListener('change', (event) => (event.matches ? begin : end)());
 }
 
-/** A section, a table or a chart by its id, or the part of that name of the scene shown ("film"). */
+/**
+ * A section, a table or a chart by its id, or the part of that name of the scene shown ("film").
+ */
 const placeOf = (id) => document.getElementById(id) ??
-  [...document.querySelectorAll(`[data-at="${CSS.escape(id)}"]`)].find((node) => node.checkVisibility());
+    [...document.querySelectorAll(`[data-at="${CSS.escape(id)}"]`)].find(
+        (node) => node.checkVisibility());
 
 function start() {
   paint();
-  const sections = [differencesSection(), answerSection(), chartsSection(), sceneSection(), costSection(), stepsSection(), limitsSection(),
-                    truthsSection(),
-                    historySection(), regressionSection(), casesSection(), methodSection()].filter(Boolean);
+  const sections = [
+    differencesSection(), answerSection(), chartsSection(), sceneSection(), costSection(),
+    stepsSection(), limitsSection(), truthsSection(), historySection(), regressionSection(),
+    casesSection(), methodSection()
+  ].filter(Boolean);
   document.getElementById('main').append(...sections);
   contents(sections);
   watchCase();
@@ -77,7 +100,8 @@ function start() {
   let at = null, scene = null;
   state.watch(() => {
     const wanted = state.section(), now = state.get('scene');
-    // A frame later charts and films have their heights: what is shown stays where it was scrolled to.
+    // A frame later charts and films have their heights: what is shown stays where it was scrolled
+    // to.
     if (wanted && (wanted !== at || now !== scene))
       requestAnimationFrame(() => requestAnimationFrame(() => placeOf(wanted)?.scrollIntoView()));
     [at, scene] = [wanted, now];

@@ -1,13 +1,15 @@
 'use strict';
-// Tables, of whichever answer: a cell is a number with its unit, a text or an interval; it may be the best of its row, have
-// a bar, and lead to its case. The answer on the first screen is such tables, a row each, which unfold to their scenes.
+// Tables, of whichever answer: a cell is a number with its unit, a text or an interval; it may be
+// the best of its row, have a bar, and lead to its case. The answer on the first screen is such
+// tables, a row each, which unfold to their scenes.
 
 /** Tables by name; their cells are {value, state, note, key, scene, best}. */
 function unpacked(tables) {
   for (const table of Object.values(tables ?? {})) {
     table.rows = table.rows.map((cells) => cells.map((value) => ({value})));
     const place = new Map(table.columns.map(({name}, i) => [name, i]));
-    for (const {row: at, column, ...more} of table.notes) Object.assign(table.rows[at][place.get(column)], more);
+    for (const {row: at, column, ...more} of table.notes)
+      Object.assign(table.rows[at][place.get(column)], more);
   }
   return new Map(Object.entries(tables ?? {}).map(([name, table]) => [name, {...table, name}]));
 }
@@ -15,11 +17,15 @@ const tables = unpacked(model.tables), questions = unpacked(model.answer?.tables
 
 /** A solver's mark: its colour and its marker, so that hue is not the only carrier. */
 function mark(id) {
-  const svg = d3.create('svg').attr('class', 'mark').attr('viewBox', '-7 -7 14 14').attr('aria-hidden', 'true');
+  const svg = d3.create('svg')
+                  .attr('class', 'mark')
+                  .attr('viewBox', '-7 -7 14 14')
+                  .attr('aria-hidden', 'true');
   svg.append('path').attr('d', markerPath(solverOf(id).marker, 60)).style('fill', solverColour(id));
   return svg.node();
 }
-const named = (id, title) => el('span', {className: 'solver'}, mark(id), short(title ?? solverOf(id).title, 40));
+const named = (id, title) =>
+    el('span', {className: 'solver'}, mark(id), short(title ?? solverOf(id).title, 40));
 
 /** A link that opens a case and says at the pointer how it ended. */
 function caseLink(key, ...text) {
@@ -30,7 +36,8 @@ function caseLink(key, ...text) {
 }
 
 /** Entries of an object by solver, in the order of the solvers. */
-const bySolver = (counts) => Object.entries(counts).sort(([a], [b]) => solverOf(a).order - solverOf(b).order);
+const bySolver = (counts) =>
+    Object.entries(counts).sort(([a], [b]) => solverOf(a).order - solverOf(b).order);
 
 const middle = (value) => Array.isArray(value) ? value[1] : typeof value === 'number' ? value : NaN;
 const unitOf = (column) => ({unit: column.shown ?? '', scale: column.scale ?? 1});
@@ -43,53 +50,94 @@ function cellText({value}, column) {
 
 /** An interval beside its middle: "±0.3 %", the interval itself at the pointer. */
 function spreadOf([low, mid, high], column) {
-  return el('small', {title: interval(low, high, unitOf(column))}, ` ±${number(100 * Math.max(high - mid, mid - low) / mid, 1)}\u00A0%`);
+  return el(
+      'small', {title: interval(low, high, unitOf(column))},
+      ` ±${number(100 * Math.max(high - mid, mid - low) / mid, 1)}\u00A0%`);
 }
 
-/** Words in place of a value: "not run", "exploded"; a number of cloth that stands still is there, and is not compared. */
-const lacks = ({state, value}) => Boolean(state) && state !== 'value' && !Number.isFinite(middle(value));
+/**
+ * Whether a cell has words in place of a value: "not run", "exploded". Cloth that hardly moves has
+ * its number, which is not compared.
+ */
+const lacks = ({state, value}) =>
+    Boolean(state) && state !== 'value' && !Number.isFinite(middle(value));
 
-/** `most`: the number of a full bar; without it there is no bar. `brief`: of a note what stands before its colon. */
+/**
+ * What a cell shows. `most`: the number of a full bar; without it there is no bar. `brief`: only
+ * what stands before the colon of a note.
+ */
 function cellContent(cell, column, most, brief) {
-  const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value), note = cell.note ?? '';
+  const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value),
+        note = cell.note ?? '';
   const noted = cell.state === 'hardly_moves' ? 'hardly moves' : brief ? note.split(':')[0] : note;
+  const whole = [note, explain(note)].filter(Boolean).join('\n');
+  const share = 100 * Math.max(0, value) / most;
   const spread = Array.isArray(cell.value) && spreadOf(cell.value, column);
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
   const failed = entry && entry.status !== 'ok' && lacks(cell) && glyphBox(entry.status);
-  return [el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said, cell.best && el('span', {className: 'hidden'}, ' best'),
-    spread, note && el('small', {title: [note, explain(note)].filter(Boolean).join('\n')}, ' ', short(noted, 90).replaceAll(' × ', '\u00A0×\u00A0'))),
-    most > 0 && Number.isFinite(value) && el('span', {className: 'bar', 'aria-hidden': 'true'},
-      el('i', {style: `width:${100 * Math.max(0, value) / most}%;background:${solverColour(column.name)}`}))];
+  return [
+    el('span', {className: 'said'}, failed, failed && ' ', entry ? caseLink(cell.key, said) : said,
+       cell.best && el('span', {className: 'hidden'}, ' best'), spread,
+       note && el('small', {title: whole}, ' ', kept(short(noted, 90)))),
+    most > 0 && Number.isFinite(value) &&
+        el('span', {className: 'bar', 'aria-hidden': 'true'},
+           el('i', {style: `width:${share}%;background:${solverColour(column.name)}`}))
+  ];
 }
 
 /** A row: its head, then a cell for each column; those of solvers vanish with them. */
 function tableRow(table, cells, props, head, bars, brief) {
   const most = bars ? d3.max(cells, (cell) => middle(cell.value)) : 0;
-  return el('tr', props, el('th', {scope: 'row'}, head ?? cellContent(cells[0], table.columns[0])),
-    cells.slice(1).map((cell, i) => {
-      const column = table.columns[i + 1], solver = solvers.get(column.name);
-      return el('td', {'data-s': solver?.order, className: solver && lacks(cell) ? 'none' : ''}, cellContent(cell, column, most, brief));
-    }));
+  return el(
+      'tr', props, el('th', {scope: 'row'}, head ?? cellContent(cells[0], table.columns[0])),
+      cells.slice(1).map((cell, i) => {
+        const column = table.columns[i + 1], solver = solvers.get(column.name);
+        return el(
+            'td', {'data-s': solver?.order, className: solver && lacks(cell) ? 'none' : ''},
+            cellContent(cell, column, most, brief));
+      }));
 }
-const tableHeads = (table, first) => el('tr', {}, table.columns.map((column, i) => el('th', {scope: 'col',
-  'data-s': solvers.get(column.name)?.order}, i === 0 && first !== undefined ? first :
-  [solvers.has(column.name) && i > 0 ? [named(column.name, column.heading), solverOf(column.name).arithmetic && explained(plainArithmetic(solverOf(column.name).arithmetic), {className: 'arithmetic'})] : column.heading,
-   column.shown && first === undefined && ` [${column.shown}]`])));
+/** The heads of the columns, with units unless `first` stands in the place of the first. */
+function tableHeads(table, first) {
+  const solverHead = ({name, heading}) => {
+    const {arithmetic} = solverOf(name);
+    const how = arithmetic && explained(plainArithmetic(arithmetic), {className: 'arithmetic'});
+    return [named(name, heading), how];
+  };
+  const head = (column, i) => {
+    if (i === 0 && first !== undefined) return first;
+    const unit = column.shown && first === undefined && ` [${column.shown}]`;
+    return [solvers.has(column.name) && i > 0 ? solverHead(column) : column.heading, unit];
+  };
+  const cell = (column, i) =>
+      el('th', {scope: 'col', 'data-s': solvers.get(column.name)?.order}, head(column, i));
+  return el('tr', {}, table.columns.map(cell));
+}
 
 /** What is copied: the table for a spreadsheet, numbers in SI. */
 function tableCsv(table) {
   const field = ({value}) => csvField(Array.isArray(value) ? value[1] : value);
-  return [table.columns.map((c) => csvField(c.heading + (c.unit && c.unit !== '1' ? ` [${c.unit}]` : ''))),
-    ...table.rows.map((cells) => cells.map(field))].map((fields) => fields.join(',')).join('\r\n') + '\r\n';
+  const unit = (c) => c.unit && c.unit !== '1' ? ` [${c.unit}]` : '';
+  const heads = table.columns.map((c) => csvField(c.heading + unit(c)));
+  return csvText([heads, ...table.rows.map((cells) => cells.map(field))]);
 }
 
-const tableBody = (table) => [note(table.caption), scrolling(`${table.title} (${table.name})`, tableHeads(table),
-  table.rows.map((cells) => tableRow(table, cells)))];
-const tableNode = (table, heading = 'h4') => el('div', {className: 'card', id: `table-${table.name}`},
-  el(heading, {}, short(table.title, 120), ' ', copyButton(() => tableCsv(table))), tableBody(table));
-const foldedTable = (table) => folded(table.title, copyButton(() => tableCsv(table)), tableBody(table));
+const tableBody = (table) =>
+    [note(table.caption),
+     scrolling(
+         `${table.title} (${table.name})`, tableHeads(table),
+         table.rows.map((cells) => tableRow(table, cells)))];
+const tableNode = (table, heading = 'h4') =>
+    el('div', {className: 'card', id: `table-${table.name}`},
+       el(heading, {}, short(table.title, 120), ' ', copyButton(() => tableCsv(table))),
+       tableBody(table));
+const foldedTable = (table) =>
+    folded(table.title, copyButton(() => tableCsv(table)), tableBody(table));
 
-/** Questions whose scenes are shown; where there is room, those of the first one, unless the reader chose. */
+/**
+ * Questions whose scenes are shown; where there is room, those of the first one, unless the reader
+ * chose.
+ */
 function unfolded() {
   const chosen = state.params().getAll('open').filter((name) => name !== 'none');
   return state.get('open') || innerWidth < 1000 ? chosen : [...questions.keys()].slice(0, 1);
@@ -99,31 +147,47 @@ function unfolded() {
 const sceneOf = ([{scene}]) => scene ?? '';
 const scenesOf = (table) => table.rows.length > 2 ? table.rows.slice(0, -1) : [];
 
-/** Rows of one question: what all scenes say together, or the scene that was chosen; then each of them, unfolded by a click. */
+/**
+ * Rows of one question: what all scenes say together, or the scene that was chosen; then each of
+ * them, unfolded by a click.
+ */
 function questionRows(table) {
   const last = table.rows[table.rows.length - 1], id = `answer-${table.name}`;
-  const sceneCell = ([{value, scene, note: why}]) => [scenes.has(scene) ? choice({scene, at: 'scenes'}, {}, value) : value,
-    why && el('small', {}, ' ', why)];
+  const sceneCell = ([{value, scene, note: why}]) =>
+      [scenes.has(scene) ? choice({scene, at: 'scenes'}, {}, value) : value,
+       why && el('small', {}, ' ', why)];
   const folds = [
-    el('tr', {className: 'fold'}, el('td', {colSpan: table.columns.length},
-      el('small', {}, table.caption, ' '), copyButton(() => tableCsv(table)))),
-    ...scenesOf(table).map((cells) => tableRow(table, cells, {className: 'fold'}, sceneCell(cells), true))];
-  const button = el('button', {type: 'button', className: 'unfold'}, table.title), body = el('tbody', {id}, folds);
+    el('tr', {className: 'fold'},
+       el('td', {colSpan: table.columns.length}, el('small', {}, table.caption, ' '),
+          copyButton(() => tableCsv(table)))),
+    ...scenesOf(table).map(
+        (cells) => tableRow(table, cells, {className: 'fold'}, sceneCell(cells), true))
+  ];
+  const button = el('button', {type: 'button', className: 'unfold'}, table.title),
+        body = el('tbody', {id}, folds);
   button.onclick = () => {
-    const open = unfolded().filter((name) => name !== table.name);
-    state.set({open: open.length < unfolded().length ? open.length ? open : 'none' : [...open, table.name]}, false);
+    const others = unfolded().filter((name) => name !== table.name);
+    const opens = others.length === unfolded().length;
+    state.set({open: opens ? [...others, table.name] : others.length ? others : 'none'}, false);
   };
   let head = null, shown = null;
   state.watch(() => {
     const open = unfolded().includes(table.name), scene = chosenScene();
-    const cells = !scene ? last : table.rows.find((row) => sceneOf(row) === scene) ??
-      [{value: `not on ${scene}`}, ...last.slice(1).map(() => ({value: null}))];
+    const empty = () => [{value: `not on ${scene}`}, ...last.slice(1).map(() => ({value: null}))];
+    const rowOf = () => table.rows.find((row) => sceneOf(row) === scene) ?? empty();
+    const cells = scene ? rowOf() : last;
     button.setAttribute('aria-expanded', open);
     for (const fold of folds) fold.classList.toggle('folded', !open);
     if (cells === shown) return;
     head?.remove();
-    head = tableRow(table, shown = cells, {className: scene ? 'question of-scene' : 'question'},
-                    [button, el('small', {title: cells[0].note ?? ''}, cells[0].value, cells[0].scene && cells[0].note && ` ${cells[0].note}`)], true, true);
+    head = tableRow(
+        table, shown = cells, {className: scene ? 'question of-scene' : 'question'},
+        [
+          button,
+          el('small', {title: cells[0].note ?? ''}, cells[0].value,
+             cells[0].scene && cells[0].note && ` ${cells[0].note}`)
+        ],
+        true, true);
     body.prepend(head);
   });
   return body;
@@ -135,27 +199,42 @@ const chosenScene = () => answered.includes(state.get('scene')) ? state.get('sce
 function sceneChooser() {
   const links = ['', ...answered].map((scene) => choice({scene}, {}, scene || 'All scenes'));
   state.watch(() => links.forEach((link, i) => {
-    if (['', ...answered][i] === chosenScene()) link.setAttribute('aria-current', 'true');
-    else link.removeAttribute('aria-current');
+    if (['', ...answered][i] === chosenScene())
+      link.setAttribute('aria-current', 'true');
+    else
+      link.removeAttribute('aria-current');
   }));
-  return el('nav', {className: 'chips still', id: 'answer-scenes', 'aria-label': 'scene of the answer'}, el('span', {}, 'The table below is of'), links);
+  return el(
+      'nav', {className: 'chips still', id: 'answer-scenes', 'aria-label': 'scene of the answer'},
+      el('span', {}, 'The table below is of'), links);
 }
 
 /** What the page is and what it asks. */
 function pageHead() {
   const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '';
-  return [note(el('b', {}, 'taut'), ' report · ',
-       [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean).join(' · ')),
-    el('h1', {}, meta.question || meta.title)];
+  const facts = [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean);
+  return [
+    note(el('b', {}, 'taut'), ' report · ', facts.join(' · ')),
+    el('h1', {}, meta.question || meta.title)
+  ];
 }
 
 /** The first screen: a row for each question. */
 function answerSection() {
   const asked = [...questions.values()];
-  return el('section', {id: 'answer'}, model.differences ? el('h2', {}, `B alone: ${model.differences.b}`) : pageHead(), winnersPart(),
-    answered.length > 1 && sceneChooser(),
-    asked.length ? el('div', {className: `card scroll answer ${asked[0].columns.length < 5 ? 'few' : ''}`, tabIndex: 0, role: 'region', 'aria-label': 'The answer'},
-      el('table', {}, el('caption', {}, model.answer.subject),
-         el('thead', {}, tableHeads(asked[0], 'question')), asked.map(questionRows))) : null,
-    asked.length ? termList() : null);
+  return el(
+      'section', {id: 'answer'},
+      model.differences ? el('h2', {}, `B alone: ${model.differences.b}`) : pageHead(),
+      winnersPart(), answered.length > 1 && sceneChooser(),
+      asked.length ?
+          el('div', {
+            className: `card scroll answer ${asked[0].columns.length < 5 ? 'few' : ''}`,
+            tabIndex: 0,
+            role: 'region',
+            'aria-label': 'The answer'
+          },
+             el('table', {}, el('caption', {}, model.answer.subject),
+                el('thead', {}, tableHeads(asked[0], 'question')), asked.map(questionRows))) :
+          null,
+      asked.length ? termList() : null);
 }

@@ -1,73 +1,140 @@
 'use strict';
-// Who wins where: the map of the cheapest solvers, error over cost beside it, what both say in a sentence, and the
-// meaning of every abbreviation.
+// Who wins where: the map of the cheapest solvers, error over cost beside it, what both say in a
+// sentence, and the meaning of every abbreviation.
 
 /** What the abbreviations in a text mean, a line each. */
 function explain(text) {
   const plain = text.replaceAll('\u00A0', ' ');
-  return (model.terms ?? []).filter(({term}) => plain.includes(term) || (/^\d+ × \d+$/.test(term) && /\d+ × \d+/.test(plain) && !/^(float|double)/.test(plain)))
-      .map(({term, meaning}) => `${term}: ${meaning}`).join('\n');
+  const isWork = (term) => /^\d+ × \d+$/.test(term);
+  const hasWork = /\d+ × \d+/.test(plain) && !/^(float|double)/.test(plain);
+  return (model.terms ?? [])
+      .filter(({term}) => plain.includes(term) || (hasWork && isWork(term)))
+      .map(({term, meaning}) => `${term}: ${meaning}`)
+      .join('\n');
 }
-const explained = (text, props = {}) => el('small', {...props, title: explain(text)}, text.replaceAll(' × ', '\u00A0×\u00A0'));
+/** A setting that no line breaks within "2 × 8". */
+const kept = (text) => text.replaceAll(' × ', '\u00A0×\u00A0');
+const explained = (text, props = {}) => el('small', {...props, title: explain(text)}, kept(text));
 
 /** All abbreviations, below what has them. */
-const termList = () => model.terms?.length ? el('p', {className: 'note terms'}, model.terms.map(({term, meaning}, i) =>
-  [i ? '; ' : '', el('b', {}, term.replaceAll(' ', '\u00A0')), ` ${meaning}`]), '.') : null;
+function termList() {
+  if (!model.terms?.length) return null;
+  const entry =
+      ({term, meaning},
+       i) => [i ? '; ' : '', el('b', {}, term.replaceAll(' ', '\u00A0')), ` ${meaning}`];
+  return el('p', {className: 'note terms'}, model.terms.map(entry), '.');
+}
 
 /** A number of a sentence leads to its case, or to the map that it counts cells of. */
-const saidPart = (part) => part.case ? caseLink(part.case, part.text) : part.map ? choice({at: 'winners'}, {}, part.text) : part.text;
-const sentences = () => (model.winners?.sentences ?? []).map((parts) => el('p', {className: 'finding'}, parts.map(saidPart)));
+function saidPart({text, case: key, map}) {
+  if (key) return caseLink(key, text);
+  return map ? choice({at: 'winners'}, {}, text) : text;
+}
+const sentence = (parts) => el('p', {className: 'finding'}, parts.map(saidPart));
 
-const frameCost = {unit: 'ms', scale: 1e3 * (model.winners?.frame ?? 1)};
+const frameCost = {
+  unit: 'ms',
+  scale: 1e3 * (model.winners?.frame ?? 1)
+};
 const plainArithmetic = (text) => text.replace(/ \(\w+\)/g, '');
 
-/** A setting that reaches the error: who, over whom by how much, at what cost, at which setting, in which arithmetic, of which links,
- *  and its largest error of the whole run, if that is above `level`. */
+/**
+ * A setting that reaches the error: who, over whom by how much, at what cost, at which setting, in
+ * which arithmetic, of which links, and its largest error of the run, if that is above `level`.
+ */
 function contender(one, over, level) {
   const cost = (one.at_most ? '≤ ' : '') + shown(one.cost[1], frameCost, 2);
-  return el('div', {className: 'contender'}, named(one.solver), over,
-    el('div', {className: 'price'}, caseLink(one.case, cost), ' ', explained(one.setting)),
-    explained([one.arithmetic, one.links && `springs of ${one.links}`].filter(Boolean).join(', '), {className: 'how'}),
-    one.largest > level && el('small', {className: 'how'}, `up to ${shown(one.largest, metric(model.winners.metric), 2)} at some moment`));
+  const links = one.links && `springs of ${one.links}`;
+  const largest = one.largest > level &&
+      `up to ${shown(one.largest, metric(model.winners.metric), 2)} at some moment`;
+  return el(
+      'div', {className: 'contender'}, named(one.solver), over,
+      el('div', {className: 'price'}, caseLink(one.case, cost), ' ', explained(one.setting)),
+      explained([one.arithmetic, links].filter(Boolean).join(', '), {className: 'how'}),
+      largest && el('small', {className: 'how'}, largest));
+}
+
+/** How many times cheaper than the cheapest setting of another solver. */
+function overNext(next, times) {
+  const {title} = solverOf(next.solver);
+  const cost = `${shown(next.cost[1], frameCost, 2)} by ${title}, ${next.setting}`;
+  return el(
+      'div', {
+        className: 'over',
+        title: `${cost}: ${number(times[0])} to ${number(times[2])} times as much`
+      },
+      el('b', {}, `${number(times[1], 2)}×`), ` cheaper than ${short(title, 24)}`);
 }
 
 /** A cell; on a phone, where the columns stand below each other, it says which error it is of. */
 function winnerCell(cell, level) {
-  const node = (props, ...content) => el('td', {...props, 'data-level': shown(level, metric(model.winners.metric), 2)}, el('div', {}, content));
+  const error = shown(level, metric(model.winners.metric), 2);
+  const node = (props, ...content) =>
+      el('td', {...props, 'data-level': error}, el('div', {}, content));
   if (!cell.cheapest) return node({className: 'none'}, '–', el('small', {}, ' ', cell.why));
   const {cheapest, next, times} = cell, passed = cell.passed_over ?? [];
-  const over = cheapest.length === 1 && (next ? el('div', {className: 'over', title:
-    `${shown(next.cost[1], frameCost, 2)} by ${solverOf(next.solver).title}, ${next.setting}: ` +
-    `${number(times[0])} to ${number(times[2])} times as much`}, el('b', {}, `${number(times[1], 2)}×`),
-    ` cheaper than ${short(solverOf(next.solver).title, 24)}`) : el('div', {className: 'over'}, 'no other reaches it'));
-  return node({}, cheapest.map((one) => contender(one, over, level)),
-    cheapest.length > 1 && el('small', {}, 'noise cannot tell them apart'),
-    passed.length > 0 && el('small', {className: 'passed', title: passed.map(({solver, why}) => `${solverOf(solver).title}: ${why}`).join('\n')},
-      `not counted: ${passed.map(({solver}) => solverOf(solver).title).join(', ')}`));
+  const over = cheapest.length === 1 &&
+      (next ? overNext(next, times) : el('div', {className: 'over'}, 'no other reaches it'));
+  return node(
+      {}, cheapest.map((one) => contender(one, over, level)),
+      cheapest.length > 1 && el('small', {}, 'noise cannot tell them apart'),
+      passed.length > 0 &&
+          el('small', {
+            className: 'passed',
+            title: passed.map(({solver, why}) => `${solverOf(solver).title}: ${why}`).join('\n')
+          },
+             `not counted: ${passed.map(({solver}) => solverOf(solver).title).join(', ')}`));
 }
 
 /** The map: a row for each scene, a column for each error. */
 function winnersCard() {
   const {rows, levels, certainty} = model.winners, error = metric(model.winners.metric);
   const titles = (some) => rows.filter(some).map((row) => row.title).join(', ');
-  const missed = titles((row) => row.way === 'missed'), unjudged = titles((row) => row.way === 'nothing');
+  const missed = titles((row) => row.way === 'missed'),
+        unjudged = titles((row) => row.way === 'nothing');
+  const wayBy = {
+    'exact steps': 'way of exact steps',
+    missed: 'way by what steps miss',
+    nothing: 'way not judged'
+  };
+  const byMissed = `On ${missed} only what its own steps miss of exact ones tells that: ` +
+      'solvers that declare no step (Bullet\u2019s) and contact that does not settle ' +
+      'are not judged there. ';
+  const notJudged = `On ${unjudged} nothing tells it, or nothing moves: ` +
+      'cloth that lags keeps its links there. ';
   const line = (row) => {
-    const node = el('tr', {}, el('th', {scope: 'row'}, scenes.has(row.scene) ? choice({scene: row.scene, at: 'scenes'}, {}, row.title) : row.title,
-      row.way !== 'reference' && el('small', {}, {'exact steps': 'way of exact steps', missed: 'way by what steps miss', nothing: 'way not judged'}[row.way])), row.cells.map((cell, i) => winnerCell(cell, levels[i])));
+    const node =
+        el('tr', {},
+           el('th', {scope: 'row'},
+              scenes.has(row.scene) ? choice({scene: row.scene, at: 'scenes'}, {}, row.title) :
+                                      row.title,
+              row.way !== 'reference' && el('small', {}, wayBy[row.way])),
+           row.cells.map((cell, i) => winnerCell(cell, levels[i])));
     state.watch(() => node.classList.toggle('chosen', chosenScene() === row.scene));
     return node;
   };
-  return el('div', {className: 'card winners', id: 'winners'},
-    el(model.differences ? 'h3' : 'h2', {}, `Cheapest for an ${error.title} of at most ...`),
-    scrolling('The cheapest solver of each error on each scene', el('tr', {}, el('th', {scope: 'col'}, 'scene'),
-      levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))), rows.map(line)),
-    note('Each cell: the solver, how many times cheaper it is than the next solver, CPU time of a frame of 1/60\u00A0s, setting, arithmetic, and the stiffness of links that are not rigid. ',
-      'Nothing counts that fails, passes through a body or sinks into it by more than 0.1\u00A0% of the cloth\u2019s diagonal, or goes less than half of its way: ',
-      'that of the scene\u2019s reference in motion, off which it is by a quarter at most; without one and without contact, that of exact steps of implicit Euler. ',
-      missed && `On ${missed} only what its own steps miss of exact ones is known: solvers that declare no step (Bullet\u2019s) and contact that does not settle are not judged there. `,
-      unjudged && `On ${unjudged} nothing tells, or nothing moves: cloth that lags keeps its links there. `,
-      'The error is that of the last second; a setting that has more of it at some moment of the run says how much. ',
-      'Only settings that were timed compete: a rival whose next one just misses the error is out. ', certainty));
+  return el(
+      'div', {className: 'card winners', id: 'winners'},
+      el(model.differences ? 'h3' : 'h2', {}, `Cheapest for an ${error.title} of at most ...`),
+      scrolling(
+          'The cheapest solver of each error on each scene',
+          el('tr', {}, el('th', {scope: 'col'}, 'scene'),
+             levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))),
+          rows.map(line)),
+      note(
+          'Each cell names the cheapest solver, how many times cheaper it is than the next one, ' +
+              'the CPU time of a frame of 1/60\u00A0s, the setting, the arithmetic, ' +
+              'and the stiffness of links that are not rigid. ',
+          'A setting does not count if it fails, passes through a body or sinks into it ' +
+              'by more than 0.1\u00A0% of the cloth\u2019s diagonal, or goes less than half of its way: ' +
+              'that of the scene\u2019s reference in motion, off which it may be by a quarter; ' +
+              'where there is none, and no contact, that of exact steps of implicit Euler. ',
+          missed && byMissed, unjudged && notJudged,
+          'The error is that of the last second; ' +
+              'a setting that exceeds it at some moment of the run says by how much. ',
+          'Only settings that were timed compete: ' +
+              'a rival whose next setting just misses the error is out. ',
+          certainty));
 }
 
 /** The first screen of what was timed. */
@@ -75,6 +142,9 @@ function winnersPart() {
   if (!model.winners) return null;
   const costs = figuresOf('cost');
   const nameOf = (spec) => short(spec.scene, 30);
-  return [...sentences(), el('div', {className: 'first'}, winnersCard(),
-    costs.map((figure) => chartFigure(figure, nameOf)))];
+  return [
+    (model.winners.sentences ?? []).map(sentence),
+    el('div', {className: 'first'}, winnersCard(),
+       costs.map((figure) => chartFigure(figure, nameOf)))
+  ];
 }

@@ -262,7 +262,8 @@ Sheet sheet_of(const PlotSpec& spec, const std::vector<PlotPanel>& panels,
         Chart chart = make_chart(spec.kind, panel.records, spec.x, spec.y, spec.along);
         add_floor(chart);
         chart.title = panel.title;
-        chart.slope = panel.slope, chart.front = spec.kind == "work-precision";
+        chart.slope = panel.slope;
+        chart.front = spec.kind == "work-precision";
         charts.push_back(std::move(chart));
       }
     } catch (const InputError& error) {

@@ -21,7 +21,7 @@ inline constexpr const char* kWithoutExtras =
 /// Without the cases that use a parameter which another solver of the scene lacks.
 SceneBench with_shared_parameters(SceneBench);
 /// "4 × 2, coloured": of cases of one scene those parameters that take several values, without the
-/// one that is said beside it.
+/// one that is shown beside it.
 std::string setting_text(const SceneBench&, std::size_t at, std::string_view beside = "");
 
 /// If the settings of a solver that reach the error do not count: a cell of these words, with the

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/questions/questions.hpp"
 #include "experiments/report/questions/rows.hpp"
 

@@ -189,7 +189,8 @@ Answer status_of(const fs::path& folder) {
     if (!whole) to_start.push_back(shard);
     if (!failed.rows.empty() && failed.rows.back()[0] == Cell(shard))
       with_failures.push_back(shard);
-    cases += ids.size(), done += there;
+    cases += ids.size();
+    done += there;
   }
   std::ranges::stable_sort(shards.rows, {},
                            [](const std::vector<Cell>& row) { return row[1] == Cell("done"); });

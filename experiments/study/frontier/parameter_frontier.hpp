@@ -92,7 +92,7 @@ struct ParameterFrontier {
 };
 
 /// All frontiers of a solver on the standard scene; nothing: interrupted. Every probe is a case of
-/// the store, judged by symptoms(). `progress` is told after each of them.
+/// the store, judged by symptoms(). Calls `progress` after each of them.
 std::optional<std::vector<ParameterFrontier>> find_frontiers(
     const std::string& solver, Store&, const CampaignOptions&,
     const std::function<void(std::size_t done, std::size_t all)>& progress);

@@ -14,22 +14,7 @@ namespace {
 
 constexpr int kQuarterSecond = 16;
 
-double apart(const State& a, const State& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i) most = std::max(most, (a.x[i] - b.x[i]).norm());
-  return most;
-}
-
-/// A level sheet that is about to meet what is below.
-Scene sheet_above(double y) {
-  Scene scene = hanging_sheet(13, 13);
-  for (std::vector<Vec3>* places : {&scene.mesh.rest, &scene.start.x})
-    for (Vec3& x : *places) x = Vec3(x.x() - 0.47, y, x.y() + 0.52);
-  for (Vec3& v : scene.start.v) v = {0.1, -0.4, 0.05};
-  scene.pins.clear();
-  scene.thickness = 0.005;
-  return scene;
-}
+double apart(const State& a, const State& b) { return largest_distance(a.x, b.x); }
 
 Motion tumbling(const Vec3& pivot) {
   return {.velocity = {0.1, 0.5, 0}, .spin = {0.3, 1, 2}, .pivot = pivot};

@@ -16,17 +16,6 @@ namespace {
 
 constexpr int kQuarterSecond = 16;
 
-/// A level sheet that is about to meet what is below.
-Scene sheet_above(double y) {
-  Scene scene = hanging_sheet(13, 13);
-  for (std::vector<Vec3>* places : {&scene.mesh.rest, &scene.start.x})
-    for (Vec3& x : *places) x = Vec3(x.x() - 0.47, y, x.y() + 0.52);
-  for (Vec3& v : scene.start.v) v = {0.1, -0.4, 0.05};
-  scene.pins.clear();
-  scene.thickness = 0.005;
-  return scene;
-}
-
 /// The same motion as frames, one at every substep of 1 to 64 a step.
 Collider as_frames(Collider collider, double fps, int frames) {
   auto& body = std::get<MeshBody>(collider.shape);

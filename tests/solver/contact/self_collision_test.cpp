@@ -404,7 +404,8 @@ TEST(SelfCollision, PairsOfEverySpeedMeetAndPart) {
     for (int i = 0; i < 60; ++i) {
       const Vec3 at(7 * (i % 8), 7 * (i / 8), 0);
       const Vec3 apart = Vec3(number(random), number(random), number(random)).normalized();
-      x.push_back(at), x.push_back(at + (0.1 + 0.2 * std::abs(number(random))) * apart);
+      x.push_back(at);
+      x.push_back(at + (0.1 + 0.2 * std::abs(number(random))) * apart);
       for (int end : {0, 1})
         v.push_back(fastest * (Vec3(number(random), number(random), number(random)) +
                                (end == 0 ? 1 : -1) * apart));

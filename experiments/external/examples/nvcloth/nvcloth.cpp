@@ -68,7 +68,10 @@ std::vector<std::vector<std::uint32_t>> sets_of(const std::vector<Json>& links) 
     while (s < sets.size() &&
            (sets[s].family != links[k][3].text || sets[s].taken.count(a) || sets[s].taken.count(b)))
       ++s;
-    if (s == sets.size()) sets.push_back({links[k][3].text, {}}), members.emplace_back();
+    if (s == sets.size()) {
+      sets.push_back({links[k][3].text, {}});
+      members.emplace_back();
+    }
     members[s].push_back(k);
     sets[s].taken[a] = sets[s].taken[b] = true;
   }

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/case/case.hpp"
+#include "experiments/case/trajectory.hpp"
+#include "experiments/metrics/metric.hpp"
+
+namespace taut {
+
+/// Distance to a missing answer.
+inline constexpr double kNoAnswer = std::numeric_limits<double>::infinity();
+
+/// The name of the answer that is no metric: where the cloth is at the end, as the largest distance
+/// [m] of a vertex from where it is in the full model.
+inline constexpr const char* kShapeAnswer = "shape";
+
+/// What a smaller model has to keep, and how nearly.
+struct KeptAnswer {
+  std::string name;      ///< "shape" or a metric value
+  double tolerance = 0;  ///< in the unit of the value, >= 0
+
+  bool is_shape() const { return name == kShapeAnswer; }
+};
+Unit unit_of(const KeptAnswer&);
+/// "1.2 mm", "0.3 %": as the unit is shown; "-" for what is not a number.
+std::string text(const KeptAnswer&, double value);
+
+/// A case that was run, with its motion.
+struct Observation {
+  Case one;
+  Record record;
+  std::vector<Frame> frames;  ///< as the store keeps them
+};
+
+/// "METRIC" or "METRIC:TOLERANCE". A tolerance is a number in SI units, or with the unit in which
+/// the value is shown ("2mm"), or in "%": of the cloth's extent for lengths, of the duration for
+/// times, of the full model's value for other quantities; of strains and shares, points. Without
+/// one: the shape 1 % of the extent, other lengths 0.1 %, strains and shares 1 point, times 10 % of
+/// the duration, counts none, all else 10 % of the value. Throws InputError: unknown name, or no
+/// number of at least 0.
+KeptAnswer parse_answer(const std::string&, const Observation& full);
+/// The METRIC alone. Throws InputError: unknown name.
+std::string name_of_answer(const std::string& asked);
+
+/// "METRIC:LIMIT", the largest size of a value that is accepted of a scene: in SI units, in the
+/// unit shown, or in "%" of the cloth's extent and of the duration; of shares, points. Throws
+/// InputError.
+KeptAnswer parse_limit(const std::string&, const Scene&);
+/// The largest RMS stretch of a cloth that can be shown to anybody.
+inline constexpr double kMostStretch = 0.1;
+
+/// What is accepted unless something is asked for: no passage and no crossing, depths below 0.1 %
+/// of the cloth's extent, an RMS stretch up to kMostStretch, and, for a strain alone is small of a
+/// cloth that stands still, a motion within 25 % of its way from the dynamic reference; as far as
+/// the scene has them. No passages of edges and faces: past an edge of a box they happen to every
+/// solver that keeps vertices alone outside (`--keep edge.passages:0` asks for none).
+std::vector<KeptAnswer> default_limits(const Scene&);
+/// What a case does beyond these limits: "penetration.peak 3.1 mm, more than 1 mm"; "": nothing.
+std::string beyond(const Record&, const std::vector<KeptAnswer>&);
+
+struct StudyBench;
+
+/// Marks the cases of a bench that go beyond the default limits of their scenes (not_accepted):
+/// they are shown and win nothing. Throws InputError: a scene cannot be made.
+void mark_not_accepted(StudyBench&);
+
+/// What is kept unless something is asked for: shape, largest stretch, depth of vertices (and of
+/// faces, if the solver keeps them out), crossings, settling time; as far as the case has them.
+std::vector<std::string> default_answers(const Observation& full);
+
+/// The value of an answer that is a metric; NaN if the case has none.
+double value_of(const KeptAnswer&, const Observation&);
+
+/// How far the answer is from that of the full model [unit of the answer]; infinite if the other
+/// case did not run to its end or has no such value. Shapes of different grids are compared at the
+/// vertices of the coarser one, between those of the finer one bilinearly. If the reduced scene no
+/// longer produces the value, it is measured on the reduced motion, and the full model's value the
+/// same way.
+double distance(const KeptAnswer&, const Observation& full, const Observation& other);
+
+/// Until when [s] two runs of one scene are within `tolerance` [m] of each other; nothing: to the
+/// end.
+std::optional<double> apart_after(const Observation&, const Observation&, double tolerance);
+
+}  // namespace taut
