@@ -115,15 +115,37 @@ struct BodyContact {
   /// Whether x, which began the substep at `previous`, has been moved.
   bool project(Vec3T<Real>& x, const Vec3T<Real>& previous, Seen& seen) {
     contact.surface.ask_about(&seen);
-    if (const auto moved = project_where_known(x, previous)) return *moved;
+    if (const auto moved = project_where_known(x, previous)) {
+      if (*moved && continuous && contact.surface.thin) keep_from_others(x, previous);
+      return *moved;
+    }
     const bool near = continuous ? contact.template near<true>(x, previous)
                                  : contact.template near<false>(x, previous);
     if (!near) return false;
-    return continuous ? contact.project_continuous(x, previous, true)
-                      : contact.project(x, previous, true);
+    if (!continuous) return contact.project(x, previous, true);
+    if (!contact.project_continuous(x, previous, true)) return false;
+    keep_from_others(x, previous);
+    return true;
   }
 
  private:
+  /// What is put out at one triangle may be behind another one, of which the next substep would
+  /// know less: it goes on from there, and in the end half of its way to it.
+  void keep_from_others(Vec3T<Real>& x, const Vec3T<Real>& previous) const {
+    const Vec3T<Real> from = contact.motion(previous);
+    constexpr int kRounds = 4;
+    for (int round = 0; round <= kRounds; ++round) {
+      const Entry<Real> entry = contact.surface.entry(from, x);
+      const auto height = [&](const Vec3T<Real>& p) {
+        return dot(entry.tangent.normal, p) - entry.tangent.offset;
+      };
+      if (!entry.hits || height(x) >= -rounding) return;
+      if (round < kRounds)
+        contact.push(x, from, entry.tangent, true);
+      else if (height(from) > 0)
+        x = from + height(from) / (2 * (height(from) - height(x))) * (x - from);
+    }
+  }
   /// The same numbers for a particle that has hardly moved and cannot have passed through.
   std::optional<bool> project_where_known(Vec3T<Real>& x, const Vec3T<Real>& previous) {
     const auto distance = contact.surface.distance_if_known(x);
