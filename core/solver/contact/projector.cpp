@@ -1,6 +1,7 @@
 #include "core/solver/contact/projector.hpp"
 
 #include <bit>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -92,6 +93,7 @@ struct BodyContact {
   Vec3T<Real> center;          ///< m, of its frame
   Vec3T<Real> axes[3];         ///< of its frame in the world
   Real rounding;               ///< m, far beyond that of coordinates in Real
+  Real noise;                  ///< m, of coordinates in Real
   bool continuous;
 
   /// Whether particles may touch: those in the sphere around the body that are not known to be
@@ -139,7 +141,7 @@ struct BodyContact {
       const auto height = [&](const Vec3T<Real>& p) {
         return dot(entry.tangent.normal, p) - entry.tangent.offset;
       };
-      if (!entry.hits || height(x) >= -rounding) return;
+      if (!entry.hits || height(x) >= -noise) return;
       if (round < kRounds)
         contact.push(x, from, entry.tangent, true);
       else if (height(from) > 0)
@@ -182,7 +184,9 @@ class MeshProjector final : public Projector<Real> {
     body_.center = vec3t<Real>(body.center);
     const Eigen::Matrix3d axes = body.rotation.toRotationMatrix();
     for (Eigen::Index k = 0; k < 3; ++k) body_.axes[k] = vec3t<Real>(Vec3(axes.col(k)));
-    body_.rounding = static_cast<Real>(1e-5 * (body.mesh->reach() + body.center.norm()));
+    const auto far = static_cast<Real>(body.mesh->reach() + body.center.norm());
+    body_.rounding = static_cast<Real>(1e-5) * far;
+    body_.noise = 8 * std::numeric_limits<Real>::epsilon() * far;
   }
 
   void project(const ParticleSpan<Real>& span, std::size_t blocks,
