@@ -211,12 +211,12 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
   for (const std::string solver : {"pd", "admm", "vbd:precision=double"}) {
     const std::string lags = with(solver, "faces=edges");
     if (can_run(findings, lags, on_links.scene(cylinder, 1)))
-      findings.deviates(lags, "speed of the heavy end after 1 s at 0.9 of the ratio", "m/s",
-                        on_links.speed(lags, cylinder, 0.9 * on_links.ratio_of_links(), 1), 0, 0.1,
-                        0.08,
-                        "an edge's force changes in an iteration by what inertia m/h^2 asks for, "
-                        "here a thousandth "
-                        "of its links' stiffness: the rope slides off before it has grown");
+      findings.deviates(
+          lags, "speed of the heavy end after 1 s at 0.9 of the ratio", "m/s",
+          on_links.speed(lags, cylinder, 0.9 * on_links.ratio_of_links(), 1), 0, 0.13, 0.1,
+          "an edge's force changes in an iteration by what inertia m/h^2 asks for, "
+          "here a thousandth of its links' stiffness: the rope slides off before it has "
+          "grown");
   }
 }
 
