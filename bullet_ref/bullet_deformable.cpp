@@ -145,7 +145,7 @@ class BulletDeformable final : World, public BulletSolver {
     if (scene_.wind) find_wind();
     if (scene_.damping > 0) damp();
     if (scene_.wind) blow();
-    colliders_.move(from, to);
+    move_colliders(from, to);
     move_pins(to);
     world.stepSimulation(h_, 0);
   }

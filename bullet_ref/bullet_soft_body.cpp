@@ -125,7 +125,7 @@ class BulletSoftBody final : World, public BulletSolver {
 
   void substep(double from, double to) override {
     if (scene_.wind) blow();
-    colliders_.move(from, to);
+    move_colliders(from, to);
     if (scene_.pin_motions.empty()) {
       world.stepSimulation(h_, 0);
       return;

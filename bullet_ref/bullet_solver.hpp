@@ -57,6 +57,8 @@ class BulletSolver : public Solver, public HoldsScene {
   BulletSolver(const Scene&, const Params&, btDiscreteDynamicsWorld&, btSoftBodyWorldInfo&,
                const ClothOptions&);
 
+  /// To where they are at the end of a substep.
+  void move_colliders(double from, double to);
   /// Advances [from, to] by stepSimulation(h_, 0): with its default arguments it steps by 1/60 s.
   virtual void substep(double from, double to) = 0;
   /// What solves the links and contacts in one step.

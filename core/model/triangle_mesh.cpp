@@ -237,7 +237,7 @@ NearestPlace TriangleMesh::seen_from(const Vec3& p, int triangle) const {
   const double height = normal.dot(p - corner(triangle, 0));
   // Beside the normal of a flat edge by rounding alone, which must not turn a short way.
   if (place.feature == Feature::inside || (out - height * normal).norm() <= kNoise * reach_)
-    return {height, normal, triangle};
+    return inside_box({height, normal, triangle}, p);
   Vec3 pseudo = normal;
   if (place.feature == Feature::corner)
     pseudo = corner_normals_.empty()
@@ -246,7 +246,7 @@ NearestPlace TriangleMesh::seen_from(const Vec3& p, int triangle) const {
   else if (const auto beyond = across_[to_place(triangle)][place.which]; beyond >= 0)
     pseudo += normals_[to_place(beyond / 3)];
   const double length = out.norm();
-  if (pseudo.dot(out) < 0) return {-length, out / -length, triangle};
+  if (pseudo.dot(out) < 0) return inside_box({-length, out / -length, triangle}, p);
   return {length, out / length, triangle};
 }
 

@@ -83,7 +83,7 @@ class TriangleMesh {
   /// nearest() of a point whose nearest place is within this triangle.
   NearestPlace above(const Vec3& p, int triangle) const {
     const Vec3& normal = normals_[to_place(triangle)];
-    return {normal.dot(p - corner(triangle, 0)), normal, triangle};
+    return inside_box({normal.dot(p - corner(triangle, 0)), normal, triangle}, p);
   }
   /// The first triangle on the way, its start included and its end not.
   std::optional<MeshHit> first_hit(const Vec3& from, const Vec3& to) const;
@@ -115,6 +115,14 @@ class TriangleMesh {
   };
   Place place_on(int triangle, const Vec3& p) const;
   NearestPlace seen_from(const Vec3& p, int triangle) const;
+  /// Where a body crosses itself, triangles look inward from outside: what is out of its box is
+  /// outside all the same.
+  NearestPlace inside_box(const NearestPlace& place, const Vec3& p) const {
+    const double noise = 1e-9 * reach_;
+    if (place.distance >= -noise || !closed() || box_.squaredExteriorDistance(p) <= noise * noise)
+      return place;
+    return {-place.distance, -place.normal, place.triangle};
+  }
   double squared_distance_of(int triangle, const Vec3& p) const {
     return (p - place_on(triangle, p).point).squaredNorm();
   }

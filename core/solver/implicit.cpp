@@ -84,7 +84,7 @@ class NewtonPass final : public Pass<double> {
         hessian_(springs_, bending_, s.w,
                  factors(s.params, to_index(static_cast<int>(std::ranges::count_if(
                                        s.w, [](double w) { return w > 0; })))),
-                 s.simd),
+                 s.simd, sides_of_pieces(s)),
         stiffness_(s.w.size()),
         contacts_(s.scene, s.params) {
     for (const Spring& spring : springs_) {
@@ -110,6 +110,9 @@ class NewtonPass final : public Pass<double> {
   }
 
   Points<double>* target() override { return &y_; }
+  TouchingPieces* touching_pieces() override {
+    return contacts_.any() ? &contacts_.pieces() : nullptr;
+  }
 
   void begin(Particles<double>& p, double t, double step) override {
     y_ = p.x;
@@ -142,7 +145,7 @@ class NewtonPass final : public Pass<double> {
   void apply(Particles<double>& p, double, double step) override {
     const double h = integrator_.own_step(step);
     std::vector<Vec3> x = positions(p);
-    if (x == ended_at_) return;
+    if (x == ended_at_ && !contacts_.pieces().changed) return;
     contacts_.find(p);
     if (from_y_ && contacts_.touch()) {
       start_over(p);
@@ -318,6 +321,14 @@ class NewtonPass final : public Pass<double> {
     contacts_.each(x, [&](std::size_t vertex, const AugmentedContacts::Part& part) {
       hessian_.add_contact(vertex, part.hessian);
     });
+    contacts_.each_piece(x, [&](const TouchingPiece& piece, const AugmentedContacts::Part& part) {
+      each_corner(piece, [&](std::size_t c, double weight) {
+        each_corner(piece, [&](std::size_t d, double other) {
+          const std::size_t a = to_index(piece.corners[c]), b = to_index(piece.corners[d]);
+          if (d <= c) hessian_.add_contact(a, b, weight * other * part.hessian);
+        });
+      });
+    });
   }
 
   double energy(const std::vector<Vec3>& x, double h) const {
@@ -331,6 +342,8 @@ class NewtonPass final : public Pass<double> {
     }
     contacts_.each(x,
                    [&](std::size_t, const AugmentedContacts::Part& part) { sum += part.energy; });
+    contacts_.each_piece(
+        x, [&](const TouchingPiece&, const AugmentedContacts::Part& part) { sum += part.energy; });
     return sum;
   }
 
@@ -370,7 +383,29 @@ class NewtonPass final : public Pass<double> {
     contacts_.each(x, [&](std::size_t vertex, const AugmentedContacts::Part& part) {
       g.segment<3>(hessian_.column(vertex)) -= part.force;
     });
+    contacts_.each_piece(x, [&](const TouchingPiece& piece, const AugmentedContacts::Part& part) {
+      each_corner(piece, [&](std::size_t c, double weight) {
+        if (const int column = hessian_.column(to_index(piece.corners[c])); column >= 0)
+          g.segment<3>(column) -= weight * part.force;
+      });
+    });
     return g;
+  }
+
+  /// visit(corner, weight) of those with one.
+  template <class Visit>
+  static void each_corner(const TouchingPiece& piece, const Visit& visit) {
+    for (std::size_t c = 0; c < 3; ++c)
+      if (const double weight = piece.weights[static_cast<Eigen::Index>(c)]; weight != 0)
+        visit(c, weight);
+  }
+  /// Between whose ends contact of faces and edges acts, where the scene has any.
+  static std::vector<std::pair<int, int>> sides_of_pieces(const loop::Setup& s) {
+    std::vector<std::pair<int, int>> sides;
+    if (s.scene.colliders.empty() || s.params.is("faces", "off")) return sides;
+    for (const Triangle& face : s.scene.mesh.triangles)
+      for (std::size_t k = 0; k < 3; ++k) sides.emplace_back(face[k], face[(k + 1) % 3]);
+    return sides;
   }
 
   std::vector<Vec3> moved(std::vector<Vec3> x, const Vector& direction, double step) const {

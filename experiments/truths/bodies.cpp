@@ -191,25 +191,33 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
                          Vec3(std::cos(at), std::sin(at), 0));
   }
   const Shape cylinder = MeshBody{.mesh = prism(polygon, 1)};
-  const auto check = [&](const std::string& solver, const Capstan& rope, double ratio) {
+  const auto check = [&](const std::string& solver, const Capstan& rope, double ratio,
+                         const std::string& beyond) {
     if (!can_run(findings, solver, rope.scene(cylinder, 1))) return;
     findings.below(solver, "speed of the heavy end after 4 s at 0.99 of the ratio", "m/s",
                    rope.speed(solver, cylinder, 0.99 * ratio, 4), 1e-3);
-    findings.holds(solver, "the heavy end slides at 1.01 of the ratio",
-                   rope.speed(solver, cylinder, 1.01 * ratio, 4) > 3e-3);
+    findings.holds(solver, "the heavy end slides at " + beyond + " of the ratio",
+                   rope.speed(solver, cylinder, std::stod(beyond) * ratio, 4) > 3e-3);
   };
   const Capstan on_vertices;
   for (const std::string solver : {"implicit", "mass-spring:substeps=64"})
-    check(solver, on_vertices, on_vertices.ratio());
+    check(solver, on_vertices, on_vertices.ratio(), "1.01");
   const Capstan on_links{.out = 1 / std::cos(on_vertices.angle() / 2)};
-  check("mass-spring:substeps=64,faces=edges", on_links, on_links.ratio_of_links());
-  const std::string solved = "implicit:faces=edges";
-  if (can_run(findings, solved, on_links.scene(cylinder, 1)))
-    findings.deviates(
-        solved, "speed of the heavy end after 1 s at 0.9 of the ratio", "m/s",
-        on_links.speed(solved, cylinder, 0.9 * on_links.ratio_of_links(), 1), 0, 1.2, 0.3,
-        "an edge's force changes by what inertia m/h^2 asks for, here a thousandth of "
-        "its links' stiffness: the rope slides off before it has grown");
+  check("mass-spring:substeps=64,faces=edges", on_links, on_links.ratio_of_links(), "1.01");
+  // at 1.01 it creeps by 0.5 mm/s, by 6 mm/s with 200 iterations
+  check("implicit:faces=edges", on_links, on_links.ratio_of_links(), "1.02");
+  check("xpbd:substeps=64,faces=edges,precision=double", on_links, on_links.ratio_of_links(),
+        "1.02");
+  for (const std::string solver : {"pd", "admm", "vbd:precision=double"}) {
+    const std::string lags = with(solver, "faces=edges");
+    if (can_run(findings, lags, on_links.scene(cylinder, 1)))
+      findings.deviates(
+          lags, "speed of the heavy end after 1 s at 0.9 of the ratio", "m/s",
+          on_links.speed(lags, cylinder, 0.9 * on_links.ratio_of_links(), 1), 0, 0.13, 0.1,
+          "an edge's force changes in an iteration by what inertia m/h^2 asks for, "
+          "here a thousandth of its links' stiffness: the rope slides off before it has "
+          "grown");
+  }
 }
 
 TAUT_TRUTH(thin_plate, 7, 17,

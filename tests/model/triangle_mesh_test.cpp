@@ -44,6 +44,25 @@ std::optional<std::pair<double, Vec3>> slab_hit(const Vec3& a, const Vec3& b) {
   return std::pair(in, normal);
 }
 
+// As at the tip of a scanned tail that crosses itself: the triangles there look inward.
+TEST(TriangleMesh, NothingOutsideItsBoxIsInside) {
+  Triangles body = box_of_triangles(kHalf);
+  const Triangles tip = box_of_triangles(Vec3(0.01, 0.01, 0.01));
+  for (const auto& [a, b, c] : tip.triangles) body.triangles.push_back({a + 8, c + 8, b + 8});
+  for (const Vec3& x : tip.vertices) body.vertices.emplace_back(x + Vec3(0.5, 0, 0));
+  const auto mesh = body.mesh();
+  ASSERT_TRUE(mesh->closed());
+  const Vec3 point(0.7, 0.005, 0.002);
+  TriangleMesh::Nearby nearby;
+  for (const NearestPlace& place :
+       {mesh->nearest(point), mesh->nearest(point, nearby), mesh->nearest(point, nearby),
+        mesh->nearest(Vec3(0.7, 0.05, 0.05))}) {
+    EXPECT_GT(place.distance, 0.18);
+    EXPECT_GT(place.normal.x(), 0.9);
+  }
+  EXPECT_LT(mesh->nearest(Vec3(0.2, 0, 0)).distance, 0);
+}
+
 TEST(TriangleMesh, ABoxOfTrianglesIsTheBoxOnAMillionSegments) {
   const Vec3 center(0.2, -0.4, 0.1);
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()));

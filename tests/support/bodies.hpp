@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/model/index.hpp"
+#include "core/model/scene.hpp"
 #include "core/model/triangle_mesh.hpp"
 
 // Bodies of triangles that tests know in closed form.
@@ -85,6 +87,29 @@ inline Triangles torus(double radius, double tube, int around, int across, doubl
       body.triangles.push_back({at(1, 0), at(0, 1), at(1, 1)});
     }
   return body;
+}
+
+/// Walls that rise by this [m] on both sides of grooves of a fifth of their height, along z.
+constexpr double kGrooves = 0.5;
+inline Triangles grooved_sheet() {
+  Triangles body;
+  constexpr int kWalls = 40;
+  for (int i = 0; i <= kWalls; ++i) {
+    const double x = 0.05 * (i - kWalls / 2), y = i % 2 == 0 ? kGrooves : 0;
+    body.vertices.emplace_back(x, y, -2);
+    body.vertices.emplace_back(x, y, 2);
+    if (i == kWalls) continue;
+    body.triangles.push_back({2 * i, 2 * i + 1, 2 * i + 2});
+    body.triangles.push_back({2 * i + 2, 2 * i + 1, 2 * i + 3});
+  }
+  return body;
+}
+/// How many vertices are below it.
+inline int below_grooves(const State& state) {
+  return static_cast<int>(std::ranges::count_if(state.x, [](const Vec3& x) {
+    return std::abs(x.x()) < 1 &&
+           x.y() < kGrooves / 0.05 * std::abs(std::remainder(x.x() - 0.05, 0.1));
+  }));
 }
 
 }  // namespace taut

@@ -7,9 +7,8 @@ namespace taut {
 
 namespace {
 
-/// Of the stiffness of all else at a vertex, that of its contact; and of a change of the forces of
-/// contact, the gradient that is left before they take it.
-constexpr double kOfElsewhere = 3, kSettled = 0.3;
+/// Of the stiffness of all else at a vertex, that of its contact.
+constexpr double kOfElsewhere = 3;
 
 }  // namespace
 
@@ -29,15 +28,16 @@ void AugmentedContacts::set_stiffness(const Particles<Real>& p, std::span<const 
   for (std::size_t i = 0; i < stiffness_.size(); ++i)
     if (const auto w = static_cast<double>(p.w[i]); w > 0)
       stiffness_[i] = kOfElsewhere * (elastic[i] + 1 / (w * h * h));
+  pieces_.stiffness = stiffness_;
 }
 template void AugmentedContacts::set_stiffness(const Particles<float>&, std::span<const double>,
                                                double);
 template void AugmentedContacts::set_stiffness(const Particles<double>&, std::span<const double>,
                                                double);
 
-AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at, const Vec3& x) const {
-  const ContactForce& held = contacts_->force(at.vertex, at.collider);
-  const double k = stiffness_[at.vertex], push = held.push - k * at.gap(x);
+AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at, const ContactForce& held,
+                                                double k, const Vec3& x) {
+  const double push = held.push - k * at.gap(x);
   const Matrix3d along = at.normal * at.normal.transpose();
   Part out;
   if (push > 0) out = {push * push / (2 * k), push * at.normal, k * along};
@@ -62,6 +62,9 @@ template <class Real>
 bool AugmentedContacts::update(const Particles<Real>& p, const std::vector<Vec3>& x, double h,
                                double left, double rounding) {
   if (!contacts_) return false;
+  pieces_.changed = false;
+  pieces_.left = left;
+  pieces_.rounding = rounding;
   contacts_->find(p, touching_);
   acting_.clear();
   double change2 = 0;
@@ -73,11 +76,7 @@ bool AugmentedContacts::update(const Particles<Real>& p, const std::vector<Vec3>
       held.push = now.push = std::max(0.0, -gap) / (static_cast<double>(p.w[at.vertex]) * h * h);
       change2 += now.push * now.push;
     } else {
-      const double k = stiffness_[at.vertex];
-      now.push = std::max(0.0, held.push - k * gap);
-      now.rub -= k * at.slip(x[at.vertex]);
-      const double length = now.rub.norm(), most = at.friction * now.push;
-      if (length > most) now.rub *= most / length;
+      now = augmented(at, held, stiffness_[at.vertex], x[at.vertex]);
       change2 += (at.total(now) - at.total(held)).squaredNorm();
     }
     acting_.push_back(now);

@@ -1,13 +1,57 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "core/model/index.hpp"
 #include "core/solver/contact/contacts.hpp"
 
 namespace taut {
+
+/// A point of a face or an edge of the cloth at a collider, and the force that has held it.
+struct TouchingPiece {
+  const void* found_by = nullptr;
+  std::size_t number = 0;  ///< of the piece, by its finder
+  Triangle corners;
+  Vec3 weights = Vec3::Zero();  ///< of the corners, sum 1
+  TouchingVertex at;
+  ContactForce force;
+
+  Vec3 place(const std::vector<Vec3>& x) const {
+    return weights[0] * x[to_index(corners[0])] + weights[1] * x[to_index(corners[1])] +
+           weights[2] * x[to_index(corners[2])];
+  }
+};
+
+/// Those of all colliders, which FaceContactPass finds after each iteration for the next one.
+struct TouchingPieces {
+  std::vector<TouchingPiece> all;
+  std::span<const double> stiffness;  ///< [n] N/m, of contact at each vertex
+  double left = 0, rounding = 0;      ///< N, as in AugmentedContacts::update()
+  bool changed = false;               ///< a force has, by more than that
+
+  double stiffness_of(const TouchingPiece& piece) const {
+    double k = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      k += piece.weights[static_cast<Eigen::Index>(c)] * stiffness[to_index(piece.corners[c])];
+    return k;
+  }
+};
+
+/// Of a change of the forces of contact, the gradient that is left before they take it.
+inline constexpr double kSettled = 0.3;
+
+/// push' and rub' below at x.
+inline ContactForce augmented(const TouchingVertex& at, const ContactForce& held, double k,
+                              const Vec3& x) {
+  ContactForce now{std::max(0.0, held.push - k * at.gap(x)), held.rub - k * at.slip(x)};
+  const double length = now.rub.norm(), most = at.friction * now.push;
+  if (length > most) now.rub *= most / length;
+  return now;
+}
 
 /// Contact as an augmented Lagrangian at each vertex that touches (Alart, Curnier, Computer Methods
 /// in Applied Mechanics and Engineering 92, 1991): with the force of the last iteration, push along
@@ -18,6 +62,8 @@ namespace taut {
 /// act, k n n^T + k (I - n n^T) join the Hessian where they hold and stick. They become the forces
 /// once the gradient that is left is less than a share of their change: sooner, and contacts would
 /// take turns at sticking and slipping without end.
+///
+/// What touches may be a point of a face or an edge, as well: its corners share all by its weights.
 class AugmentedContacts {
  public:
   AugmentedContacts() = default;  ///< none
@@ -44,8 +90,9 @@ class AugmentedContacts {
     if (contacts_) contacts_->find(p, touching_);
   }
   bool any() const { return contacts_ != nullptr; }  ///< the scene has what may touch
-  bool touch() const { return !touching_.empty(); }
-  void let_go() { touching_.clear(); }  ///< nothing touches until find()
+  bool touch() const { return !touching_.empty() || !pieces_.all.empty(); }
+  void let_go() { touching_.clear(); }  ///< no vertex touches until find()
+  TouchingPieces& pieces() { return pieces_; }
 
   /// A contact's part at x: energy [J], force [N], Hessian [N/m].
   struct Part {
@@ -56,7 +103,15 @@ class AugmentedContacts {
   /// visit(vertex, part) of what touches, at x. A vertex' contacts come one after the other.
   template <class Visit>
   void each(const std::vector<Vec3>& x, const Visit& visit) const {
-    for (const TouchingVertex& at : touching_) visit(at.vertex, part(at, x[at.vertex]));
+    for (const TouchingVertex& at : touching_)
+      visit(at.vertex, part(at, contacts_->force(at.vertex, at.collider), stiffness_[at.vertex],
+                            x[at.vertex]));
+  }
+  /// visit(piece, part) of faces and edges.
+  template <class Visit>
+  void each_piece(const std::vector<Vec3>& x, const Visit& visit) const {
+    for (const TouchingPiece& piece : pieces_.all)
+      visit(piece, part(piece.at, piece.force, pieces_.stiffness_of(piece), piece.place(x)));
   }
 
   /// The forces become what acts at x, which p.x is but for rounding, if the gradient that is left
@@ -67,12 +122,12 @@ class AugmentedContacts {
               double rounding);
 
  private:
-  Part part(const TouchingVertex& at, const Vec3& x) const;
-
+  static Part part(const TouchingVertex& at, const ContactForce& held, double k, const Vec3& x);
   std::unique_ptr<Contacts> contacts_;    ///< null: none
   std::vector<TouchingVertex> touching_;  ///< of this iteration
   std::vector<ContactForce> acting_;      ///< [touching]
   std::vector<double> stiffness_;         ///< [n] N/m, k; empty: no contact
+  TouchingPieces pieces_;
 };
 
 }  // namespace taut

@@ -69,6 +69,9 @@ class DeformingContact {
     return in_world(nearest.normal, motion.to, motion(path.from), nearest.triangle);
   }
 
+  /// Where the point has passed through the surface since the substep began, if it has.
+  std::optional<Touch> passes(const Path& path) const { return entered(path, nearest(path)); }
+
  private:
   NearestPlace seen_from_outside(NearestPlace place) const {
     if (!body_.is_thin() || place.distance >= 0) return place;

@@ -63,7 +63,24 @@ class DeformingProjector final : public Projector<Real> {
     const NearestPlace nearest = contact_.nearest(path);
     seen = {path.to, nearest.distance, contact_.drift()};
     const auto touch = contact_.touch(path, nearest, continuous_, false);
-    return touch && push(*touch, x);
+    if (!touch || !push(*touch, x)) return false;
+    if (continuous_) keep_from_others(x, previous);
+    return true;
+  }
+  /// As at a rigid body (projector.cpp).
+  void keep_from_others(Vec3& x, const Vec3& previous) const {
+    const double rounding = 1e-9 * contact_.body().after().reach();
+    constexpr int kRounds = 4;
+    for (int round = 0; round <= kRounds; ++round) {
+      const auto touch = contact_.passes(contact_.path(x, previous));
+      if (!touch) return;
+      const auto height = [&](const Vec3& p) { return touch->normal.dot(p) - touch->offset; };
+      if (height(x) >= -rounding) return;
+      if (round < kRounds)
+        push(*touch, x);
+      else if (const double from = height(touch->from); from > 0)
+        x = touch->from + from / (2 * (from - height(x))) * (x - touch->from);
+    }
   }
 
   /// Coulomb: against its slip by at most mu times its depth, and no more than the slip itself.

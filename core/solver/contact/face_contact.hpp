@@ -4,6 +4,7 @@
 
 #include "core/model/deforming_body.hpp"
 #include "core/model/triangle.hpp"
+#include "core/solver/contact/augmented_contacts.hpp"
 #include "core/solver/contact/body_features.hpp"
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/contact/projector.hpp"
@@ -24,7 +25,8 @@ namespace taut {
 ///
 /// With a solver that has a target y, a piece keeps the force F at its point from sweep to sweep
 /// and from substep to substep, as long as Signorini and Coulomb ask for it, were the corners free
-/// (settle() in contacts.hpp); its changes move y as they move x, so that links feel b F.
+/// (settle() in contacts.hpp); its changes move y as they move x, so that links feel b F. A solver
+/// that takes pieces into its solve (TouchingPieces) is told which touch, and nothing is moved.
 template <class Real>
 class FaceContactPass final : public Pass<Real> {
  public:
@@ -37,6 +39,7 @@ class FaceContactPass final : public Pass<Real> {
         continuous_(continuous),
         faces_(std::move(pieces)),
         solver_(solver),
+        pieces_(solver ? solver->touching_pieces() : nullptr),
         held_(solver ? faces_.size() : 0) {
     if (std::holds_alternative<MeshBody>(collider.shape))
       features_.emplace(thickness, faces_.size());
@@ -96,11 +99,13 @@ class FaceContactPass final : public Pass<Real> {
     for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
       if (held_[f].holds()) {
         held_[f].force = turned(held_[f], at_start(p, faces_[f], held_[f].weights));
-        add_force(p.x, p, faces_[f], held_[f].weights, dt * dt * held_[f].force);
+        if (!pieces_) add_force(p.x, p, faces_[f], held_[f].weights, dt * dt * held_[f].force);
       }
+    if (pieces_) find_touching(p, p.previous);
   }
 
   void apply(Particles<Real>& p, double, double dt) override {
+    if (pieces_) return follow(p, find_touching(p, p.x), dt);
     for (std::size_t f = 0; f < faces_.size(); ++f)
       for (int round = 0; round < kRounds && !keep_out(p, f, dt); ++round) {
       }
@@ -138,17 +143,68 @@ class FaceContactPass final : public Pass<Real> {
 
   /// Whether that was all: the piece had not passed through anything.
   bool keep_out(Particles<Real>& p, std::size_t f, double dt) {
+    const auto out = to_leave(p.x, f);
+    if (!out) return true;
+    if (solver_)
+      hold(p, faces_[f], *out, dt, held_[f]);
+    else
+      push(p, faces_[f], *out);
+    return !out->has_passed;
+  }
+
+  /// How a piece at x leaves the collider, or has left that which still holds it.
+  std::optional<Separation> to_leave(const Points<Real>& x, std::size_t f) {
     const Triangle& face = faces_[f];
-    const Corners t{at(p.x, face[0]), at(p.x, face[1]), at(p.x, face[2])};
+    const Corners t{at(x, face[0]), at(x, face[1]), at(x, face[2])};
     const bool holds = solver_ && held_[f].holds();
     // every point of the face is within a side of its first corner
     const bool far = (t[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2_of(t));
-    if (far && !holds && !may_have_passed(f, t)) return true;
-    Separation out = separation_of(f, t);
-    if (out.length <= 0 && holds) out = outside(f, t);
-    if (solver_ && (out.length > 0 || holds)) hold(p, face, out, dt, held_[f]);
-    if (!solver_ && out.length > 0) push(p, face, out);
-    return !out.has_passed;
+    if (far && !holds && !may_have_passed(f, t)) return {};
+    const Separation out = separation_of(f, t);
+    if (out.length > 0) return out;
+    if (!holds) return {};
+    return outside(f, t);
+  }
+
+  /// Tells the solver what touches at x.
+  std::span<TouchingPiece> find_touching(const Particles<Real>& p, const Points<Real>& x) {
+    std::vector<TouchingPiece>& all = pieces_->all;
+    std::erase_if(all, [&](const TouchingPiece& piece) { return piece.found_by == this; });
+    const std::size_t first = all.size();
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const auto out = to_leave(x, f);
+      if (!out || inverse_mass_of(p, faces_[f], out->point.weights) == 0) continue;
+      TouchingPiece piece{this, f, faces_[f], out->point.weights, touching(p, faces_[f], *out), {}};
+      if (const double push = piece.at.normal.dot(held_[f].force); push > 0)
+        piece.force = {push, piece.at.across(held_[f].force)};
+      all.push_back(piece);
+    }
+    return std::span(all).subspan(first);
+  }
+
+  /// The forces of what touches after an iteration, as those of vertices (AugmentedContacts).
+  void follow(const Particles<Real>& p, std::span<TouchingPiece> touching, double h) {
+    std::vector<ContactForce> acting;
+    double change2 = 0;
+    for (TouchingPiece& piece : touching) {
+      const Vec3 place = place_of(p.x, piece.corners, piece.weights);
+      const ContactForce before = piece.force;
+      if (before.holds()) {
+        acting.push_back(augmented(piece.at, before, pieces_->stiffness_of(piece), place));
+      } else {
+        const double own = inverse_mass_of(p, piece.corners, piece.weights);
+        piece.force = {std::max(0.0, -piece.at.gap(place)) / (h * h * own), Vec3::Zero()};
+        acting.push_back(piece.force);
+      }
+      change2 += (piece.at.total(acting.back()) - piece.at.total(before)).squaredNorm();
+    }
+    const double change = std::sqrt(change2);
+    pieces_->changed = pieces_->changed || change > pieces_->rounding;
+    for (std::size_t k = 0; k < touching.size(); ++k) {
+      TouchingPiece& piece = touching[k];
+      if (pieces_->left <= kSettled * change) piece.force = acting[k];
+      held_[piece.number] = {piece.at.total(piece.force), piece.weights};
+    }
   }
 
   /// Precondition: no plane.
@@ -287,11 +343,34 @@ class FaceContactPass final : public Pass<Real> {
     return out;
   }
 
+  static Vec3 place_of(const Points<Real>& x, const Triangle& face, const Vec3& weights) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c) sum += weights[to_axis(c)] * at(x, face[c]);
+    return sum;
+  }
   /// Where a point of a face began the substep [m].
   static Vec3 at_start(const Particles<Real>& p, const Triangle& face, const Vec3& weights) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t c = 0; c < 3; ++c) sum += weights[to_axis(c)] * at(p.previous, face[c]);
+    return place_of(p.previous, face, weights);
+  }
+  /// What a force at the point moves it by, were its corners free [1/kg].
+  static double inverse_mass_of(const Particles<Real>& p, const Triangle& face,
+                                const Vec3& weights) {
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double b = weights[to_axis(c)];
+      sum += static_cast<double>(p.w[index(face[c])]) * b * b;
+    }
     return sum;
+  }
+  /// The half-space that it has to keep out of.
+  TouchingVertex touching(const Particles<Real>& p, const Triangle& face,
+                          const Separation& out) const {
+    TouchingVertex contact;
+    contact.normal = out.normal;
+    contact.offset = out.normal.dot(out.point.position) + out.length;
+    contact.from = carried(at_start(p, face, out.point.weights), out.point.position);
+    contact.friction = collider_.friction;
+    return contact;
   }
   /// Where it would be if it had gone with the surface at `now` [m].
   Vec3 carried(const Vec3& start, const Vec3& now) const {
@@ -324,18 +403,13 @@ class FaceContactPass final : public Pass<Real> {
   void hold(Particles<Real>& p, const Triangle& face, const Separation& out, double dt,
             Held& held) const {
     const Vec3& weights = out.point.weights;
-    double own = 0, of_held = 0;  // 1/kg
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double w = static_cast<double>(p.w[index(face[c])]), b = weights[to_axis(c)];
-      own += w * b * b;
-      of_held += w * b * held.weights[to_axis(c)];
-    }
+    const double own = inverse_mass_of(p, face, weights);
     if (own == 0) return;  // all that could move it are pins
-    TouchingVertex contact;
-    contact.normal = out.normal;
-    contact.offset = out.normal.dot(out.point.position) + out.length;
-    contact.from = carried(at_start(p, face, weights), out.point.position);
-    contact.friction = collider_.friction;
+    double of_held = 0;    // 1/kg
+    for (std::size_t c = 0; c < 3; ++c)
+      of_held +=
+          static_cast<double>(p.w[index(face[c])]) * weights[to_axis(c)] * held.weights[to_axis(c)];
+    const TouchingVertex contact = touching(p, face, out);
     Vec3 free = out.point.position - dt * dt * of_held * held.force;
     ContactForce force;
     settle(contact, IsotropicCompliance{dt * dt * own}, force, free);
@@ -348,11 +422,7 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   void push(Particles<Real>& p, const Triangle& face, const Separation& out) const {
-    double sum = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double b = out.point.weights[static_cast<Eigen::Index>(c)];
-      sum += static_cast<double>(p.w[index(face[c])]) * b * b;
-    }
+    const double sum = inverse_mass_of(p, face, out.point.weights);
     if (sum == 0) return;  // all that could move it are pins
     Vec3 correction = out.length * out.normal;
     if (collider_.friction > 0) {
@@ -381,6 +451,7 @@ class FaceContactPass final : public Pass<Real> {
   bool continuous_;
   std::vector<Triangle> faces_;
   Pass<Real>* solver_;         ///< null: none with a target
+  TouchingPieces* pieces_;     ///< of a solver that takes them into its solve; else null
   std::vector<Held> held_;     ///< [pieces]; empty without one
   std::vector<Corners> safe_;  ///< [pieces] m, of edges; remember_sides()
   Shape shape_;  ///< at the end of the step, grown by the thickness unless it is a body's

@@ -1,6 +1,7 @@
 #include "core/solver/contact/projector.hpp"
 
 #include <bit>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -92,6 +93,7 @@ struct BodyContact {
   Vec3T<Real> center;          ///< m, of its frame
   Vec3T<Real> axes[3];         ///< of its frame in the world
   Real rounding;               ///< m, far beyond that of coordinates in Real
+  Real noise;                  ///< m, of coordinates in Real
   bool continuous;
 
   /// Whether particles may touch: those in the sphere around the body that are not known to be
@@ -115,15 +117,37 @@ struct BodyContact {
   /// Whether x, which began the substep at `previous`, has been moved.
   bool project(Vec3T<Real>& x, const Vec3T<Real>& previous, Seen& seen) {
     contact.surface.ask_about(&seen);
-    if (const auto moved = project_where_known(x, previous)) return *moved;
+    if (const auto moved = project_where_known(x, previous)) {
+      if (*moved && continuous && contact.surface.thin) keep_from_others(x, previous);
+      return *moved;
+    }
     const bool near = continuous ? contact.template near<true>(x, previous)
                                  : contact.template near<false>(x, previous);
     if (!near) return false;
-    return continuous ? contact.project_continuous(x, previous, true)
-                      : contact.project(x, previous, true);
+    if (!continuous) return contact.project(x, previous, true);
+    if (!contact.project_continuous(x, previous, true)) return false;
+    keep_from_others(x, previous);
+    return true;
   }
 
  private:
+  /// What is put out at one triangle may be behind another one, of which the next substep would
+  /// know less: it goes on from there, and in the end half of its way to it.
+  void keep_from_others(Vec3T<Real>& x, const Vec3T<Real>& previous) const {
+    const Vec3T<Real> from = contact.motion(previous);
+    constexpr int kRounds = 4;
+    for (int round = 0; round <= kRounds; ++round) {
+      const Entry<Real> entry = contact.surface.entry(from, x);
+      const auto height = [&](const Vec3T<Real>& p) {
+        return dot(entry.tangent.normal, p) - entry.tangent.offset;
+      };
+      if (!entry.hits || height(x) >= -noise) return;
+      if (round < kRounds)
+        contact.push(x, from, entry.tangent, true);
+      else if (height(from) > 0)
+        x = from + height(from) / (2 * (height(from) - height(x))) * (x - from);
+    }
+  }
   /// The same numbers for a particle that has hardly moved and cannot have passed through.
   std::optional<bool> project_where_known(Vec3T<Real>& x, const Vec3T<Real>& previous) {
     const auto distance = contact.surface.distance_if_known(x);
@@ -160,7 +184,9 @@ class MeshProjector final : public Projector<Real> {
     body_.center = vec3t<Real>(body.center);
     const Eigen::Matrix3d axes = body.rotation.toRotationMatrix();
     for (Eigen::Index k = 0; k < 3; ++k) body_.axes[k] = vec3t<Real>(Vec3(axes.col(k)));
-    body_.rounding = static_cast<Real>(1e-5 * (body.mesh->reach() + body.center.norm()));
+    const auto far = static_cast<Real>(body.mesh->reach() + body.center.norm());
+    body_.rounding = static_cast<Real>(1e-5) * far;
+    body_.noise = 8 * std::numeric_limits<Real>::epsilon() * far;
   }
 
   void project(const ParticleSpan<Real>& span, std::size_t blocks,

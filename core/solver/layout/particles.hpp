@@ -185,6 +185,8 @@ class ByBlock {
   std::vector<std::size_t> first_;  ///< of each block, and the end
 };
 
+struct TouchingPieces;  // contact/augmented_contacts.hpp
+
 /// One effect of a scene with the data it needs. It exists only if the scene has the effect: no
 /// flag is tested inside the loop, and an absent effect owns no memory.
 template <class Real>
@@ -211,6 +213,8 @@ class Pass {
   /// null: of any other. Contact that is projected after the pass moves it by what it moves
   /// particles by, so that the links feel that force from the next iteration on.
   virtual Points<Real>* target() { return nullptr; }
+  /// Of faces and edges, for a pass that takes their contact into its solve; null: any other.
+  virtual TouchingPieces* touching_pieces() { return nullptr; }
   /// Of one application, a line for each thing it does; the solver sets `repeats`.
   virtual std::vector<PassCost> cost() const = 0;
 };

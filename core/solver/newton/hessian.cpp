@@ -8,14 +8,15 @@ namespace taut::solver::implicit {
 using Eigen::Matrix3d;
 
 Hessian::Hessian(const std::vector<Spring>& springs, const std::vector<BendingElement>& bending,
-                 std::span<const double> w, bool factored, Simd simd)
+                 std::span<const double> w, bool factored, Simd simd,
+                 std::span<const std::pair<int, int>> beside)
     : springs_(springs), bending_(bending), column_(w.size(), kPinned), blocks_(springs.size()) {
   for (std::size_t i = 0; i < w.size(); ++i)
     if (w[i] > 0) {
       column_[i] = 3 * static_cast<int>(mass_.size());
       mass_.push_back(1 / w[i]);
     }
-  if (factored) analyse(simd);
+  if (factored) analyse(simd, beside);
 }
 
 /// add(row, column, k [N/m]) for every entry in the lower triangle of the bending elements, whose
@@ -51,7 +52,14 @@ std::size_t Hessian::bytes() const {
          static_cast<std::size_t>(in_order_.size()) * sizeof(double);
 }
 
-void Hessian::analyse(Simd simd) {
+Hessian::Block Hessian::place(int column, int other) {
+  if (column < 0 || other < 0) return {};
+  const auto [low, high] = std::minmax({rank_[to_index(column) / 3], rank_[to_index(other) / 3]});
+  double* const first = factor_.at(high, low);
+  return {first, static_cast<std::size_t>(factor_.at(high, low, 1) - first)};
+}
+
+void Hessian::analyse(Simd simd, std::span<const std::pair<int, int>> beside) {
   std::vector<PanelFactor::Pair> pairs;
   const auto join = [&](std::size_t a, std::size_t b) {
     if (a != b && column_[a] >= 0 && column_[b] >= 0)
@@ -61,16 +69,11 @@ void Hessian::analyse(Simd simd) {
   for (const BendingElement& e : bending_)
     for (std::size_t i = 0; i < e.size; ++i)
       for (std::size_t j = 0; j < i; ++j) join(to_index(e.vertex[i]), to_index(e.vertex[j]));
+  for (const auto& [a, b] : beside) join(to_index(a), to_index(b));
   factor_ = PanelFactor(mass_.size(), pairs, 3, simd);
   in_order_.resize(size());
-  std::vector<std::size_t> rank(mass_.size());
-  for (std::size_t k = 0; k < rank.size(); ++k) rank[to_index(factor_.order()[k])] = k;
-  const auto place = [&](int a, int b) -> Block {
-    if (a < 0 || b < 0) return {};
-    const auto [low, high] = std::minmax({rank[to_index(a) / 3], rank[to_index(b) / 3]});
-    double* const first = factor_.at(high, low);
-    return {first, static_cast<std::size_t>(factor_.at(high, low, 1) - first)};
-  };
+  rank_.resize(mass_.size());
+  for (std::size_t k = 0; k < rank_.size(); ++k) rank_[to_index(factor_.order()[k])] = k;
   for (int i = 0; i < size(); i += 3) diagonal_.push_back(place(i, i));
   for (const Spring& s : springs_) beside_.push_back(place(column_[s.a], column_[s.b]));
   each_bending([&](int row, int column, double k) {
@@ -98,7 +101,16 @@ void Hessian::fill(double h) {
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) at(r, c) -= block(r, c);
   }
-  for (const auto& [column, block] : contacts_) add_diagonal(column, block);
+  for (const auto& [a, b, block] : contacts_) {
+    if (column_[a] < 0 || column_[b] < 0) continue;
+    if (a == b) {
+      add_diagonal(column_[a], block);
+      continue;
+    }
+    const Block at = place(column_[a], column_[b]);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) at(r, c) += block(r, c);
+  }
 }
 
 Vector Hessian::times(double h, const Vector& v) const {
@@ -121,7 +133,8 @@ bool Hessian::conjugate_gradients(double h, const Vector& right, Vector& p) cons
   each_bending([&](int row, int column, double k) {
     if (row == column) inverse[to_index(row) / 3](row % 3, row % 3) += k;
   });
-  for (const auto& [column, block] : contacts_) inverse[to_index(column) / 3] += block;
+  for (const auto& [a, b, block] : contacts_)
+    if (a == b && column_[a] >= 0) inverse[to_index(column_[a]) / 3] += block;
   for (Matrix3d& m : inverse) m = Matrix3d(m.inverse());
   const auto preconditioned = [&](const Vector& r) {
     Vector z(r.size());

@@ -29,8 +29,10 @@ struct SpringHessian {
 class Hessian {
  public:
   /// Of springs and bending that outlive it. w: inverse masses [1/kg].
+  /// beside: vertices between which add_contact() may add something, more than springs and bending.
   Hessian(const std::vector<Spring>& springs, const std::vector<BendingElement>& bending,
-          std::span<const double> w, bool factored, Simd simd);
+          std::span<const double> w, bool factored, Simd simd,
+          std::span<const std::pair<int, int>> beside = {});
 
   int size() const { return 3 * static_cast<int>(mass_.size()); }
   /// Where the vertex is in vectors; kPinned: it does not move.
@@ -40,7 +42,11 @@ class Hessian {
   /// What contact adds at a vertex that moves [N/m].
   void clear_contacts() { contacts_.clear(); }
   void add_contact(std::size_t vertex, const Eigen::Matrix3d& block) {
-    contacts_.emplace_back(column_[vertex], block);
+    add_contact(vertex, vertex, block);
+  }
+  /// The same between two, for both.
+  void add_contact(std::size_t a, std::size_t b, const Eigen::Matrix3d& block) {
+    contacts_.push_back({a, b, block});
   }
   bool factored() const { return !diagonal_.empty(); }
   static constexpr int kPinned = -1;
@@ -71,8 +77,10 @@ class Hessian {
         if (const int c = column_[to_index(e.vertex[i])]; c >= 0)
           out.segment<3>(c) += e.weight[i] * pull;
     }
-    for (const auto& [column, block] : contacts_)
-      out.segment<3>(column) += block * v.segment<3>(column);
+    for (const auto& [a, b, block] : contacts_) {
+      if (column_[a] >= 0) out.segment<3>(column_[a]) += block * at(b);
+      if (a != b && column_[b] >= 0) out.segment<3>(column_[b]) += block * at(a);
+    }
     return out;
   }
 
@@ -87,7 +95,14 @@ class Hessian {
     double& operator()(int r, int c) const { return first[to_index(r) * stride + to_index(c)]; }
   };
 
-  void analyse(Simd simd);
+  struct ContactBlock {
+    std::size_t a, b;  ///< vertices
+    Eigen::Matrix3d block;
+  };
+
+  void analyse(Simd simd, std::span<const std::pair<int, int>> beside);
+  /// Of two that move, in whichever order; the matrix has it.
+  Block place(int column, int other);
   template <class Add>
   void each_bending(const Add& add) const;
   void add_diagonal(int column, const Eigen::Matrix3d& block);
@@ -100,12 +115,13 @@ class Hessian {
   std::vector<int> column_;
   std::vector<double> mass_;  ///< kg, of those that move
   std::vector<SpringHessian> blocks_;
-  std::vector<std::pair<int, Eigen::Matrix3d>> contacts_;
+  std::vector<ContactBlock> contacts_;
   PanelFactor factor_;                          ///< empty: conjugate gradients
   std::vector<Block> diagonal_;                 ///< [those that move]
   std::vector<Block> beside_;                   ///< [springs]
   std::vector<std::pair<Block, double>> bent_;  ///< [N/m] of bending, times unity
-  Vector in_order_;                             ///< in the order of elimination
+  std::vector<std::size_t> rank_;               ///< [those that move] in the order of elimination
+  Vector in_order_;                             ///< in that order
 };
 
 }  // namespace taut::solver::implicit

@@ -138,6 +138,17 @@ TEST(BodyContact, NothingPassesAThinBodyFromEitherSide) {
     }
 }
 
+// Grooves are narrower than what puts vertices out of one of their walls is long.
+TEST(BodyContact, WhatIsPutOutOfOneWallOfAGrooveStaysAboveTheOther) {
+  for (const std::string& solver : our_solvers()) {
+    Scene scene = sheet_above(kGrooves + 0.1);
+    for (Vec3& v : scene.start.v) v = {0.3, -20, 0};
+    scene.colliders = {
+        {.shape = MeshBody{.mesh = grooved_sheet().mesh(), .sides = MeshBody::Sides::both}}};
+    EXPECT_EQ(below_grooves(simulate(scene, solver, kQuarterSecond)), 0) << solver;
+  }
+}
+
 /// Depth of the deepest of many points of the faces.
 double deepest_of_faces(const Scene& scene, const State& state) {
   double most = 0;

@@ -109,7 +109,9 @@ TEST(DeformingContact, AndForFaces) {
       scene.colliders[0].friction = 0.6;
       constexpr int kFps = 64 * 960;
       scene.colliders[0] = as_frames(scene.colliders[0], kFps, kFps / 4 + 1);
-      EXPECT_LE(largest_distance(simulate(scene, solver, kQuarterSecond).x, want.x), 1e-9)
+      // Newton's iterations end at 1e-9 of the forces
+      const double within = plain.starts_with("implicit") ? 1e-8 : 1e-9;
+      EXPECT_LE(largest_distance(simulate(scene, solver, kQuarterSecond).x, want.x), within)
           << solver << ' ' << spin;
     }
 }
@@ -151,6 +153,17 @@ TEST(DeformingContact, NothingPassesAThinBodyThatComesFromEitherSide) {
       for (const Vec3& x : state.x)
         EXPECT_GE(side * mesh.nearest(x).distance, 0.005 - 1e-4) << solver << ' ' << side;
     }
+}
+
+TEST(DeformingContact, WhatIsPutOutOfOneWallOfAGrooveStaysAboveTheOther) {
+  for (const std::string& solver : our_solvers()) {
+    Scene scene = sheet_above(kGrooves + 0.1);
+    for (Vec3& v : scene.start.v) v = {0.3, -20, 0};
+    Collider grooves{.shape =
+                         MeshBody{.mesh = grooved_sheet().mesh(), .sides = MeshBody::Sides::both}};
+    scene.colliders = {as_frames(grooves, 64, 18)};
+    EXPECT_EQ(below_grooves(simulate(scene, solver, kQuarterSecond)), 0) << solver;
+  }
 }
 
 /// Of the thread where it is over x = 0 [m].
