@@ -463,6 +463,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   for (const Member& l : links_)
     if (std::isfinite(l.stiffness)) stiffest = std::max(stiffest, l.stiffness);
   double hardness = kHardness * heaviest;
+  const auto rounding = [&] { return kRounding * (hardness + 10 * stiffest); };  // N
   Multiplied problem(*this, hardness);
   x = problem.related(std::move(x));
   problem.lay_planes(x);
@@ -472,7 +473,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   double contact = 0;  // m, by which it is not yet settled
   for (int round = 0; round < rounds; ++round) {
     const Points last = x;
-    x = problem.minimise(std::move(x), 1e-10 + kRounding * (hardness + 10 * stiffest));
+    x = problem.minimise(std::move(x), 1e-10 + rounding());
     if (round > 0) found.moved = distance(x, last);
     contact = problem.update_contact(x);
     if (!rigid_ && contact < kTouching) break;
@@ -504,7 +505,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
     found.problem = "contact did not come to rest";
   else if (found.stretch > kLocked)
     found.problem = "the links cannot all have their length near this state";
-  else if (!(found.residual < 1e-6 + kRounding * hardness))
+  else if (!(found.residual < 1e-6 + rounding()))
     found.problem = "Newton's method did not converge";
   return found;
 }

@@ -220,8 +220,10 @@ struct Measured {
   std::map<std::string, double> values;
   std::string remark;
 };
-Measured measured(const Scene& scene, const std::string& solver) {
-  const auto [entry, value] = find_value("step.error");
+/// What the metric of `value` says.
+Measured measured(const Scene& scene, const std::string& solver,
+                  const std::string& of = "step.error") {
+  const auto [entry, value] = find_value(of);
   const auto metric = entry->make(scene);
   const SolverChoice choice = parse_solver(solver);
   metric->declare(declared_step(*choice.entry, scene, choice.params));
@@ -289,7 +291,7 @@ TEST(StepErrorMetric, TellsWhoseStepsMissTheWay) {
 TEST(Way, TellsWhoLagsFromWhoStandsStillAndWhoGoesTooFar) {
   const Case one = make_case({"drape", {"cloth.span=0.7", "time.duration=0.6"}, "jakobsen"});
   const auto share = [&](const std::string& solver) {
-    return measured(*one.scene, solver).values.at("way.share");
+    return measured(*one.scene, solver, "way.share").values.at("way.share");
   };
   EXPECT_NEAR(share("implicit:structural=1e5,shear=1e5"), 1, 1e-6);
   EXPECT_NEAR(share("jakobsen:iterations=64,substeps=16,precision=double"), 1.08, 0.02);
@@ -304,7 +306,7 @@ TEST(Way, IsTheSameAtTimeStepsThatTheExactPathJoins) {
   const auto share = [](const char* dt) {
     const Case one = make_case(
         {"swing", {"cloth.grid=[9, 9]", "time.duration=0.6", std::string("time.dt=") + dt}, "pd"});
-    return measured(*one.scene, "jakobsen:iterations=1,substeps=8,precision=double")
+    return measured(*one.scene, "jakobsen:iterations=1,substeps=8,precision=double", "way.share")
         .values.at("way.share");
   };
   EXPECT_NEAR(share("0.015625"), 1, 0.03);

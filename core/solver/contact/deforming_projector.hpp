@@ -70,13 +70,13 @@ class DeformingProjector final : public Projector<Real> {
   /// As at a rigid body (projector.cpp).
   void keep_from_others(Vec3& x, const Vec3& previous) const {
     const double rounding = 1e-9 * contact_.body().after().reach();
-    constexpr int kRounds = 4;
-    for (int round = 0; round <= kRounds; ++round) {
+    constexpr int kOthers = 4;
+    for (int round = 0; round <= kOthers; ++round) {
       const auto touch = contact_.passes(contact_.path(x, previous));
       if (!touch) return;
       const auto height = [&](const Vec3& p) { return touch->normal.dot(p) - touch->offset; };
       if (height(x) >= -rounding) return;
-      if (round < kRounds)
+      if (round < kOthers)
         push(*touch, x);
       else if (const double from = height(touch->from); from > 0)
         x = touch->from + from / (2 * (from - height(x))) * (x - touch->from);

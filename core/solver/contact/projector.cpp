@@ -135,14 +135,14 @@ struct BodyContact {
   /// know less: it goes on from there, and in the end half of its way to it.
   void keep_from_others(Vec3T<Real>& x, const Vec3T<Real>& previous) const {
     const Vec3T<Real> from = contact.motion(previous);
-    constexpr int kRounds = 4;
-    for (int round = 0; round <= kRounds; ++round) {
+    constexpr int kOthers = 4;
+    for (int round = 0; round <= kOthers; ++round) {
       const Entry<Real> entry = contact.surface.entry(from, x);
       const auto height = [&](const Vec3T<Real>& p) {
         return dot(entry.tangent.normal, p) - entry.tangent.offset;
       };
       if (!entry.hits || height(x) >= -noise) return;
-      if (round < kRounds)
+      if (round < kOthers)
         contact.push(x, from, entry.tangent, true);
       else if (height(from) > 0)
         x = from + height(from) / (2 * (height(from) - height(x))) * (x - from);
