@@ -206,14 +206,15 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
   check("mass-spring:substeps=64,faces=edges", on_links, on_links.ratio_of_links(), "1.01");
   // at 1.01 it creeps by 0.5 mm/s, by 6 mm/s with 200 iterations
   check("implicit:faces=edges", on_links, on_links.ratio_of_links(), "1.02");
-  check("xpbd:substeps=64,faces=edges,precision=double", on_links, on_links.ratio_of_links(),
+  check("xpbd:substeps=16,faces=edges,precision=double", on_links, on_links.ratio_of_links(),
         "1.02");
-  for (const std::string solver : {"pd", "admm", "vbd:precision=double"}) {
+  for (const auto& [solver, speed] :
+       {std::pair{"pd", 0.16}, {"admm", 0.13}, {"vbd:precision=double", 0.09}}) {
     const std::string lags = with(solver, "faces=edges");
     if (can_run(findings, lags, on_links.scene(cylinder, 1)))
       findings.deviates(
           lags, "speed of the heavy end after 1 s at 0.9 of the ratio", "m/s",
-          on_links.speed(lags, cylinder, 0.9 * on_links.ratio_of_links(), 1), 0, 0.13, 0.1,
+          on_links.speed(lags, cylinder, 0.9 * on_links.ratio_of_links(), 1), 0, speed, 0.05,
           "an edge's force changes in an iteration by what inertia m/h^2 asks for, "
           "here a thousandth of its links' stiffness: the rope slides off before it has "
           "grown");
