@@ -160,8 +160,8 @@ def passages_of_edges(body, edges, frames):
             for s, which in roots(np.array(volumes), 2):
                 k = near[which]
                 p, q = at(s)
-                shares = np.linalg.lstsq(np.array([q - p, -way[k]]).T, start[k] - p, rcond=None)[0]
-                count += (shares >= 0).all() and (shares < 1).all()
+                shares, _, rank, _ = np.linalg.lstsq(np.array([q - p, -way[k]]).T, start[k] - p, rcond=None)
+                count += rank == 2 and (shares >= 0).all() and (shares < 1).all()  # parallel lines do not meet
     return count
 
 
@@ -245,6 +245,13 @@ def compare(case, path, solvers, sizes, sides="out", size=0.7):
 
 
 class Bodies(module.Case):
+    def test_an_edge_that_turns_parallel_beside_another_does_not_pass(self):
+        body = Body(np.array([[0, 0, 0], [1, 0.75, 0], [-1, -2, 0]]), np.array([[0, 1, 2]]))
+        turning = np.array([[[0.5, 0.5, -0.25], [0, 0.125, 0.25]], [[0.5, 0.5, 0.25], [0, 0.125, -0.25]]])
+        self.assertEqual(passages_of_edges(body, [(0, 1)], turning), 0)
+        turning[1] -= [0, 0.375, 0]
+        self.assertEqual(passages_of_edges(body, [(0, 1)], turning), 1)
+
     def test_depths_and_passages_are_those_of_the_second_implementation(self):
         path = self.folder / "torus.obj"
         write_obj(path, *lumpy_torus(9, 6))
