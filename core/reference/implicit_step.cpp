@@ -312,7 +312,8 @@ struct ImplicitStep::Multiplied {
     });
     return reduced() ? Vector(basis.transpose() * g) : g;
   }
-  /// The Hessian: add(row, column, block) of three rows and columns, in its lower triangle.
+  /// The Hessian: add(row, column, block) of three rows and columns, in its lower triangle; each
+  /// block is symmetric.
   template <class Add>
   void each_block(const Points& x, bool clamped, const Add& add) const {
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -363,8 +364,7 @@ struct ImplicitStep::Multiplied {
       for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t c = 0; c < (a == b ? r + 1 : 3); ++c)
           *panels.at(std::max(a, b), std::min(a, b), r, c) +=
-              a >= b ? m(static_cast<int>(r), static_cast<int>(c))
-                     : m(static_cast<int>(c), static_cast<int>(r));
+              m(static_cast<int>(r), static_cast<int>(c));
     });
     return panels.factor();
   }
