@@ -10,7 +10,7 @@ namespace taut {
 /// second where a square metre hangs; 32 steps where there is no gravity.
 int first_steps(const Scene&);
 
-/// The way [m] of the pins in the mean until time t, which is none of the cloth's own.
+/// How far [m] the pins have gone in the mean until time t: the cloth is carried that far.
 Vec3 way_of_pins(const Scene&, double t);
 
 /// The mean of what vertices have, weighted by their masses.

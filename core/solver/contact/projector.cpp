@@ -131,8 +131,8 @@ struct BodyContact {
   }
 
  private:
-  /// What is put out at one triangle may be behind another one, of which the next substep would
-  /// know less: it goes on from there, and in the end half of its way to it.
+  /// A vertex that was put out of one triangle may lie behind another one. It goes on from there;
+  /// if that does not end, it goes half of its way to the last one.
   void keep_from_others(Vec3T<Real>& x, const Vec3T<Real>& previous) const {
     const Vec3T<Real> from = contact.motion(previous);
     constexpr int kOthers = 4;
