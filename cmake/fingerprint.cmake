@@ -1,6 +1,7 @@
-# What produced a number: digests of solvers, layers and of what measures, over sources, compiler, flags and libraries. A small
-# program reads the sources while building (cmake/fingerprint.cpp): which files a solver consists of is listed nowhere.
-#   taut_write_fingerprint(OUT LAYER=FOLDER|... ... measurement=FOLDER|...)
+# What produced a number: digests of solvers, of layers and of other parts of the program, over sources, compiler, flags and
+# libraries. A small program reads the sources while building (cmake/fingerprint.cpp): which files a solver or a part consists
+# of is listed nowhere.
+#   taut_write_fingerprint(OUT LAYERS FOLDER|... ... PARTS NAME=FOLDER|... ...)
 function(taut_write_fingerprint out)
   get_target_property(options taut_flags INTERFACE_COMPILE_OPTIONS)
   list(FILTER options EXCLUDE REGEX "^-W|ggc-|^-fvisibility")  # these change no result
@@ -9,9 +10,11 @@ function(taut_write_fingerprint out)
   string(CONCAT tools "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}; "
          "flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${options}; "
          "Eigen ${Eigen3_VERSION}; Bullet ${BULLET64_VERSION}")
-  string(REGEX REPLACE "[^=;|]+=" "" folders "${ARGN}")
+  cmake_parse_arguments(of "" "" "LAYERS;PARTS" ${ARGN})
+  string(REGEX REPLACE "[^=;|]+=" "" folders "${of_LAYERS};${of_PARTS}")
   string(REPLACE "|" ";" folders "${folders}")
-  set(read)
+  # What a part includes may lie anywhere in core and experiments.
+  file(GLOB_RECURSE read CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/core/*.[ch]pp ${PROJECT_SOURCE_DIR}/experiments/*.[ch]pp)
   foreach(folder IN LISTS folders)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}.[ch]pp ${PROJECT_SOURCE_DIR}/${folder}/*)
     list(APPEND read ${found})
@@ -21,5 +24,5 @@ function(taut_write_fingerprint out)
   target_compile_features(taut_fingerprint_writer PRIVATE cxx_std_20)
   target_link_libraries(taut_fingerprint_writer PRIVATE OpenSSL::Crypto)
   add_custom_command(OUTPUT ${out} DEPENDS ${read} taut_fingerprint_writer VERBATIM
-                     COMMAND taut_fingerprint_writer ${out} ${PROJECT_SOURCE_DIR} "${tools}" ${ARGN})
+                     COMMAND taut_fingerprint_writer ${out} ${PROJECT_SOURCE_DIR} "${tools}" ${of_LAYERS} -- ${of_PARTS})
 endfunction()

@@ -1,13 +1,15 @@
 // Writes the file that says what produced a number: a digest for each solver, for each layer that
-// has solvers, and for what measures. Keys of stored results contain them, so that a result is
-// never taken for that of other code.
+// has solvers, and for parts of the program such as what measures. Keys of stored results contain
+// them, so that a result is never taken for that of other code.
 //
-//   fingerprint OUT ROOT TOOLS LAYER=FOLDER|... ... measurement=FOLDER|...
+//   fingerprint OUT ROOT TOOLS FOLDER|... ... -- PART=FOLDER|... ...
 //
-// A solver's digest is over its closure: its file, what that includes by `#include "`, and the
-// sources that implement a header of these. A layer's digest is over all of its files. TOOLS names
-// compiler, flags and libraries. Comments and blank lines count for nothing; paths are relative to
-// ROOT, so that clones agree. cmake/fingerprint.cmake calls this while building.
+// What stands before `--` are layers. A solver's digest is over its closure: its file, what that
+// includes by `#include "`, and the sources of its layer that implement a header of these. A
+// layer's digest is over all of its files. A part's digest is over the closure of its files, with
+// the sources of ROOT/core that implement a header of these. TOOLS names compiler, flags and
+// libraries. Comments and blank lines count for nothing; paths are relative to ROOT, so that clones
+// agree. cmake/fingerprint.cmake calls this while building.
 #include <openssl/evp.h>
 
 #include <algorithm>
@@ -211,10 +213,10 @@ bool implements_one(Sources& sources, const Names& layer, const std::string& sou
   });
 }
 
-/// The files that a solver consists of.
-Names closure_of(Sources& sources, const Names& layer, const std::string& solver) {
+/// These files, what they include, and the sources of `layer` that implement a header of these.
+Names closure_of(Sources& sources, const Names& layer, const Names& roots) {
   Names files;
-  add_with_includes(sources, solver, files);
+  for (const std::string& file : roots) add_with_includes(sources, file, files);
   for (std::size_t before = 0; before < files.size();) {
     before = files.size();
     for (const std::string& source : layer)
@@ -236,65 +238,83 @@ std::string name_of(std::string identifier) {
   return identifier;
 }
 
-struct Printed {
-  std::string solvers, layers;  ///< lines of two functions
-  std::string measurement;
+/// A line of a function that is asked for a solver by its name.
+std::string line_of(const std::string& solver, const std::string& digest) {
+  return "  if (solver == \"" + solver + "\") return \"" + digest + "\";\n";
+}
+
+/// Lines of two functions.
+struct OfSolvers {
+  std::string solvers, layers;
 };
 
-Printed print_digests(Sources& sources, const std::string& tools,
-                      const std::vector<std::string>& layers) {
-  Printed made;
-  const auto line = [](const std::string& solver, const std::string& digest) {
-    return "  if (solver == \"" + solver + "\") return \"" + digest + "\";\n";
-  };
-  for (const std::string& layer : layers) {
-    const std::size_t equals = layer.find('=');
-    if (equals == layer.npos) throw std::runtime_error("no LAYER=FOLDERS: " + layer);
-    const Names files = sources.in(std::string_view(layer).substr(equals + 1));
+OfSolvers print_solvers(Sources& sources, const std::string& tools,
+                        const std::vector<std::string>& layers) {
+  OfSolvers made;
+  for (const std::string& folders : layers) {
+    const Names files = sources.in(folders);
     const std::string digest = digest_of(sources, files, tools);
-    if (layer.substr(0, equals) == "measurement") {
-      made.measurement = digest;
-      continue;
-    }
     for (const std::string& file : files)
       for (const std::string& identifier : sources.of(file).solvers) {
         if (!file.ends_with(".cpp")) continue;  // the definition of TAUT_SOLVER
         const std::string name = name_of(identifier);
-        const Names closure = closure_of(sources, files, file);
-        made.solvers += line(name, digest_of(sources, closure, tools));
-        made.layers += line(name, digest);
+        const Names closure = closure_of(sources, files, {file});
+        made.solvers += line_of(name, digest_of(sources, closure, tools));
+        made.layers += line_of(name, digest);
       }
   }
   return made;
 }
 
-std::string generated(const Printed& made, const std::string& tools) {
+/// A function for each part, which has its name.
+std::string print_parts(Sources& sources, const std::string& tools,
+                        const std::vector<std::string>& parts) {
+  std::string made;
+  for (const std::string& part : parts) {
+    const std::size_t equals = part.find('=');
+    if (equals == part.npos) throw std::runtime_error("no PART=FOLDERS: " + part);
+    const Names files = sources.in(std::string_view(part).substr(equals + 1));
+    if (files.empty()) throw std::runtime_error("no files: " + part);
+    Names candidates = sources.in("core");
+    candidates.insert(files.begin(), files.end());
+    made += "std::string_view " + part.substr(0, equals) + "() { return \"" +
+            digest_of(sources, closure_of(sources, candidates, files), tools) + "\"; }\n\n";
+  }
+  return made;
+}
+
+std::string generated(const OfSolvers& made, const std::string& parts, const std::string& tools) {
   return "// Generated by cmake/fingerprint.cpp.\n#include \"experiments/case/fingerprint.hpp\"\n\n"
          "namespace taut {\n\n"
          "std::string_view implementation(std::string_view solver) {\n" +
          made.solvers +
          "  return {};\n}\n\n"
          "std::string_view layer_digest(std::string_view solver) {\n" +
-         made.layers +
-         "  return {};\n}\n\n"
-         "std::string_view measurement() { return \"" +
-         made.measurement +
-         "\"; }\n\n"
-         "std::string_view toolchain() { return R\"(" +
-         tools + ")\"; }\n\n}  // namespace taut\n";
+         made.layers + "  return {};\n}\n\n" + parts +
+         "std::string_view toolchain() { return R\"(" + tools + ")\"; }\n\n}  // namespace taut\n";
+}
+
+bool has_text(const std::string& file, const std::string& text) {
+  std::ifstream in(file, std::ios::binary);
+  return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
 }
 
 }  // namespace
 
 int main(int count, char** words) try {
   const std::vector<std::string> given(words, words + count);
-  if (given.size() < 5)
-    throw std::runtime_error("usage: fingerprint OUT ROOT TOOLS LAYER=FOLDERS...");
+  const auto end_of_layers = std::ranges::find(given, "--");
+  if (end_of_layers - given.begin() < 5 || end_of_layers == given.end())
+    throw std::runtime_error("usage: fingerprint OUT ROOT TOOLS FOLDERS... -- PART=FOLDERS...");
+  const std::string &out = given[1], &tools = given[3];
   Sources sources(given[2]);
-  const Printed made = print_digests(sources, given[3], {given.begin() + 4, given.end()});
-  std::ofstream out(given[1], std::ios::binary);
-  out << generated(made, given[3]);
-  if (!out.flush()) throw std::runtime_error("cannot write " + given[1]);
+  const OfSolvers made = print_solvers(sources, tools, {given.begin() + 4, end_of_layers});
+  const std::string parts = print_parts(sources, tools, {end_of_layers + 1, given.end()});
+  const std::string text = generated(made, parts, tools);
+  if (has_text(out, text)) return 0;  // nothing that is made of it has to be made again
+  std::ofstream file(out, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw std::runtime_error("cannot write " + out);
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "fingerprint: " << error.what() << '\n';

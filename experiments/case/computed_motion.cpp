@@ -279,7 +279,7 @@ ResolvedSettings ComputedMotion::settings(const Scene& scene) {
                         (frames_.fps > 0 ? "as said" : "assumed: the scene's; fps says otherwise")},
       {"unit", place()},
       {"vertex order", order_said_},
-      {kFloorOfStrain,
+      {kStrainFloor,
        formatted("%.1e", least.rms) + " RMS, " + formatted("%.1e", least.max) +
            " at most: the rounding of the file",
        "", least.rms},

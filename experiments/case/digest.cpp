@@ -41,13 +41,14 @@ std::string digest(const State& state) {
 std::string case_key(const Scene& scene, const std::string& scene_digest,
                      const SolverChoice& choice) {
   const std::string_view own = choice.entry->implementation;
-  const Json parts{{"schema", kRecordSchema},
-                   {"scene", scene_digest},
-                   {"solver", choice.addressed()},
-                   {"implementation", own.empty() ? implementation(choice.entry->name) : own},
-                   {"measurement", measurement()},
-                   {"dt", scene.dt},
-                   {"steps", scene.steps}};
+  Json parts{{"schema", kRecordSchema},
+             {"scene", scene_digest},
+             {"solver", choice.addressed()},
+             {"implementation", own.empty() ? implementation(choice.entry->name) : own},
+             {"measurement", measurement()},
+             {"dt", scene.dt},
+             {"steps", scene.steps}};
+  if (!own.empty()) parts["client"] = external_client();
   return sha256(to_text(parts));
 }
 

@@ -279,7 +279,7 @@ void DivergenceDetector::judge_stretch(int step, const State& state) {
     const double most = (1 + legitimate_strain_) * link.rest;
     if ((state.x[to_index(link.b)] - state.x[to_index(link.a)]).squaredNorm() > square(most) &&
         strain_in_plane(scene_, link, state.x) > 0) {
-      status_ = {Status::Kind::extreme, "stretch", step, link.a};
+      status_ = {Status::Kind::extreme, reason::kStretch, step, link.a};
       return;
     }
   }
@@ -299,7 +299,8 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
   double energy = 0, fastest = 0;
   std::size_t fastest_vertex = 0;
   for (std::size_t i = 0; i < free_mass_.size(); ++i) {
-    if (!state.x[i].allFinite() || !state.v[i].allFinite()) return explode("nonfinite", step, i);
+    if (!state.x[i].allFinite() || !state.v[i].allFinite())
+      return explode(reason::kNonfinite, step, i);
     if (state.x[i].lpNorm<Eigen::Infinity>() > box) return explode("box", step, i);
     if (free_mass_[i] == 0) continue;
     const double v2 = state.v[i].squaredNorm();
@@ -325,7 +326,7 @@ void DivergenceDetector::finish() {
   const double decayed = peak_ * std::exp(-(duration_ - *settling_) / *settling_);
   if (late_ <= std::max(slow_, decayed)) return;
   if (status_.kind == Status::Kind::extreme)
-    status_.reason += ", moves after five settling times";
+    status_.reason = reason::kStretchAndUnsettled;
   else
     status_ = {Status::Kind::unsettled, "moves after five settling times", -1, late_vertex_};
 }

@@ -12,8 +12,8 @@ namespace taut {
 
 /// An upper bound on the kinetic energy [J] that the scene itself can put into the cloth until time
 /// t: the "available potential drop", wind, prescribed motion and a strained start included. It
-/// knows the scene and the step that is computed, so that it is the same for every solver, and it
-/// is generous wherever a soft solver may legitimately stretch. dt is the scene's time step or, of
+/// depends on the scene and on the length of a substep, on nothing else of the solver, and it is
+/// generous wherever a soft solver may legitimately stretch. dt is the scene's time step or, of
 /// a solver with substeps, the substep: a motion has one budget, however it is cut into steps. The
 /// sum of
 ///

@@ -12,8 +12,13 @@ namespace taut {
 std::string_view implementation(std::string_view solver);
 /// Digest of all sources of the solver's layer, core/solver or bullet_ref, with core/model.
 std::string_view layer_digest(std::string_view solver);
-/// Digest of what turns states into numbers: metrics, divergence, run_case, references.
+/// Digest of what turns states into numbers: metrics, divergence, run_case, references, and all
+/// that these use.
 std::string_view measurement();
+/// Digest of what runs programs of others as solvers and reads motions that they computed.
+std::string_view external_client();
+/// Digest of what draws pictures and films.
+std::string_view pictures();
 /// Compiler, flags and library versions, for people.
 std::string_view toolchain();
 

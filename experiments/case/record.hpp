@@ -22,7 +22,7 @@ struct Status {
     timeout,
     oom,
     crash,
-    protocol,  ///< an external program did not keep to taut-solver/1
+    protocol,  ///< an external program did not keep to the protocol
     error,
     // never stored
     interrupted
@@ -34,6 +34,13 @@ struct Status {
 
   bool is_result() const { return kind <= Kind::unsupported; }
 };
+
+/// Reasons of DivergenceDetector that others ask for.
+namespace reason {
+inline constexpr const char *kNonfinite = "nonfinite", *kStretch = "stretch",
+                            *kStretchAndUnsettled = "stretch, moves after five settling times";
+}
+
 std::string_view to_string(Status::Kind);
 bool is_status(std::string_view);
 Status::Kind status_kind(std::string_view);  ///< throws InputError
@@ -46,9 +53,6 @@ struct CaseSpec {
       overrides;       ///< "cloth.grid=[16, 16]", applied before the scene is judged
   std::string solver;  ///< "jakobsen:iterations=8,..."
 };
-
-/// The resolved setting whose number is the rounding of a file of positions, as an RMS of strain.
-inline constexpr std::string_view kFloorOfStrain = "floor of strain";
 
 /// A case that was run: one line of every table. Everything that metrics, plots, reports and checks
 /// need. How it is written and kept: record_columns().

@@ -12,7 +12,8 @@
 // The fields of a record, as scene_keys() has the keys of a scene. The table makes its JSON
 // (record_io), its row in a results file (experiments/results), `taut list record` and, by
 // tests/cli/keys_test.py --write, the tables of the documents. A new field is a member of Record
-// and a row here; once a release kRecordSchema and kSchemaVersion say that there are new ones.
+// and a row here. Raise kRecordSchema and kSchemaVersion once per release that adds fields: every
+// stored result is then computed again.
 
 namespace taut {
 

@@ -75,8 +75,8 @@ inline constexpr std::string_view kShareOfWay = "way.share", kShareBySteps = "st
 inline constexpr std::string_view kRmsStretchPeak = "stretch.rms.peak";
 /// Distance from the dynamic reference over the way: 1 of a cloth that stands still.
 inline constexpr std::string_view kMotionError = "motion.error";
-/// RMS strain that the rounding of a file of positions makes. No metric returns it; it is a
-/// resolved setting of a case that plays such a file.
+/// RMS strain that the rounding of a file of positions makes: the number of the resolved setting of
+/// this name, which cases have that play such a file. No metric returns it.
 inline constexpr std::string_view kStrainFloor = "strain.floor";
 
 /// A number that a metric yields.

@@ -126,7 +126,4 @@ struct ReportInput {
   std::vector<std::pair<std::string, std::string>> left_out = {};
 };
 
-/// The value under which timing puts its result into a record [s per step].
-inline constexpr const char* kCpuValue = "cpu.per_step";
-
 }  // namespace taut::report

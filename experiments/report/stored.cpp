@@ -12,6 +12,7 @@
 #include "experiments/report/questions/case_list.hpp"
 #include "experiments/report/questions/compared_solvers.hpp"
 #include "experiments/require/answers.hpp"
+#include "experiments/study/main_job.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::report {
@@ -58,7 +59,7 @@ Record slim(Record r) {
   r.log = std::string();
   r.step_cost = std::vector<PassCost>();  // `= {}` would keep its memory
   std::erase_if(r.resolved_settings,
-                [](const ResolvedSetting& one) { return one.name != kFloorOfStrain; });
+                [](const ResolvedSetting& one) { return one.name != kStrainFloor; });
   r.resolved_settings.shrink_to_fit();
   std::erase_if(r.values, [](const auto& value) { return !std::isfinite(value.second); });
   return r;
@@ -287,7 +288,7 @@ namespace {
 void add_bench(ReportInput& input, const std::vector<Study>& studies, const Store& store) {
   std::vector<std::string> benched;
   if (studies.size() == 1) benched.push_back(studies.front().name);
-  benched.emplace_back("trade");
+  benched.push_back(main_job().bench);
   for (const std::string& name : benched) {
     if (input.bench) break;
     try {

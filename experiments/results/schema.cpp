@@ -145,10 +145,10 @@ CREATE INDEX timings_of_bench ON timings (bench_id);
 
 CREATE TABLE samples (
   timing_id INTEGER NOT NULL REFERENCES timings ON DELETE CASCADE,
-  round INTEGER NOT NULL,
+  sample INTEGER NOT NULL,
   cpu REAL NOT NULL,
   wall REAL NOT NULL,
-  PRIMARY KEY (timing_id, round)) WITHOUT ROWID;
+  PRIMARY KEY (timing_id, sample)) WITHOUT ROWID;
 
 CREATE VIEW results AS
 SELECT study, scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
@@ -179,18 +179,18 @@ WHERE line.key NOT IN ('step', 't');
 
 CREATE VIEW costs AS
 WITH ranked AS (
-  SELECT timing_id, cpu, wall, count(*) OVER (PARTITION BY timing_id) AS rounds,
+  SELECT timing_id, cpu, wall, count(*) OVER (PARTITION BY timing_id) AS taken,
     row_number() OVER (PARTITION BY timing_id ORDER BY cpu) AS by_cpu,
     row_number() OVER (PARTITION BY timing_id ORDER BY wall) AS by_wall
   FROM samples),
 medians AS (
-  SELECT timing_id, rounds,
-    avg(cpu) FILTER (WHERE by_cpu IN ((rounds + 1) / 2, (rounds + 2) / 2)) AS cpu,
-    avg(wall) FILTER (WHERE by_wall IN ((rounds + 1) / 2, (rounds + 2) / 2)) AS wall
+  SELECT timing_id, taken,
+    avg(cpu) FILTER (WHERE by_cpu IN ((taken + 1) / 2, (taken + 2) / 2)) AS cpu,
+    avg(wall) FILTER (WHERE by_wall IN ((taken + 1) / 2, (taken + 2) / 2)) AS wall
   FROM ranked GROUP BY timing_id)
 SELECT study, cases.scene, solver, substr(cases.id, length(cases.scene) + 2) AS setting, dt,
   substeps, sweeps AS iterations,
-  cpu, cpu / dt AS cpu_per_second, wall, peak_bytes AS memory, coalesce(rounds, 0) AS rounds,
+  cpu, cpu / dt AS cpu_per_second, wall, peak_bytes AS memory, coalesce(taken, 0) AS samples,
   failure, remark, status, host, build, cases.key
 FROM timings JOIN benches USING (bench_id) JOIN cases USING (key)
   LEFT JOIN medians USING (timing_id);

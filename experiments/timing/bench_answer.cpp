@@ -89,7 +89,7 @@ Table samples_of(const StudyBench& bench) {
               "samples of a step",
               {{"scene"},
                {"case"},
-               {"round"},
+               {"sample"},
                {"cpu", "CPU time", kMilliseconds},
                {"wall", "wall time", kMilliseconds}}};
   for (const SceneBench& scene : bench.scenes)

@@ -55,7 +55,7 @@ Timing timing_in(Database& database, const Database::Rows& row) {
                 .failure = row.text(3),
                 .remark = row.text(4)};
   Database::Rows sample = database.rows(
-      "SELECT cpu, wall FROM samples WHERE timing_id = ? ORDER BY round", row.integer(0));
+      "SELECT cpu, wall FROM samples WHERE timing_id = ? ORDER BY sample", row.integer(0));
   while (sample.next()) {
     timing.samples.push_back(sample.number(0));
     timing.wall.push_back(sample.number(1));

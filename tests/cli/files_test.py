@@ -94,7 +94,7 @@ class Files(CommandLine):
         self.assert_same(self.score(blender, *said), 1e-12)
         text = self.taut("external", "score", "./small.toml", blender, *said).out
         for part in ["1 unit is 0.01 m, z up", "matched by position", "0.015625 s a frame, assumed",
-                     "float64", "floor of strain  ", "cost             not measured", "stretch.rms"]:
+                     "float64", "strain.floor  ", "cost          not measured", "stretch.rms"]:
             self.assertIn(part, text)
 
     def test_time_is_said_or_the_scenes(self):

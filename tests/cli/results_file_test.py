@@ -168,7 +168,7 @@ class Damage(CommandLine):
         self.assertIn("does not match its digest", self.taut("report", study, "--json").err)
         self.taut("bench", study, "--rounds", 2, "--seconds", 0.001)
         self.assertNotIn("damaged bench", self.taut("report", study, "--json").err)
-        self.sql(["UPDATE samples SET cpu = 2 * cpu WHERE round = 1"])
+        self.sql(["UPDATE samples SET cpu = 2 * cpu WHERE sample = 1"])
         self.assertIn("damaged bench of small in study", self.taut("report", study, "--json").err)
 
     def test_a_foreign_file_with_a_view_without_end_is_refused(self):

@@ -260,7 +260,7 @@ class Everywhere(Programs):
         records = {r["solver"]: r for r in self.records()}
         self.assertEqual({r["status"]["kind"] for r in records.values()}, {"ok"})
         file, = [name for name in records if name.startswith("positions-")]
-        inside, floor = records["jakobsen"]["values"], next(s["number"] for s in records[file]["resolved_settings"] if s["name"] == "floor of strain")
+        inside, floor = records["jakobsen"]["values"], next(s["number"] for s in records[file]["resolved_settings"] if s["name"] == "strain.floor")
         self.assertTrue(1e-9 < floor < 1e-6, floor)
         for name, value in inside.items():
             if name.startswith(("stretch", "shear", "structural", "compression")):

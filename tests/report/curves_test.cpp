@@ -58,7 +58,7 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
     file.params.erase("iterations");
     file.sweeps = -1;
     file.values = {{"stretch.rms", dt}};
-    file.resolved_settings = {{kFloorOfStrain, "1e-7", "", 1e-7}};
+    file.resolved_settings = {{kStrainFloor, "1e-7", "", 1e-7}};
     study.records.push_back(file);
   }
   Record failed =
@@ -145,7 +145,7 @@ TEST(Quantities, ReadARecordsSettingsSizesAndValues) {
   r.projections = 9;
   r.values["stretch.rms"] = 0.5;
   r.spec.overrides = {"wind.strength=2", "wind.strength=3", "wind.strengths=4", "a=1x"};
-  r.resolved_settings = {{"time step", "1"}, {kFloorOfStrain, "of binary32", "", 1.5e-7}};
+  r.resolved_settings = {{"time step", "1"}, {kStrainFloor, "of binary32", "", 1.5e-7}};
   for (const auto& [name, value] : {std::pair<std::string, double>{"dt", 0.01},
                                     {"steps", 7},
                                     {"vertices", 5},

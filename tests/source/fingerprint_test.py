@@ -14,7 +14,9 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WRITER = pathlib.Path(sys.argv.pop()).resolve()
-LAYERS = re.findall(r'^ .*"(\w+=[\w/|]+)"', re.search(r"taut_write_fingerprint\((.*?)\)", (ROOT / "CMakeLists.txt").read_text(), re.S)[1].replace('" "', '"\n "'), re.M)
+CALL = re.search(r"taut_write_fingerprint\((.*?)\)", (ROOT / "CMakeLists.txt").read_text(), re.S)[1]
+LAYERS, PARTS = (re.findall(r'"([^"]+)"', folders) for folders in CALL.split("PARTS"))
+PART_NAMES = {part.split("=")[0] for part in PARTS}
 OF_THE_LOOP = {"admm", "avbd", "implicit", "jakobsen", "mass-spring", "pd", "vbd", "xpbd"}
 OF_BULLET = {"bullet", "bullet-deformable"}
 
@@ -24,7 +26,7 @@ class Fingerprint(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.root = pathlib.Path(cls.folder.name) / "tree"
-        for part in ("core", "bullet_ref", "experiments/metrics", "experiments/case", "results/references"):
+        for part in ("core", "bullet_ref", "experiments", "results/references"):
             shutil.copytree(ROOT / part, cls.root / part)
         cls.before = cls.digests()
 
@@ -34,12 +36,12 @@ class Fingerprint(unittest.TestCase):
 
     @classmethod
     def digests(cls, tools="g++"):
-        """What each solver, each layer (by one of its solvers) and what measures is made of."""
+        """What each solver, each layer (by one of its solvers) and each part is made of."""
         out = cls.root.parent / "fingerprint.cpp"
-        subprocess.run([WRITER, out, cls.root, tools, *LAYERS], check=True)
+        subprocess.run([WRITER, out, cls.root, tools, *LAYERS, "--", *PARTS], check=True)
         solvers, layers = (dict(re.findall(r'solver == "(\S+)"\) return "(\w+)"', part)) for part in out.read_text().split("layer_digest"))
         layers = {"core/solver": layers["jakobsen"], "bullet_ref": layers["bullet"]}
-        return {**solvers, **layers, "measurement": re.search(r'measurement\(\) \{ return "(\w+)"', out.read_text())[1]}
+        return {**solvers, **layers, **dict(re.findall(r'(\w+)\(\) \{ return "(\w+)"', out.read_text()))}
 
     def changed_by(self, *edits):
         """The names of the digests that other texts of these files change: (file, text) or (file, old, new)."""
@@ -62,7 +64,8 @@ class Fingerprint(unittest.TestCase):
         return (file, (self.root / file).read_text() + code)
 
     def test_every_solver_has_its_own(self):
-        self.assertEqual(set(self.before), OF_THE_LOOP | OF_BULLET | {"core/solver", "bullet_ref", "measurement"})
+        self.assertEqual(set(self.before), OF_THE_LOOP | OF_BULLET | PART_NAMES | {"core/solver", "bullet_ref"})
+        self.assertEqual(PART_NAMES, {"measurement", "external_client", "pictures"})
         self.assertEqual(len(set(self.before.values())), len(self.before))
 
     def test_comments_and_blank_lines_change_nothing(self):
@@ -103,7 +106,8 @@ class Fingerprint(unittest.TestCase):
         self.assertEqual(self.changed_by(self.add_to("core/model/scene.cpp")), set(self.before))
 
     def test_a_source_without_a_header_of_its_own_is_of_those_that_it_implements(self):
-        self.assertEqual(self.changed_by(self.add_to("core/solver/simd/instruction_set.cpp")), OF_THE_LOOP | {"core/solver"})
+        self.assertEqual(self.changed_by(self.add_to("core/solver/simd/instruction_set.cpp")),
+                         OF_THE_LOOP | {"core/solver", "measurement", "pictures"})
         self.assertEqual(self.changed_by(self.add_to("core/solver/layout/jolt_order.cpp")), OF_THE_LOOP | {"core/solver"})
 
     def test_a_new_file_counts_where_it_is_used(self):
@@ -125,10 +129,25 @@ class Fingerprint(unittest.TestCase):
                 (self.root / name).unlink()
 
     def test_what_measures_is_no_solver(self):
-        for file in ("experiments/metrics/stretch.cpp", "experiments/case/run_case.cpp", "experiments/case/divergence.hpp"):
+        for file in ("experiments/metrics/stretch.cpp", "experiments/case/run_case.cpp", "experiments/case/divergence.cpp",
+                     "core/reference/exact_path.cpp"):
             self.assertEqual(self.changed_by(self.add_to(file)), {"measurement"}, file)
         self.assertEqual(self.changed_by(self.add_to("results/references/hang/static.json", " ")), {"measurement"})
         self.assertEqual(self.changed_by(self.add_to("experiments/case/record_io.cpp")), set())
+
+    def test_a_part_has_what_it_uses_of_other_layers(self):
+        for file in ("core/solver/simd/panels_impl.hpp", "core/solver/simd/kernels.cpp"):  # exact steps are solved by them
+            self.assertEqual(self.changed_by(self.add_to(file)), OF_THE_LOOP | {"core/solver", "measurement", "pictures"}, file)
+        self.assertEqual(self.changed_by(self.add_to("core/io/positions/sequence.cpp")), {"external_client", "pictures"})
+        self.assertEqual(self.changed_by(self.add_to("experiments/case/computed_motion.cpp")), {"external_client"})
+        self.assertEqual(self.changed_by(self.add_to("experiments/render/opengl/shaders.hpp")), {"pictures"})
+
+    def test_a_file_that_stays_the_same_is_not_written_again(self):
+        self.digests()
+        out = self.root.parent / "fingerprint.cpp"
+        before = out.stat().st_mtime_ns
+        self.digests()
+        self.assertEqual(out.stat().st_mtime_ns, before)
 
     def test_another_compiler_changes_all(self):
         after = self.digests("clang++")

@@ -192,8 +192,8 @@ TEST(StoredBenches, TakeThePlaceOfThoseOfTheirHostAndBuildAlone) {
 
 TEST(StoredBenches, ThatDoNotMatchTheirDigestCountAsNone) {
   for (const char* damage :
-       {"UPDATE samples SET cpu = 3 WHERE round = 1", "UPDATE samples SET wall = 'x'",
-        "DELETE FROM samples WHERE round = 1", "UPDATE timings SET peak_bytes = 1",
+       {"UPDATE samples SET cpu = 3 WHERE sample = 1", "UPDATE samples SET wall = 'x'",
+        "DELETE FROM samples WHERE sample = 1", "UPDATE timings SET peak_bytes = 1",
         "UPDATE timings SET failure = 'no clock'", "UPDATE timings SET remark = 'x'",
         "DELETE FROM timings", "UPDATE benches SET control = 2", "UPDATE benches SET host = 'ares'",
         "UPDATE benches SET in_turns = 0", "UPDATE benches SET scene = 'ball'"}) {
@@ -218,7 +218,7 @@ TEST(Costs, AreMediansForWhoeverAsks) {
   Database file(kept.store.file(), Database::Access::read);
   file.script("PRAGMA trusted_schema = ON");  // as for whoever opens it
   Database::Rows row = file.rows(
-      "SELECT solver, cpu, cpu_per_second, wall, rounds, memory, host FROM costs ORDER BY solver");
+      "SELECT solver, cpu, cpu_per_second, wall, samples, memory, host FROM costs ORDER BY solver");
   std::string all;
   while (row.next())
     all += row.text(0) + " " + number_text(row.number(1)) + " " + number_text(row.number(2)) + " " +

@@ -1,3 +1,4 @@
+#include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/require/answers.hpp"
 #include "experiments/study/campaign.hpp"
@@ -109,8 +110,9 @@ void add_options(CLI::App& app, Options& o) {
   add_settings(app, o.settings);
   add_preset(app, o.preset);
   add_judgement(app, o.metric, o.tolerance);
-  app.add_option("--at", o.levels,
-                 "Errors to be reached (default: 0.1,0.01,0.001,0.0001; 0.01 is 1 %)")
+  app.add_option(
+         "--at", o.levels,
+         "Errors to be reached (default: " + join(kErrorLevels, ",", shortest) + "; 0.01 is 1 %)")
       ->delimiter(',')
       ->check(above_zero());
   add_samples(app, o.timing.rounds, o.timing.seconds);

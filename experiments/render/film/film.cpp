@@ -9,6 +9,7 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/fingerprint.hpp"
 #include "experiments/render/film/kept_film.hpp"
 #include "experiments/render/film/recorded_runs.hpp"
 #include "experiments/render/picture/figure.hpp"
@@ -74,7 +75,8 @@ report::Clip clip_of(const RunSet& set, const Media& media) {
 /// shown, this program.
 std::string key_of(const Film& film) {
   const MediaOptions options = options_of(film, film.request.solvers.size());
-  std::string all = program_digest() + "\n" + film.scene + "\n" + join(film.labels, "\n");
+  std::string all = program_digest() + "\n" + std::string(pictures()) + "\n" + film.scene + "\n" +
+                    join(film.labels, "\n");
   const auto add = [&](const auto&... values) { ((all += "\n" + std::to_string(values)), ...); };
   CaseMaker maker;
   for (const std::string& solver : film.request.solvers)

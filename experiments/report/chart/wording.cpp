@@ -161,7 +161,7 @@ double value_of(const Record& record, std::string_view name) {
   if (name == kSubsteps && record.substeps >= 0) return record.substeps;
   if (name == kSweeps && record.sweeps >= 0) return record.sweeps;
   if (name == kStrainFloor) {
-    const ResolvedSetting* floor = find_setting(record.resolved_settings, kFloorOfStrain);
+    const ResolvedSetting* floor = find_setting(record.resolved_settings, kStrainFloor);
     return floor ? floor->number : kNaN;
   }
   const std::string key(name);

@@ -75,7 +75,7 @@ function number(value, digits = 3) {
 /** The glossary's entry of a metric; an unknown one is shown in SI under its own name. */
 const metric = (name) => Object.hasOwn(model.metrics, name) ?
     model.metrics[name] :
-    {title: name, help: '', unit: '', scale: 1, axis: 'linear', window: '', better: ''};
+    {title: name, help: '', unit: '', scale: 1, axis: 'linear', window: ''};
 
 /** An SI value in the unit of `quantity` (a metric, or an axis of a chart). */
 function shown(value, quantity, digits) {

@@ -30,7 +30,7 @@ struct Probed : Outcome {
   bool stable() const {
     return symptom.empty() &&
            (status.kind == Status::Kind::ok ||
-            (status.kind == Status::Kind::extreme && status.reason == "stretch"));
+            (status.kind == Status::Kind::extreme && status.reason == reason::kStretch));
   }
   /// A crash is an answer; lack of time or memory and a broken protocol are not.
   bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
