@@ -7,6 +7,7 @@
 #include "core/model/body_frames.hpp"
 #include "core/model/crossings.hpp"
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
