@@ -24,13 +24,14 @@ namespace {
 
 constexpr ParamSpec kLeading[] = {
     {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
-    ParamSpec::real("timeout", "s", "30", 0.01, 86400, "Every answer has to come within this time"),
+    ParamSpec::real("timeout", "s", "30", 0.01, 86400,
+                    "Longest time in which the program may answer"),
     {.name = "folder",
      .kind = ParamSpec::Kind::text,
-     .help = "Where the command runs; without it: where taut does"},
+     .help = "Folder in which the command runs; by default that of taut"},
     {.name = "build",
      .kind = ParamSpec::Kind::text,
-     .help = "Which state of its sources it is, in place of command, files and version"}};
+     .help = "Name of the state of its sources, in place of command, files and version"}};
 
 /// Stands for all programs where none is named.
 const SolverEntry kAny = {
