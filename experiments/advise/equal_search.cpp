@@ -160,7 +160,7 @@ std::vector<EqualSearch> search_equally(const Study& study, Store& store, const 
                                         const std::vector<double>& errors, double seconds,
                                         const std::function<void(const EqualSearch&)>& after_each) {
   if (!study.axes.empty())
-    throw InputError(study.file.string() + ": settings are searched of a study without axes");
+    throw InputError(study.file.string() + ": settings are searched only for a study without axes");
   std::vector<EqualSearch> all;
   for (const std::string& scene : study.scenes)
     for (const std::string& solver : study.solvers) {

@@ -104,7 +104,7 @@ std::vector<std::string> registered_names() {
                        "' is no name of a solver: a letter, then letters, digits, _ and -, at most "
                        "40 characters");
     if (!file.is_regular_file(none))
-      throw InputError(file.path().string() + ": is no regular file");
+      throw InputError(file.path().string() + ": is not a regular file");
     names.push_back(name);
   }
   std::ranges::sort(names);

@@ -43,7 +43,7 @@ namespace {
 Database::Database(fs::path file, Access access) : file_(std::move(file)) {
   std::error_code none;
   if (fs::exists(file_, none) && !fs::is_regular_file(file_, none))
-    throw InputError(file_.string() + ": is no regular file");  // opening a pipe would wait
+    throw InputError(file_.string() + ": is not a regular file");  // opening a pipe would wait
   errno = 0;
   try {
     db_ = std::make_unique<SQLite::Database>(fs::absolute(file_),

@@ -1,6 +1,7 @@
 // Taking over the cases of another results file.
 #include <algorithm>
 
+#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/results/database.hpp"
 #include "experiments/results/schema.hpp"

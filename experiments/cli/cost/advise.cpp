@@ -55,7 +55,7 @@ int search(const Options& options) {
 
 int run(Options options) {
   if (options.scene.empty() == options.study.empty())
-    throw InputError("advise what? A scene, or --study");
+    throw InputError("advise needs a scene or --study");
   if (!options.study.empty()) return search(options);
   find_scene(options.scene);
   const Target target = target_of(options);

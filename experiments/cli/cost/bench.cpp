@@ -82,7 +82,7 @@ int run(const Options& options) {
     }
     progress() << kept << '\n';
   }
-  if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
+  if (options.what.empty()) throw InputError("bench needs a study, or a scene with --solver");
   Store store(options.out);
   bool slower = false;
   for (const std::string& name : options.what)
