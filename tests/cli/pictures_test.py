@@ -45,6 +45,7 @@ class Pictures(CommandLine):
             key = second[1].split("=")[0].strip()
             said = self.render(*SIDE_BY_SIDE, *first, *second, expect=2).err
             self.assertIn(f"both set {key}: leave out one of them", said)
+            self.assertNotIn("running", said, "the error comes first")
         self.assertEqual(self.files(), [])
 
     def test_a_video_says_what_a_frame_takes(self):

@@ -9,6 +9,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/system/distinct.hpp"
+#include "experiments/timing/way.hpp"
 
 namespace taut::report {
 
