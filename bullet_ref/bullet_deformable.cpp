@@ -24,12 +24,12 @@ namespace {
 constexpr ParamSpec kParams[] = {
     ParamSpec::real(
         "stiffness", "N/m", "1000", 1e-6, 1e9,
-        "spring constant of every link: the accuracy parameter where the scene's links are rigid"),
+        "spring constant of every link if the scene's links are rigid; stiffer links stretch less"),
     ParamSpec::choice("implicit", "true", "true|false",
-                      "backward Euler, which at its defaults explodes on contact (every shipped "
-                      "scene with colliders but tunnel) and may with pins, bend links and "
-                      "velocities at the start; or explicit springs (stable below k h^2/m of about "
-                      "0.3: substeps=70 runs these scenes)"),
+                      "true: backward Euler, which by default explodes on contact (in every "
+                      "shipped scene with colliders except tunnel) and may explode with pins, bend "
+                      "links or initial velocities. false: explicit springs, stable below k h^2/m "
+                      "of about 0.3 (substeps=70 runs these scenes)"),
     ParamSpec::integer("newton", "1", 1, 1000,
                        "Newton steps at most per implicit substep (Bullet's default: 1)"),
     bullet_ref::kSubsteps,

@@ -34,10 +34,10 @@ constexpr ParamSpec kParams[] = {
     bullet_ref::kVoxel,
     ParamSpec::choice(
         "friction", "own", "refuse|own",
-        "a scene with friction: refuse it, or use Bullet's own law, which is not Coulomb's"),
+        "in scenes with friction: refuse them, or use Bullet's own law, which is not Coulomb's"),
     ParamSpec::choice(
         "faces", "on", "on|off",
-        "off: no faces, so that Bullet does not compute normals, which we do not either"),
+        "off: no faces, so that Bullet computes no normals; our solvers compute none, either"),
     ParamSpec::choice(
         "reorder", "off", "off|on",
         "on: links in the order of Bullet's ReoptimizeLinkOrder, the same at every vertex"),
@@ -184,21 +184,19 @@ std::vector<PassCost> BulletSoftBody::solve_cost() const {
   return costs;
 }
 
-/// How many links wait for the one before them, in the order that Bullet was given and in the one
-/// that it solves.
-ResolvedSetting link_order(const Scene& scene, const Params& params) {
-  if (!params.is("reorder", "on")) return {kLinkOrder, "the scene's", "mesh order"};
+/// The order, and of Bullet's own how many links wait for the one before them, in the order that it
+/// was given and in the one that it solves.
+ResolvedSettings link_order(const Scene& scene, const Params& params) {
+  if (!params.is("reorder", "on")) return {{kLinkOrder, "the scene's", "mesh order"}};
   btSoftBodyWorldInfo info;
   const auto waiting = [&](bool reorder) {
     const auto body = build_cloth(info, scene, {.faces = false, .reorder = reorder});
     return std::to_string(waiting_links(*body));
   };
-  return {kLinkOrder,
-          "ReoptimizeLinkOrder: the same at every vertex; " + waiting(true) + " of " +
-              std::to_string(scene.links.size()) +
-              " links share a vertex with the one before them (" + waiting(false) +
-              " in the scene's order)",
-          "reordered"};
+  return {{kLinkOrder, "ReoptimizeLinkOrder, the same links at every vertex", "reordered"},
+          {"links that wait", waiting(true) + " of " + std::to_string(scene.links.size()) +
+                                  " share a vertex with the one before them (" + waiting(false) +
+                                  " in the scene's order)"}};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
@@ -229,13 +227,13 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const double h = static_cast<double>(bullet_ref::substep_length(scene, params));
   ResolvedSettings lines = bullet_ref::library_settings(scene, params);
+  lines.insert(lines.end(), {{"integration", "symplectic Euler; the same positions as Verlet"},
+                             {"projection", "sqrt-free, weighted by inverse mass, kLST " +
+                                                bullet_ref::short_text(params.real("stiffness"))}});
+  for (ResolvedSetting& line : link_order(scene, params)) lines.push_back(std::move(line));
   lines.insert(
       lines.end(),
-      {{"integration", "symplectic Euler; the same positions as Verlet"},
-       {"projection", "sqrt-free, weighted by inverse mass, kLST " +
-                          bullet_ref::short_text(params.real("stiffness"))},
-       link_order(scene, params),
-       {"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)", "the scene's"},
+      {{"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)", "the scene's"},
        {"damping",
         "kDP " + bullet_ref::short_text(-std::expm1(-scene.damping * h)) + " per substep"},
        {"normals", params.is("faces", "on") ? "computed every substep" : "off"}});
@@ -295,6 +293,7 @@ TAUT_SOLVER(bullet) = {
     .program = taut::bullet_ref::program,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
+                 .link_order = "reorder",
                  .alternatives = taut::solver::bullet_soft_body::kAlternatives,
                  .labelled = "substeps|iterations|stiffness|order|hardness|precision",
                  .accelerators = "stiffness"},

@@ -152,8 +152,8 @@ std::string remark_on(const Polygons& surface) {
               [](const auto& one) { return one.first + " " + std::to_string(one.second); });
 }
 
-/// The surface in an OBJ file, scaled, turned and moved. False and the file's own errors if it is
-/// none.
+/// The surface in an OBJ file, scaled, turned and moved. False if the file has errors, which are
+/// reported.
 bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fabric* fabric,
                   const FileKeys& said, Scene& scene) {
   const Eigen::Quaterniond rotation = read_rotation(cloth);
@@ -184,14 +184,14 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fab
   return true;
 }
 
-/// The shape at the start as a multiple of the rest shape: every link is strained alike.
+/// Scales the rest shape to the shape at the start, so that every link has the same strain.
 void stretch_start(double factor, Scene& scene) {
   if (factor == 1 || scene.start.x.empty()) return;
   const Vec3 fixed = scene.start.x.front();
   for (Vec3& x : scene.start.x) x = fixed + factor * (x - fixed);
 }
 
-/// Rows and columns of a grid that a name stands for.
+/// The rows and columns of a grid that a name selects.
 struct Part {
   std::string name;
   int i0, i1, j0, j1;  ///< inclusive; -1: the last one
@@ -239,7 +239,8 @@ class VertexReader {
     for (const int vertex : part_of(value)) all_.push_back(vertex);
   }
 
-  /// The vertices of an edge or corner in their order, or a report and none.
+  /// The vertices of an edge or corner in their order; none, and a report, if there is no such
+  /// edge.
   std::vector<int> part_of(const Value& value) {
     std::vector<std::string> names;
     for (const Part& part : kParts) names.push_back(part.name);
@@ -334,7 +335,7 @@ class VertexReader {
   std::vector<int> all_;
 };
 
-/// What a value names by itself: an array is a pair [i, j].
+/// The vertices that a value names by itself; an array is a pair [i, j].
 std::vector<int> vertices_of(const Value& value, Section& section, const std::string& key,
                              const Mesh& mesh) {
   VertexReader reader(section, key, mesh);

@@ -433,7 +433,10 @@ std::optional<std::string> Section::string(const std::string& key) {
 std::optional<std::vector<std::string>> Section::strings(const std::string& key) {
   const Value* value = find(key);
   if (!value) return std::nullopt;
-  if (!value->is_array()) return wrong_type(*value, key, "a list of strings"), std::nullopt;
+  if (!value->is_array()) {
+    wrong_type(*value, key, "a list of strings");
+    return std::nullopt;
+  }
   std::vector<std::string> all;
   for (const Value& item : value->items)
     if (item.is_string())

@@ -18,25 +18,25 @@ struct Polygons {
   std::vector<int> face_lines;          ///< the same of each face
   std::vector<int> numbers;             ///< [n] of each vertex in the file, from 0
   std::vector<int> welded;              ///< as Mesh::welded
-  /// How many lines of each keyword were skipped that say something, but nothing that a cloth has.
+  /// Number of skipped lines by keyword, of those whose content a cloth does not have.
   std::map<std::string, int> skipped;
 };
 
 /// Reads the `v` and `f` lines of a Wavefront OBJ file; comments, normals, texture coordinates,
-/// groups and materials are skipped, and so is what other programs add. Throws InputError with file
-/// and line of everything that is malformed, of words that nobody knows, and of everything that no
-/// cloth can be made of: faces that name a vertex which is not there, name one twice, cross
+/// groups and materials are skipped, and so are the additions of other programs. Throws InputError
+/// with file and line of everything that is malformed, of unknown words, and of everything that
+/// cannot be part of a cloth: faces that name a vertex which is not there, name one twice, cross
 /// themselves or have no area; edges of more than two faces; vertices without a face; vertices that
 /// coincide.
 ///
 /// Before that it joins vertices that are at most `weld` apart, in the file's unit: each to the
-/// first one that stays. A face that has two of them has to go, which is an error, too. 0: none.
+/// first one that stays. A face with two joined vertices is an error, too. 0: no vertex is joined.
 Polygons read_obj(const std::filesystem::path&, double weld = 0);
 
 /// The same for text that is already in memory; `file` is for the messages.
 Polygons parse_obj(const std::string& file, const std::string& text, double weld = 0);
 
-/// A body of triangles, as a collider is one.
+/// A body of triangles, as colliders have it.
 struct BodySurface {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
@@ -44,8 +44,8 @@ struct BodySurface {
   std::map<std::string, int> skipped;
 };
 
-/// Reads such a file as a body: faces are cut into triangles as make_mesh() cuts them, vertices
-/// that coincide are one, and any number of faces may share an edge. Throws InputError with file
+/// Reads such a file as a body: faces are cut into triangles as make_mesh() cuts them, coinciding
+/// vertices become one, and any number of faces may share an edge. Throws InputError with file
 /// and line of everything that is malformed, of faces that name a vertex which is not there or one
 /// twice, cross themselves or have no area, and of a file without a face.
 BodySurface read_body_obj(const std::filesystem::path&);

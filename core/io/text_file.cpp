@@ -28,7 +28,7 @@ int open_regular(const std::filesystem::path& path) {
   if (fd < 0 || fstat(fd, &about) != 0)
     fail(std::string("cannot be read: ") + std::strerror(errno));
   if (S_ISDIR(about.st_mode)) fail("is a folder, not a file");
-  if (!S_ISREG(about.st_mode)) fail("is no regular file");
+  if (!S_ISREG(about.st_mode)) fail("is not a regular file");
   return fd;
 }
 

@@ -46,8 +46,8 @@ class Adjacency {
 /// Shortest paths along links, for each vertex.
 template <class Real>
 struct ShortestPaths {
-  std::vector<Real> length;  ///< m; infinite: no way leads there
-  std::vector<int> start;    ///< where it begins; -1: no way
+  std::vector<Real> length;  ///< m; infinite: not reachable
+  std::vector<int> start;    ///< where the path begins; -1: not reachable
   std::vector<int> before;   ///< the last vertex before this one; -1: none
 };
 

@@ -29,18 +29,25 @@ class Bytes {
     std::memcpy(raw, &value, sizeof(T));
     text_.append(raw, sizeof(T));
   }
+  template <class... T>
+  void add_each(const T&... values) {
+    (add(values), ...);
+  }
   void add(const Vec3& v) {
     for (const double c : v) add(c);
   }
   void add(const Triangle& t) {
     for (const int c : t) add(c);
   }
-  void add(const Link& l) { add(l.a), add(l.b), add(l.rest), add(l.family); }
-  void add(const Grid& g) { add(g.nu), add(g.nv); }
-  void add(const Motion::Key& k) { add(k.t), add(k.displacement); }
-  void add(const Motion& m) { add("collider", m), add(m.path); }
-  void add(const Release& r) { add(r.step), add(r.vertices); }
-  void add(const PinMotion& m) { add(m.vertices), add(m.motion); }
+  void add(const Link& l) { add_each(l.a, l.b, l.rest, l.family); }
+  void add(const Grid& g) { add_each(g.nu, g.nv); }
+  void add(const Motion::Key& k) { add_each(k.t, k.displacement); }
+  void add(const Motion& m) {
+    add("collider", m);
+    add(m.path);
+  }
+  void add(const Release& r) { add_each(r.step, r.vertices); }
+  void add(const PinMotion& m) { add_each(m.vertices, m.motion); }
   void add(const Collider& c) {
     add(c.shape.index());
     std::visit([&](const auto& shape) { add("collider", shape); }, c.shape);
@@ -55,12 +62,15 @@ class Bytes {
     add("collider", c);
     if (c.frames) add_later(kFramesKey, [&](Bytes& b) { b.add(*c.frames); });
   }
-  void add(const BodyFrames& f) { add(f.places), add(f.fps); }
-  void add(const Bending& b) { add(b.warp), add(b.weft), add("bending", b); }
+  void add(const BodyFrames& f) { add_each(f.places, f.fps); }
+  void add(const Bending& b) {
+    add_each(b.warp, b.weft);
+    add("bending", b);
+  }
   void add(const Wind& w) { add("wind", w); }
   void add(const SelfCollision& s) { add("self_collision", s); }
-  void add(const Mesh& m) { add(m.rest), add(m.triangles), add(m.mass), add(m.grid); }
-  void add(const State& s) { add(s.x), add(s.v); }
+  void add(const Mesh& m) { add_each(m.rest, m.triangles, m.mass, m.grid); }
+  void add(const State& s) { add_each(s.x, s.v); }
   template <class T>
   void add(const std::vector<T>& values) {
     add(values.size());

@@ -105,9 +105,10 @@ struct AccuracyParameters {
   struct Ladder {
     std::string_view parameters, values;
   };
-  std::string_view substeps;  ///< steps of dt / substeps; "": the solver has none
-  std::string_view sweeps;    ///< more of them need fewer substeps; "": the solver has none
-  bool all_at_once = false;   ///< an iteration solves for all links at once: it is no sweep
+  std::string_view substeps;    ///< steps of dt / substeps; "": the solver has none
+  std::string_view sweeps;      ///< more of them need fewer substeps; "": the solver has none
+  std::string_view link_order;  ///< the parameter that kLinkOrder resolves; "": there is none
+  bool all_at_once = false;     ///< an iteration solves for all links at once: it is no sweep
   /// Springs that may be softer or stiffer: without sweeps each value needs its own substeps, with
   /// sweeps a higher one is for what the default does not reach.
   Ladder stiffness;

@@ -8,6 +8,8 @@
 #include "core/model/collider.hpp"
 #include "core/model/index.hpp"
 #include "core/model/wind.hpp"
+#include "core/reference/multiplied_step.hpp"
+#include "core/reference/rigid_relations.hpp"
 #include "core/solver/panel_factor.hpp"
 
 namespace taut::reference {
@@ -16,47 +18,16 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
-using Points = std::vector<Vec3>;
 
-/// K of rigid links over the largest m/h^2, at first and at most.
-constexpr double kHardness = 1e4, kHardest = 1e8;
+/// K of rigid links over the largest m/h^2, at most.
+constexpr double kHardest = 1e8;
 /// Multipliers that leave more than this share of the violation grow without end, where links
 /// resist at second order alone: a taut row between two pins. Then K grows instead, and what is
 /// left of the bend is halved with every factor of 8.
 constexpr double kStalls = 0.8;
 constexpr double kLocked = 1e-7;     ///< m, of a violation
 constexpr double kRounding = 1e-14;  ///< m, of all lengths together
-constexpr double kFlat = 1e-13;      ///< of lengths: what is in a plane, or on a line
-constexpr double kNothing = 1e-12;   ///< a weight beside those of order 1
 constexpr double kTouching = 1e-13;  ///< m, of gaps and slips that contact leaves
-
-using Weights = std::map<std::size_t, double>;
-
-/// sum of weights x = 0 of three vertices with these distances; empty: they are not on a line.
-std::vector<double> on_a_line(double ab, double ac, double bc) {
-  for (const auto& [sum, relation] :
-       {std::pair(ab + bc - ac, std::vector{-bc / ac, 1.0, -ab / ac}),
-        std::pair(ab + ac - bc, std::vector{1.0, -ac / bc, -ab / bc}),
-        std::pair(ac + bc - ab, std::vector{-bc / ab, -ac / ab, 1.0})})
-    if (std::abs(sum) < kFlat * (ab + ac + bc)) return relation;
-  return {};
-}
-
-/// The same of four with a, b and c on no line; empty: they are not in a plane.
-std::vector<double> in_a_plane(double ab, double ac, double ad, double bc, double bd, double cd) {
-  const auto place = [&](double from_a, double from_b) {  // a = (0, 0), b = (ab, 0)
-    const double along = (ab * ab + from_a * from_a - from_b * from_b) / (2 * ab);
-    return std::pair(along, std::sqrt(std::max(0.0, from_a * from_a - along * along)));
-  };
-  const auto [cx, cy] = place(ac, bc);
-  const auto [dx, up] = place(ad, bd);
-  for (const double dy : {up, -up})
-    if (std::abs(std::hypot(dx - cx, dy - cy) - cd) < kFlat * (ab + ac + ad)) {
-      const double c = dy / cy, b = (dx - c * cx) / ab;
-      return {1 - b - c, b, c, -1};
-    }
-  return {};
-}
 
 }  // namespace
 
@@ -87,89 +58,18 @@ ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, cons
       y_[i] = pin_position(scene, static_cast<int>(i), t + h);
   for (const Collider& c : scene.colliders)
     colliders_.push_back({shape_at(c, t + h), c.friction, carried(c, t, h, from.x)});
-  if (rigid_) find_implied(scene, k);
+  if (rigid_) of_others_ = rigid_relations(scene, k, inertia_);
 }
 
-/// Relations of rigidly linked vertices, each solved for one that moves.
-void ImplicitStep::find_implied(const Scene& scene, const Stiffness& stiffness) {
-  std::vector<std::map<std::size_t, double>> beside(y_.size());  // later neighbours, distance
-  for (const Link& l : scene.links)                              // between pins too
-    if (std::isinf(stiffness[static_cast<std::size_t>(l.family)]))
-      beside[to_index(std::min(l.a, l.b))][to_index(std::max(l.a, l.b))] = l.rest;
-  std::vector<Weights> of_others(y_.size());
-  for (std::size_t i = 0; i < y_.size(); ++i) of_others[i][i] = 1;
-  bool any = false;
-  const auto take = [&](const std::vector<std::size_t>& vertices, const std::vector<double>& c) {
-    Weights sum;
-    for (std::size_t k = 0; k < c.size(); ++k)
-      for (const auto& [v, weight] : of_others[vertices[k]]) sum[v] += c[k] * weight;
-    std::size_t solved = y_.size();
-    for (const auto& [v, weight] : sum)
-      if (inertia_[v] > 0 && std::abs(weight) > kNothing &&
-          (solved == y_.size() || std::abs(weight) >= (1 - kNothing) * std::abs(sum[solved])))
-        solved = v;
-    if (solved == y_.size()) return;  // said already
-    any = true;
-    const double own = sum[solved];
-    sum.erase(solved);
-    for (Weights& one : of_others)
-      if (const auto at = one.find(solved); at != one.end()) {
-        const double share = at->second / own;
-        one.erase(at);
-        for (const auto& [v, weight] : sum)
-          if (std::abs(one[v] -= share * weight) < kNothing) one.erase(v);
-      }
-  };
-  for (std::size_t a = 0; a < y_.size(); ++a)
-    for (const auto& [b, ab] : beside[a])
-      for (const auto& [c, bc] : beside[b]) {
-        const auto ac = beside[a].find(c);
-        if (ac == beside[a].end()) continue;
-        if (const auto line = on_a_line(ab, ac->second, bc); !line.empty()) {
-          take({a, b, c}, line);
-          continue;
-        }
-        for (const auto& [d, cd] : beside[c]) {
-          const auto ad = beside[a].find(d), bd = beside[b].find(d);
-          if (ad == beside[a].end() || bd == beside[b].end()) continue;
-          take({a, b, c, d}, in_a_plane(ab, ac->second, ad->second, bc, bd->second, cd));
-        }
-      }
-  if (any) of_others_ = std::move(of_others);
-}
-
-/// G with rigid links as springs K that a multiplier [N] has shifted: l C + K/2 C^2.
-struct ImplicitStep::Multiplied {
-  const ImplicitStep& step;
-  std::vector<double> stiffness, multiplier;
-  std::vector<Eigen::Index> column;
-  Eigen::Index size = 0;
+/// Newton's method for it, in the places of those vertices that have no relation.
+struct ImplicitStep::Newton final : Multiplied {
   Matrix basis = {};  ///< of the vertices in those that have no relation; empty: unity
   Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< with relations
   bool analysed = false;
   PanelFactor panels = {};             ///< without, where it is several times faster
   std::vector<std::size_t> rank = {};  ///< of each vertex that moves, in the order of elimination
-  /// Of vertex i at collider k, [i][k]: the forces that shift its part of the energy [N].
-  struct Touch {
-    double push = 0, bound = 0;
-    Vec3 rub = Vec3::Zero();
-  };
-  std::vector<Touch> touches = {};
-  /// Of vertex i at collider k, [i][k]: the surface's tangent plane where it is nearest, fixed
-  /// while G is minimised, for with planes that turn its gradient is not that of an energy.
-  struct TangentPlane {
-    Vec3 normal = Vec3::Zero();
-    double offset = 0;  ///< m, of the scene's thickness above the surface
-  };
-  std::vector<TangentPlane> planes = {};
-  double hardness = 0;  ///< N/m, of contact
 
-  Multiplied(const ImplicitStep& s, double rigid) : step(s), multiplier(s.links_.size(), 0) {
-    harden(rigid);
-    touches.resize(s.inertia_.size() * s.colliders_.size());
-    for (const double m : s.inertia_) hardness = std::max(hardness, kHardness * m);
-    for (const double k : stiffness) hardness = std::max(hardness, 10 * k);
-    for (const double m : s.inertia_) column.push_back(m > 0 ? std::exchange(size, size + 3) : -1);
+  Newton(const ImplicitStep& s, double rigid) : Multiplied(s, rigid) {
     if (step.of_others_.empty()) return;
     std::vector<Eigen::Index> own(column.size(), -1);
     Eigen::Index count = 0;
@@ -196,145 +96,9 @@ struct ImplicitStep::Multiplied {
       }
     return x;
   }
-  /// The K of rigid links from now on [N/m].
-  void harden(double rigid) {
-    stiffness.clear();
-    for (const Member& l : step.links_)
-      stiffness.push_back(std::isinf(l.stiffness) ? rigid : l.stiffness);
-  }
-  double stretch(const Points& x, std::size_t j) const {
-    const auto& [a, b, rest, k] = step.links_[j];
-    return (x[b] - x[a]).norm() - rest;
-  }
-  double energy(const Points& x) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < x.size(); ++i)
-      sum += step.inertia_[i] / 2 * (x[i] - step.y_[i]).squaredNorm();
-    for (std::size_t j = 0; j < stiffness.size(); ++j) {
-      const double c = stretch(x, j);
-      sum += (multiplier[j] + stiffness[j] / 2 * c) * c;
-    }
-    each_held(x, [&](std::size_t, std::size_t, const Held& now) { sum += now.energy; });
-    return sum;
-  }
-  /// What a collider does to a vertex: the energy of (push - k gap)+ and of rub - k slip, which is
-  /// no longer than the bound, its force and its Hessian.
-  struct Held {
-    double energy = 0;
-    Vec3 force = Vec3::Zero();
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-    double push = 0;
-    Vec3 rub = Vec3::Zero();
-    double gap = 0, slip = 0;  ///< m; the slip that friction has to take back
-  };
-  Held held(std::size_t i, std::size_t k, const Vec3& x) const {
-    const Obstacle& obstacle = step.colliders_[k];
-    const Touch& touch = touches[i * step.colliders_.size() + k];
-    const TangentPlane& at = planes[i * step.colliders_.size() + k];
-    Held out;
-    out.gap = at.normal.dot(x) - at.offset;
-    out.push = touch.push - hardness * out.gap;
-    if (out.push <= 0) return {.gap = out.gap};
-    const Eigen::Matrix3d along = at.normal * at.normal.transpose(),
-                          across = Eigen::Matrix3d::Identity() - along;
-    out.energy = out.push * out.push / (2 * hardness);
-    out.force = out.push * at.normal;
-    out.hessian = hardness * along;
-    const Vec3 slip = across * (x - obstacle.from[i]);
-    out.rub = across * touch.rub - hardness * slip;
-    const double length = out.rub.norm();
-    if (touch.bound == 0) {
-      out.rub.setZero();
-    } else if (length <= touch.bound) {
-      out.slip = slip.norm();
-      out.energy += length * length / (2 * hardness);
-      out.hessian += hardness * across;
-    } else {
-      const Vec3 u = out.rub / length;
-      out.energy += touch.bound / hardness * (length - touch.bound / 2);
-      out.hessian += hardness * touch.bound / length * (across - u * u.transpose());
-      out.rub = touch.bound * u;
-    }
-    out.force += out.rub;
-    return out;
-  }
-  /// visit(i, k, what collider k does to vertex i).
-  template <class Visit>
-  void each_held(const Points& x, const Visit& visit) const {
-    for (std::size_t i = 0; i < x.size(); ++i)
-      for (std::size_t k = 0; column[i] >= 0 && k < step.colliders_.size(); ++k)
-        visit(i, k, held(i, k, x[i]));
-  }
-  /// The tangent planes at x.
-  void lay_planes(const Points& x) {
-    planes.clear();
-    for (const Vec3& at : x)
-      for (const Obstacle& obstacle : step.colliders_) {
-        const Surface s = surface(obstacle.shape, at);
-        planes.push_back({s.normal, s.normal.dot(at) - s.distance + step.thickness_});
-      }
-  }
-  /// The planes and the forces become those at x; how far that is from contact's conditions [m].
-  double update_contact(const Points& x) {
-    double left = 0;
-    std::vector<Vec3> on_old_planes;
-    each_held(
-        x, [&](std::size_t, std::size_t, const Held& now) { on_old_planes.push_back(now.force); });
-    lay_planes(x);
-    auto old = on_old_planes.begin();
-    each_held(x, [&](std::size_t i, std::size_t k, const Held& now) {
-      left = std::max(left, (now.force - *old++).norm() / hardness);
-      Touch& touch = touches[i * step.colliders_.size() + k];
-      const double bound = step.colliders_[k].friction * now.push;
-      if (now.push > 0) left = std::max({left, std::abs(now.gap), now.slip});
-      left = std::max(left, std::abs(bound - touch.bound) / hardness);
-      touch = {now.push, bound, now.rub};
-    });
-    return left;
-  }
-  Vec3 contact_force(const Points& x) const {
-    Vec3 sum = Vec3::Zero();
-    each_held(x, [&](std::size_t, std::size_t, const Held& now) { sum += now.force; });
-    return sum;
-  }
-  Vector gradient(const Points& x) const {
-    Vector g(size);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (column[i] >= 0) g.segment<3>(column[i]) = step.inertia_[i] * (x[i] - step.y_[i]);
-    for (std::size_t j = 0; j < stiffness.size(); ++j) {
-      const auto& [a, b, rest, k] = step.links_[j];
-      const Vec3 pull = (multiplier[j] + stiffness[j] * stretch(x, j)) * (x[b] - x[a]).normalized();
-      if (column[a] >= 0) g.segment<3>(column[a]) -= pull;
-      if (column[b] >= 0) g.segment<3>(column[b]) += pull;
-    }
-    each_held(x, [&](std::size_t i, std::size_t, const Held& now) {
-      g.segment<3>(column[i]) -= now.force;
-    });
+  Vector gradient_of_own(const Points& x) const {
+    const Vector g = gradient(x);
     return reduced() ? Vector(basis.transpose() * g) : g;
-  }
-  /// The Hessian: add(row, column, block) of three rows and columns, in its lower triangle; each
-  /// block is symmetric.
-  template <class Add>
-  void each_block(const Points& x, bool clamped, const Add& add) const {
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (column[i] >= 0) add(column[i], column[i], step.inertia_[i] * Eigen::Matrix3d::Identity());
-    for (std::size_t j = 0; j < stiffness.size(); ++j) {
-      const auto& [a, b, rest, k] = step.links_[j];
-      const double length = (x[b] - x[a]).norm();
-      const Vec3 u = (x[b] - x[a]) / length;
-      const double pull = multiplier[j] + stiffness[j] * (length - rest);
-      const double across = clamped ? std::max(0.0, pull / length) : pull / length;
-      const Eigen::Matrix3d along = u * u.transpose();
-      const Eigen::Matrix3d part =
-          stiffness[j] * along + across * (Eigen::Matrix3d::Identity() - along);
-      for (const std::size_t v : {a, b})
-        if (column[v] >= 0) add(column[v], column[v], part);
-      if (column[a] >= 0 && column[b] >= 0)
-        add(std::max(column[a], column[b]), std::min(column[a], column[b]), -part);
-    }
-    each_held(x, [&](std::size_t i, std::size_t, const Held& now) {
-      if (now.push > 0) add(column[i], column[i], now.hessian);
-    });
   }
   /// Whether the Hessian is positive definite.
   bool factor(const Points& x, bool clamped) {
@@ -401,7 +165,7 @@ struct ImplicitStep::Multiplied {
   /// Down to a gradient below `enough` [N] or to rounding.
   Points minimise(Points x, double enough) {
     for (int k = 0; k < 100; ++k) {
-      const Vector g = gradient(x);
+      const Vector g = gradient_of_own(x);
       if (g.norm() < enough || size == 0) break;
       if (!factor(x, false) && !factor(x, true)) break;
       const Vector p = newton_step(g);
@@ -411,7 +175,7 @@ struct ImplicitStep::Multiplied {
       const auto worse = [&] {
         return !(energy(next) <= before + 1e-4 * share * slope) &&
                !(energy(next) <= before + 1e-12 * std::abs(before) &&
-                 gradient(next).norm() < g.norm());
+                 gradient_of_own(next).norm() < g.norm());
       };
       while (worse() && share > 1e-12) next = moved(x, p, share /= 2);
       if (share <= 1e-12) break;
@@ -427,9 +191,9 @@ double ImplicitStep::energy(const Points& x) const {
   return at.energy(x);
 }
 double ImplicitStep::residual(const Points& x) const {
-  Multiplied at(*this, 0);
+  Newton at(*this, 0);
   at.lay_planes(x);
-  return at.gradient(x).norm();
+  return at.gradient_of_own(x).norm();
 }
 
 double ImplicitStep::stretch(const Points& x) const {
@@ -464,7 +228,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
     if (std::isfinite(l.stiffness)) stiffest = std::max(stiffest, l.stiffness);
   double hardness = kHardness * heaviest;
   const auto rounding = [&] { return kRounding * (hardness + 10 * stiffest); };  // N
-  Multiplied problem(*this, hardness);
+  Newton problem(*this, hardness);
   x = problem.related(std::move(x));
   problem.lay_planes(x);
   Minimum found;
@@ -498,7 +262,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   for (std::size_t j = 0; j < links_.size(); ++j)
     if (std::isinf(links_[j].stiffness))
       problem.multiplier[j] -= problem.stiffness[j] * problem.stretch(x, j);
-  found.residual = problem.gradient(x).norm();
+  found.residual = problem.gradient_of_own(x).norm();
   found.contact = problem.contact_force(x);
   found.x = std::move(x);
   if (contact > kLocked)

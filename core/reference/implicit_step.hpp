@@ -1,24 +1,24 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "core/model/declared_step.hpp"
 #include "core/model/scene.hpp"
+#include "core/reference/rigid_relations.hpp"
 
 namespace taut::reference {
 
-/// One step of implicit Euler from a state, as the minimisation that it is:
+/// One step of implicit Euler from a state, written as a minimisation:
 ///
-///     y = x_t + h exp(-damping h) v_t + h^2 (g + wind),   G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2
-///     C^2
+///     y = x_t + h exp(-damping h) v_t + h^2 (g + wind)
+///     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2
 ///
-/// over the vertices that move, C = |x_b - x_a| - rest. With rigid links: the nearest placement to
-/// y in the norm of G's first sum with C = 0. Vertices keep the scene's thickness from colliders as
-/// they are at the end of the step, with Coulomb friction: a force along the normal where there is
-/// no gap, and across it at most mu times that, against the slip where it is as much.
-/// Self-collision is left out.
+/// over the vertices that move, C = |x_b - x_a| - rest. With rigid links: the placement with C = 0
+/// that is nearest to y in the norm of G's first sum. Vertices stay at least the scene's thickness
+/// away from the colliders of the end of the step. Contact pushes along the normal where there is
+/// no gap; Coulomb friction acts across the normal with at most mu times that push, and opposes
+/// slip where it reaches this limit. Self-collision is left out.
 class ImplicitStep {
  public:
   /// From `from` at time t [s] to t + scene.dt.
@@ -36,22 +36,22 @@ class ImplicitStep {
 
   struct Minimum {
     std::vector<Vec3> x;          ///< m
-    double residual = 0;          ///< N, of G and of the rigid links' multipliers
+    double residual = 0;          ///< N, |gradient| of G with the rigid links' multipliers
     double stretch = 0;           ///< m, largest |C| of rigid links
     double moved = 0;             ///< m, RMS: how far the last round of multipliers still moved x
     Vec3 contact = Vec3::Zero();  ///< N, sum of the colliders' forces on the cloth
     std::string problem;          ///< why x is no minimum; "": it is one
   };
-  /// Newton with line search, sparse LDLT; rigid links and contact by an augmented Lagrangian
-  /// around it. Four vertices in a plane, or three on a line, all rigidly linked, stay so: such
-  /// relations are linear, and eliminated. Their links alone resist leaving the plane at second
-  /// order, without finite multipliers. The minimum that `start` leads to: where links are
-  /// compressed there may be others.
+  /// Newton's method with line search and sparse LDLT, inside an augmented Lagrangian for rigid
+  /// links and contact. Four vertices in a plane, or three on a line, that are all rigidly linked
+  /// stay so; these linear relations are eliminated (rigid_relations.hpp), for the links alone
+  /// resist leaving the plane at second order only, without finite multipliers. Finds the minimum
+  /// to which `start` leads; where links are compressed there may be others.
   Minimum minimum(const std::vector<Vec3>& start) const;
 
  private:
-  struct Multiplied;
-  void find_implied(const Scene&, const Stiffness&);
+  struct Multiplied;  // core/reference/multiplied_step.hpp
+  struct Newton;
   struct Member {
     std::size_t a, b;
     double rest, stiffness;
@@ -68,9 +68,7 @@ class ImplicitStep {
   std::vector<double> mass_;
   std::vector<Vec3> y_;
   bool rigid_ = false;
-  /// [n] x of each vertex as a sum of weights times x of others, which have themselves alone;
-  /// empty: of all. Rigid links say it at second order only: four in a plane, three on a line.
-  std::vector<std::map<std::size_t, double>> of_others_;
+  std::vector<Weights> of_others_;  ///< rigid_relations()
 };
 
 }  // namespace taut::reference

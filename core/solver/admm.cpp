@@ -28,9 +28,9 @@ constexpr ParamSpec kOwn[] = {
     kStiffness[1],
     kStiffness[2],
     kMaterial,
-    ParamSpec::real("penalty", "N/m", "100", 1e-6, 1e12,
-                    "k, the weight of rigid links; of springs it is their stiffness times "
-                    "penalty-ratio"),
+    ParamSpec::real(
+        "penalty", "N/m", "100", 1e-6, 1e12,
+        "weight k of rigid links; the weight of springs is their stiffness times penalty-ratio"),
     ParamSpec::real("penalty-ratio", "", "1", 1e-6, 1e6, "k / K of springs"),
     kGlobalPrecision,
     ParamSpec::choice("multipliers", "reset", "reset|keep", "at the beginning of a substep"),

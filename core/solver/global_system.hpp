@@ -121,7 +121,7 @@ class GlobalSystem {
 
 inline constexpr ParamSpec kGlobalPrecision =
     ParamSpec::choice("precision", "double", "float|double",
-                      "scalar type of the simulation; the factor and what it solves are in double");
+                      "scalar type of the simulation; the linear system is always in double");
 
 template <class Real>
 std::vector<Vec3> positions(const Particles<Real>& p) {

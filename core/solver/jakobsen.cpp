@@ -21,9 +21,9 @@ constexpr ParamSpec kParams[] = {
                       "exact distance, or its first-order Taylor form without a square root"),
     ParamSpec::choice("method", "gauss-seidel",
                       "gauss-seidel|jacobi|jacobi-averaged|jacobi-underrelaxed|lines",
-                      "links one after the other; all at once: summed, averaged, or divided by the "
-                      "largest number of links at a vertex; or the structural links of a grid line "
-                      "by line, each solved at once"),
+                      "solve links one after the other; all at once, with corrections summed, "
+                      "averaged, or divided by the largest number of links at a vertex; or solve "
+                      "each line of a grid's structural links at once"),
     kChebyshev,
     kOrderParam,
     ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"),
@@ -35,7 +35,7 @@ constexpr ParamSpec kParams[] = {
     loop::kTethers,
     ParamSpec::integer(
         "levels", "1", 1, 20,
-        "of a hierarchy, each with half the vertices of the finer one; 1: the cloth alone"),
+        "levels of a hierarchy, each with half the vertices of the finer one; 1: the cloth alone"),
     loop::kPrecision,
     kLayoutParam,
     loop::kSimd,
@@ -151,6 +151,7 @@ TAUT_SOLVER(jakobsen) = {
     .declared_step = taut::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
+                 .link_order = "order",
                  .alternatives = taut::solver::jakobsen::kAlternatives,
                  .labelled = "substeps|iterations|omega|order|tethers|levels|precision",
                  .accelerators = "tethers|levels|omega|threads"},

@@ -340,7 +340,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 ResolvedSetting link_order(const Params& params, const std::string& of) {
   const std::string order(params.choice("order"));
   if (order == "mesh") return {kLinkOrder, "the scene's" + of, "mesh order"};
-  return {kLinkOrder, order + of, order};
+  const bool coloured = order == "coloured";
+  return {kLinkOrder, order + (coloured ? " (links of a colour share no vertex)" : "") + of, order};
 }
 
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params,

@@ -114,12 +114,12 @@ constexpr ParamSpec iterations(std::string_view default_value, std::string_view 
 constexpr ParamSpec substeps(std::string_view default_value, std::string_view help) {
   return ParamSpec::integer("substeps", default_value, 1, 1e6, help);
 }
-inline constexpr ParamSpec kContact =
-    ParamSpec::choice("contact", "continuous", "continuous|discrete|before|after|freeze|halt",
-                      "response to colliders: out in every sweep, with a test against passing "
-                      "through (continuous) or without (discrete); or as published, where cloth "
-                      "does not rest as physics has it: out once, before or after the sweeps; or "
-                      "put on the surface for good (freeze) or for a step (halt)");
+inline constexpr ParamSpec kContact = ParamSpec::choice(
+    "contact", "continuous", "continuous|discrete|before|after|freeze|halt",
+    "response to colliders: push vertices out in every sweep, with a test against passing through "
+    "(continuous) or without (discrete); or as published, where cloth does not come to rest "
+    "correctly: push them out once, before or after the sweeps, or put them on the surface for "
+    "good (freeze) or for a step (halt)");
 inline constexpr ParamSpec kFaces = ParamSpec::choice(
     "faces", "off", "off|edges|on",
     "keep edges of the cloth (edges), or faces and edges (on), not only vertices, "
@@ -129,7 +129,7 @@ inline constexpr ParamSpec kSelf = ParamSpec::choice(
     "self-collision where the scene has it: grid, octree as published by Vasilovici, or none");
 inline constexpr ParamSpec kTethers = ParamSpec::choice(
     "tethers", "off", "off|on",
-    "long-range attachments: no vertex farther from a pin than along the cloth at rest");
+    "long-range attachments: no vertex is farther from a pin than it is along the cloth at rest");
 inline constexpr ParamSpec kPrecision =
     ParamSpec::choice("precision", "float", "float|double", "scalar type of the simulation");
 inline constexpr ParamSpec kSimd =
@@ -137,7 +137,7 @@ inline constexpr ParamSpec kSimd =
                       "instruction set; every one computes the same bits");
 inline constexpr ParamSpec kThreads = ParamSpec::integer(
     "threads", "1", 1, 64,
-    "that divide the sweeps of order=coloured; any number computes the same bits");
+    "threads that share the sweeps of order=coloured; any number computes the same bits");
 
 /// What a scene may not need of the common parameters (SolverEntry::optional_effects).
 inline constexpr OptionalEffect kOptionalEffects[] = {

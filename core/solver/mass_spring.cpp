@@ -33,8 +33,9 @@ constexpr auto kParams = loop::with_common(
          "drag-at", "lagged", "lagged|central",
          "velocity that drag sees: (x_n - x_n-1)/dt, or, verlet only, (x_n+1 - x_n-1)/2dt"),
      loop::substeps("32", "each step is this many steps of dt / substeps"),
-     ParamSpec::choice("precision", "double", "float|double",
-                       "scalar type of the simulation; in float many substeps lose part of a fall"),
+     ParamSpec::choice(
+         "precision", "double", "float|double",
+         "scalar type of the simulation; in float, many substeps slow a fall by rounding"),
      kMaterial});
 
 template <class Real>

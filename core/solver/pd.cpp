@@ -43,9 +43,9 @@ constexpr ParamSpec kOwn[] = {
     ParamSpec::integer("anderson", "0", 0, 20,
                        "earlier iterations that Anderson acceleration combines; 0: none"),
     ParamSpec::choice("method", "plain", "plain|lbfgs|ncg",
-                      "down the same energy: the factor's solution as it is, corrected by L-BFGS, "
-                      "or nonlinear conjugate gradients; the last two without contact"),
-    ParamSpec::integer("history", "5", 0, 20, "pairs that method=lbfgs keeps of a substep"),
+                      "how to minimise the energy: by the factor's solution as it is, corrected by "
+                      "L-BFGS, or by nonlinear conjugate gradients; the last two without contact"),
+    ParamSpec::integer("history", "5", 0, 20, "pairs that method=lbfgs keeps in a substep"),
     ParamSpec::choice("preconditioner", "diagonal", "diagonal|factor", "of method=ncg"),
 };
 constexpr auto kParams = loop::with_common(kOwn);
@@ -57,7 +57,10 @@ class Anderson {
  public:
   Anderson(std::size_t window, std::size_t vertices) : window_(window), vertices_(vertices) {}
   bool on() const { return window_ > 0; }
-  void begin() { residuals_.clear(), images_.clear(); }
+  void begin() {
+    residuals_.clear();
+    images_.clear();
+  }
 
   /// image = f(x) for this x.
   std::vector<Vec3> next(const std::vector<Vec3>& x, const std::vector<Vec3>& image) {
@@ -376,7 +379,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
     if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
       reasons.push_back(method + " knows no contact");
     if (params.real("chebyshev") > 0 || params.integer("anderson") > 0)
-      reasons.push_back(method + " is a way of its own: neither chebyshev nor anderson joins it");
+      reasons.push_back(method + " cannot be combined with chebyshev or anderson");
   }
   return reasons;
 }

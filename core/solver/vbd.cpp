@@ -26,8 +26,8 @@ constexpr ParamSpec kOwn[] = {
     kAdaptiveStart,
     kVertexPrecision,
     ParamSpec::real("damping", "s", "0", 0, 1e3,
-                    "k_d, of the springs' Hessian; as published it brakes each vertex' own way, "
-                    "rigid motion, too"),
+                    "k_d, a factor of the springs' Hessian; as published it slows the motion of "
+                    "each vertex, rigid motion, too"),
     kChebyshev,
 };
 constexpr auto kParams = loop::with_common(kOwn);

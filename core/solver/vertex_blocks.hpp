@@ -232,18 +232,17 @@ class VertexBlocks {
   ThreadPool& pool_;
 };
 
-inline constexpr ParamSpec kVertexOrder =
-    ParamSpec::choice("order", "coloured", "coloured|mesh",
-                      "vertices colour after colour, which threads can divide, or in the scene's "
-                      "order");
-inline constexpr ParamSpec kAdaptiveStart = ParamSpec::choice(
-    "start", "adaptive", "adaptive|inertia",
-    "where iterations start: without the part of gravity that did not act in the "
-    "last substep, as published, so that what too few sweeps lose of a fall stays "
-    "lost; or where the vertices would go without links");
-inline constexpr ParamSpec kVertexPrecision = ParamSpec::choice(
-    "precision", "double", "float|double",
-    "scalar type of the simulation; in float a sweep costs 0.4 to 0.8 as much, and what is left of "
-    "the error ends at rounding");
+inline constexpr ParamSpec kVertexOrder = ParamSpec::choice(
+    "order", "coloured", "coloured|mesh",
+    "visit vertices colour after colour, which threads can share, or in the scene's order");
+inline constexpr ParamSpec kAdaptiveStart =
+    ParamSpec::choice("start", "adaptive", "adaptive|inertia",
+                      "where iterations start: as published, without the part of gravity that did "
+                      "not act in the last substep, so that a fall slowed by too few sweeps stays "
+                      "slow; or where the vertices would go without links");
+inline constexpr ParamSpec kVertexPrecision =
+    ParamSpec::choice("precision", "double", "float|double",
+                      "scalar type of the simulation; in float a sweep costs 0.4 to 0.8 times as "
+                      "much, and the error falls no lower than rounding");
 
 }  // namespace taut

@@ -23,23 +23,23 @@ namespace {
 
 constexpr auto kParams = loop::with_common(
     {loop::substeps("8", "each step is this many steps of dt / substeps").but("method=global", "1"),
-     loop::iterations("1",
-                      "sweeps per substep, of which Small Steps finds that one is best; or "
-                      "solutions of method=global")
+     loop::iterations(
+         "1",
+         "sweeps per substep (Small Steps finds one to be best), or solutions with method=global")
          .but("method=global", "3"),
      ParamSpec::real("structural", "m/N", "0", 0, 1e12, "compliance of structural links"),
      ParamSpec::real("shear", "m/N", "0", 0, 1e12, "compliance of shear links"),
      ParamSpec::real("bend", "m/N", "0", 0, 1e12, "compliance of bend links"), loop::kPrecision,
      kMaterial,
      ParamSpec::choice("multipliers", "keep", "keep|reset",
-                       "from sweep to sweep within a substep, as published; or 0 before each, "
-                       "which loses the compliance"),
+                       "keep multipliers from sweep to sweep within a substep, as published, or "
+                       "reset them to 0 before each sweep, which loses the compliance"),
      ParamSpec::choice("method", "sweeps", "sweeps|global",
-                       "link after link, as published; or all at once, a sparse LDLT in each "
-                       "iteration (fast projection)"),
+                       "solve link after link, as published, or all at once by a sparse LDLT in "
+                       "each iteration (fast projection)"),
      ParamSpec::choice("primal", "off", "off|on",
-                       "of method=global: minimise implicit Euler's energy, with a line search, "
-                       "so that iterations end at its step, with contact inside of the solve"),
+                       "with method=global: minimise implicit Euler's energy with a line search, "
+                       "so that iterations converge to its step, with contact in the solve"),
      kOrderParam, ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"), kLayoutParam,
      loop::kTethers});
 
@@ -84,13 +84,13 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
   const bool primal = params.is("primal", "on");
   if (params.is("method", "sweeps")) {
-    if (primal) reasons.emplace_back("primal=on is of method=global");
+    if (primal) reasons.emplace_back("primal=on needs method=global");
     return reasons;
   }
   if (params.is("multipliers", "reset"))
-    reasons.emplace_back("multipliers=reset is of method=sweeps");
+    reasons.emplace_back("multipliers=reset needs method=sweeps");
   if (!primal) return reasons;
-  const std::string own = "primal=on minimises an energy of links and contact: it knows no ";
+  const std::string own = "primal=on minimises an energy of links and contact, without ";
   if (scene.bending) reasons.push_back(own + "bending");
   if (params.is("tethers", "on")) reasons.push_back(own + "tethers");
   return reasons;
@@ -151,6 +151,7 @@ TAUT_SOLVER(xpbd) = {
     .declared_step = taut::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
+                 .link_order = "order",
                  .alternatives = taut::solver::xpbd::kAlternatives,
                  .labelled = "substeps|iterations|method|primal|order|tethers|precision",
                  .accelerators = "tethers|threads"},

@@ -107,8 +107,8 @@ Table solvers_of(const AdviceWanted& wanted, const Advice& advice) {
                {"cost", "CPU time", wanted.frame()},
                {"times", advice.cut.empty() ? "x the best" : "x the first"},
                {"peak_bytes", "memory", kMegabytes}}};
-  for (const KeptAnswer& limit : wanted.limits)
-    table.columns.push_back({limit.name, "", unit_of(limit)});
+  for (const Limit& limit : wanted.limits)
+    table.columns.push_back({limit.name, "", unit_of_value(limit.name)});
   table.columns.emplace_back("note", "");
   for (const SolverRecommendation& solver : advice.recommendation.solvers) {
     auto& row = table.rows.emplace_back();
@@ -118,7 +118,7 @@ Table solvers_of(const AdviceWanted& wanted, const Advice& advice) {
       row.insert(row.end(),
                  {parse_solver(c.record.spec.solver).brief(), c.record.value(wanted.metric),
                   c.cost(), solver.times, c.timing.peak_bytes});
-      for (const KeptAnswer& limit : wanted.limits) row.push_back(c.record.value(limit.name));
+      for (const Limit& limit : wanted.limits) row.push_back(c.record.value(limit.name));
       row.emplace_back("");
     } else {
       row.resize(table.columns.size());
@@ -144,11 +144,12 @@ Table solvers_of(const AdviceWanted& wanted, const Advice& advice) {
 Table limits_of(const AdviceWanted& wanted, const Advice& advice) {
   Table table{"kept", "kept beside the error", {{"value"}, {"limit", "at most"}, {"best", "here"}}};
   const bool any = advice.recommendation.best.has_value();
-  for (const KeptAnswer& limit : wanted.limits) {
+  for (const Limit& limit : wanted.limits) {
     const auto said = [&](double value) {
-      return unit_of(limit).shown.empty() ? Cell(value) : Cell(value).with(text(limit, value));
+      return unit_of_value(limit.name).shown.empty() ? Cell(value)
+                                                     : Cell(value).with(limit.text(value));
     };
-    table.rows.push_back({limit.name, said(limit.tolerance),
+    table.rows.push_back({limit.name, said(limit.most),
                           any ? said(std::abs(advice.best().record.value(limit.name))) : Cell()});
   }
   return table;

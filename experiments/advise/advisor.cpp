@@ -217,7 +217,7 @@ class Advisor {
 
   SceneBench time(const std::vector<Record>& records, int rounds) const {
     return bench_scene(
-        wanted_.scene, records,
+        wanted_.scene, records, wanted_.limits,
         {.rounds = rounds, .seconds = wanted_.seconds, .progress = wanted_.timing_round});
   }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/require/answers.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/study/limits.hpp"
 #include "experiments/timing/recommendation.hpp"
 #include "experiments/timing/study_bench.hpp"
 
@@ -19,11 +19,11 @@ struct AdviceWanted {
   std::vector<std::string> solvers;   ///< what their texts fix is not searched
   Target target;
   std::string metric = kErrorMetric;
-  std::vector<KeptAnswer> limits = {};  ///< of values beside the error
-  double fps = 1 / kFrame;              ///< frames a second, in which costs are shown
-  double patience = 120;                ///< s for all of it
-  int rounds = 8;                       ///< of the timing of the finalists
-  double seconds = 0.05;                ///< of a sample
+  std::vector<Limit> limits = {};  ///< of values beside the error
+  double fps = 1 / kFrame;         ///< frames a second, in which costs are shown
+  double patience = 120;           ///< s for all of it
+  int rounds = 8;                  ///< of the timing of the finalists
+  double seconds = 0.05;           ///< of a sample
   double tolerance = kTolerance;
   std::function<void(const std::string&)> news = {};  ///< a line for each setting that was tried
   std::function<void(std::size_t done, std::size_t total)> timing_round = {};

@@ -45,7 +45,7 @@ class SolverSearch {
     const Case one = make(solver);
     duration_ = one.scene->duration();
     limits_ = default_limits(*one.scene);
-    std::erase_if(limits_, [&](const KeptAnswer& limit) { return limit.name == metric; });
+    std::erase_if(limits_, [&](const Limit& limit) { return limit.name == metric; });
     const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
     if (!reasons.empty()) unsupported_ = reasons.front();
   }
@@ -146,7 +146,7 @@ class SolverSearch {
   std::string solver_, metric_, unsupported_;
   Store& store_;
   CaseMaker maker_;
-  std::vector<KeptAnswer> limits_;
+  std::vector<Limit> limits_;
   std::vector<Candidate> tried_;
   std::map<std::string, std::size_t> at_;  ///< index into tried_ of a setting
   double cpu_ = 0, duration_ = 0;
@@ -160,7 +160,7 @@ std::vector<EqualSearch> search_equally(const Study& study, Store& store, const 
                                         const std::vector<double>& errors, double seconds,
                                         const std::function<void(const EqualSearch&)>& after_each) {
   if (!study.axes.empty())
-    throw InputError(study.file.string() + ": settings are searched of a study without axes");
+    throw InputError(study.file.string() + ": settings are searched only for a study without axes");
   std::vector<EqualSearch> all;
   for (const std::string& scene : study.scenes)
     for (const std::string& solver : study.solvers) {

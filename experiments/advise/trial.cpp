@@ -23,7 +23,7 @@ StepTime quick_time(const CaseSpec& spec, int steps,
 }
 
 std::optional<SettingTrial> try_setting(const Case& one, Store& store, const std::string& metric,
-                                        const std::vector<KeptAnswer>& limits,
+                                        const std::vector<Limit>& limits,
                                         std::chrono::steady_clock::time_point deadline) {
   const auto record = run_stored(one, store, {}, deadline);
   if (!record) return {};

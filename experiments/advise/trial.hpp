@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/require/answers.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/study/limits.hpp"
 #include "experiments/timing/study_bench.hpp"
 
 namespace taut {
@@ -21,7 +21,7 @@ struct SettingTrial {
 /// Runs and times it; nothing: not done by the deadline. Refused is what fails, goes beyond the
 /// limits, or hardly moves where the error is a strain.
 std::optional<SettingTrial> try_setting(const Case&, Store&, const std::string& metric,
-                                        const std::vector<KeptAnswer>& limits,
+                                        const std::vector<Limit>& limits,
                                         std::chrono::steady_clock::time_point deadline);
 
 /// CPU s per simulated s of a few steps. Throws std::runtime_error (it cannot be timed), TimeIsUp.

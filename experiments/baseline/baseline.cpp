@@ -222,17 +222,18 @@ Baseline updated(const Baseline& before, const Baseline& now, const Tolerances& 
   return rows;
 }
 
-std::string reproduce(const CaseSpec& spec) {
-  std::string command = "taut case " + shell_word(spec.scene) + " " + shell_word(spec.solver);
+static std::string command_of(const std::string& verb, const CaseSpec& spec) {
+  std::string command =
+      "taut " + verb + " " + shell_word(spec.scene) + " " + shell_word(spec.solver);
   for (const std::string& text : spec.overrides) command += " --set " + shell_word(text);
   return command;
 }
 
+std::string reproduce(const CaseSpec& spec) { return command_of("case", spec); }
+
 std::string reproduce(const BaselineRow& row) {
-  const std::string command = reproduce(row.spec);
-  if (row.frontier.empty()) return command;
-  return "taut frontier" + command.substr(std::string_view("taut case").size()) + " " +
-         row.frontier;
+  if (row.frontier.empty()) return reproduce(row.spec);
+  return command_of("frontier", row.spec) + " " + row.frontier;
 }
 
 std::string junit(const std::string& study, const Baseline& now, const Comparison& comparison) {

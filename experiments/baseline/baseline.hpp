@@ -17,7 +17,7 @@ namespace taut {
 /// How the case or the frontier of a row ended.
 struct RowStatus {
   std::string kind;         ///< "ok", "exploded", "bracketed"
-  std::string reason = {};  ///< "energy"; "" of what is unsupported, whose reason is a sentence
+  std::string reason = {};  ///< "energy"; "" if unsupported, whose reason is a sentence
   std::string text() const { return reason.empty() ? kind : kind + " (" + reason + ")"; }
   bool operator==(const RowStatus&) const = default;
 };
@@ -30,8 +30,8 @@ struct BaselineRow {
   RowStatus status;
   std::size_t projections = 0;           ///< constraint projections per step
   std::map<std::string, double> values;  ///< by metric value; NaN: no meaning for this case
-  std::string frontier;  ///< options of `taut frontier` if the row is a frontier, else empty
-  bool flaky = false;    ///< two runs differed in a bit: only its status is compared
+  std::string frontier;                  ///< options of `taut frontier`; "": the row is a case
+  bool flaky = false;  ///< two runs differed in a bit: only its status is compared
 
   std::string solver() const { return solver_name(spec.solver); }
 };
@@ -59,7 +59,7 @@ struct Change {
     value_missing,     ///< the baseline has a metric value that no longer exists
     value_unrecorded,  ///< the baseline lacks a value in this row that it has in others
     // for information: no failure
-    value_new  ///< the baseline has it nowhere: a new metric
+    value_new  ///< a new metric: the baseline has it in no row
   };
   Kind kind = Kind::value_moved;
   std::string id;                      ///< of the case; empty for a solver
@@ -87,18 +87,18 @@ struct Comparison {
 
 /// How values moved, over all cases of a solver.
 struct MovedValue {
-  std::string solver, group;  ///< a value or several; "status"
+  std::string solver, group;  ///< the name of a value or of several; "status"
   std::size_t cases = 0;
   std::size_t less = 0, more = 0;   ///< of these: now below, above what it was
-  const Change* largest = nullptr;  ///< relative change; into the comparison
+  const Change* largest = nullptr;  ///< by relative change; points into the comparison
 
   /// (now - before) / |before| of the largest; infinite where there was 0 or no number, and
   /// for a status.
   double relative() const;
 };
 
-/// Statuses that changed and values that moved, by solver and by what `group_of` makes of the
-/// value's name; groups in the order of their first change.
+/// Statuses that changed and values that moved, by solver and by group, which `group_of` gives for
+/// a value's name; in the order of their first change.
 std::vector<MovedValue> roll_up(const Comparison&,
                                 const std::function<std::string(const std::string&)>& group_of);
 
@@ -108,15 +108,15 @@ std::string reproduce(const CaseSpec&);
 /// The same for a row: a case, or "taut frontier ...".
 std::string reproduce(const BaselineRow&);
 
-/// A comparison as a JUnit <testsuite>, a test case for every row and for every finding that has
-/// none.
+/// A comparison as a JUnit <testsuite>: a test case for every row, and for every finding without a
+/// row.
 std::string junit(const std::string& study, const Baseline& now, const Comparison&);
 
-/// What is different in `now`. Rows whose scene, solver or id do not match are not compared.
+/// The differences in `now`. Rows whose scene, solver or id do not match are not compared.
 Comparison compare(const Baseline& before, const Baseline& now, const Tolerances&);
 
-/// The baseline that `now` makes: rows that moved by no more than the tolerance stay as they are,
-/// to the digit; the others are taken from `now`, rounded to a hundredth of the tolerance.
+/// The new baseline: values that moved by no more than the tolerance stay as they are, to the
+/// digit; the others are those of `now`, rounded to a hundredth of the tolerance.
 Baseline updated(const Baseline& before, const Baseline& now, const Tolerances&);
 
 /// Reads every <solver>.jsonl of a study's folder. Empty if there is none. Throws InputError with
@@ -137,8 +137,8 @@ Tolerances read_tolerances(const std::filesystem::path& folder);
 /// InputError with file and line.
 std::vector<FrontierQuestion> read_frontiers(const std::filesystem::path& folder);
 
-/// What was found as a row: its status is the kind of frontier, its values are the ends of the
-/// bracket and the number of stable values above it.
+/// A frontier that was found, as a row: its status is the kind of frontier, its values are the ends
+/// of the bracket and the number of stable values above it.
 BaselineRow frontier_row(const FrontierQuestion&, const CaseFrontier&);
 
 /// Id of the row of a question.

@@ -10,7 +10,7 @@ namespace taut {
 
 class JsonReader;
 
-/// It ran to its end, and not to an extreme: its values may be compared and averaged.
+/// Whether it ran to its end without an extreme, so that its values may be compared and averaged.
 bool completed(const Status&);
 
 /// "exploded (energy) at step 12, vertex 3".
@@ -19,7 +19,7 @@ std::string describe(const Status&);
 /// Version of every JSON text below; readers refuse others.
 inline constexpr int kRecordSchema = 2;
 
-/// Found by the JSON library, wherever one of them becomes JSON.
+/// The JSON library finds these by their names.
 template <class Json>
 void to_json(Json& json, const PassCost& p) {
   json = {{"pass", p.pass},
@@ -50,11 +50,13 @@ Record record_from_json(std::string_view text, const std::string& where);
 /// The same of a part of another JSON text.
 Record record_of(const JsonReader&);
 
-/// Whether the text is a case's address, 64 hexadecimal digits: no other becomes part of a path.
+/// Whether the text is the address of a case, 64 hexadecimal digits; no other text becomes part of
+/// a path.
 bool is_key(std::string_view);
 
 /// SHA-256 of what was computed: status, values, step costs, resolved settings and final state.
-/// Not of how the case was called (spec, id, scene name): the same key must always give the same.
+/// The names of the case (spec, id, scene name) are left out: the same key must always give the
+/// same digest.
 std::string result_digest(const Record&);
 
 /// CSV with a header line; doubles in shortest exact form, NaN as an empty field.

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-// What the file of every verb needs.
+// Included by the file of every verb.
 #include "core/model/input_error.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
@@ -32,7 +32,7 @@ enum ExitCode : int {
   kInterrupted = kInterruptedExit
 };
 
-/// Under what heading `taut --help` shows a verb, in this order.
+/// The headings of `taut --help`, in this order.
 enum class VerbGroup { studies, one_case, cost, trust, extremes };
 
 /// Names in an answer: of its facts (`of` is "facts"), or of the columns of a table.
@@ -51,8 +51,8 @@ struct VerbEntry {
   /// What --json has; empty: no answer (answer.hpp).
   std::vector<AnswerPart> answer;
   /// Adds options to the verb's parser and returns what to do once they are parsed. It may throw
-  /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr. nullptr: it has
-  /// verbs and does nothing by itself.
+  /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr. nullptr: a verb
+  /// that only has verbs of its own.
   std::function<int()> (*bind)(CLI::App&) = nullptr;
 };
 

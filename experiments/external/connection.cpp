@@ -64,8 +64,14 @@ class Splitter {
   }
 
  private:
-  void add(char c) { word_ += c, begun_ = true; }
-  void add(const std::string& text) { word_ += text, begun_ = begun_ || !text.empty(); }
+  void add(char c) {
+    word_ += c;
+    begun_ = true;
+  }
+  void add(const std::string& text) {
+    word_ += text;
+    begun_ = begun_ || !text.empty();
+  }
   void end_word() {
     if (begun_) words_.push_back(std::exchange(word_, {}));
     begun_ = false;

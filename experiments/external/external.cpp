@@ -24,13 +24,14 @@ namespace {
 
 constexpr ParamSpec kLeading[] = {
     {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
-    ParamSpec::real("timeout", "s", "30", 0.01, 86400, "Every answer has to come within this time"),
+    ParamSpec::real("timeout", "s", "30", 0.01, 86400,
+                    "Longest time in which the program may answer"),
     {.name = "folder",
      .kind = ParamSpec::Kind::text,
-     .help = "Where the command runs; without it: where taut does"},
+     .help = "Folder in which the command runs; by default that of taut"},
     {.name = "build",
      .kind = ParamSpec::Kind::text,
-     .help = "Which state of its sources it is, in place of command, files and version"}};
+     .help = "Name of the state of its sources, in place of command, files and version"}};
 
 /// Stands for all programs where none is named.
 const SolverEntry kAny = {
@@ -103,7 +104,7 @@ std::vector<std::string> registered_names() {
                        "' is no name of a solver: a letter, then letters, digits, _ and -, at most "
                        "40 characters");
     if (!file.is_regular_file(none))
-      throw InputError(file.path().string() + ": is no regular file");
+      throw InputError(file.path().string() + ": is not a regular file");
     names.push_back(name);
   }
   std::ranges::sort(names);

@@ -16,7 +16,10 @@ using Kind = ParamSpec::Kind;
 
 constexpr ParamSpec kParams[] = {
     {.name = "file", .kind = Kind::text, .help = "Positions: .npy, .pc2 or .obj"},
-    {.name = "fps", .default_value = "0", .max = 1e6, .help = "frames in a second; 0: one a step"},
+    {.name = "fps",
+     .default_value = "0",
+     .max = 1e6,
+     .help = "frames a second; 0: one for each step"},
     {.name = "scale",
      .unit = "m",
      .default_value = "1",
@@ -30,8 +33,8 @@ constexpr ParamSpec kParams[] = {
      .help = "the axis that points up"},
     {.name = "rest",
      .kind = Kind::text,
-     .help =
-         "a file with the cloth at rest in the file's order, if it does not begin as the scene"},
+     .help = "a file of the cloth at rest, in the file's order of vertices, if the motion does not "
+             "begin as the scene does"},
 };
 
 MotionOptions options_of(const Params& params) {

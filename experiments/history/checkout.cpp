@@ -105,7 +105,7 @@ Repository::Repository(const fs::path& folder) : folder_(fs::absolute(folder).le
   for (const char* name : {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX"})
     unsetenv(name);
   const GitAnswer top = git(folder_, {"rev-parse", "--absolute-git-dir"}, true);
-  if (!top.good) throw InputError(folder.string() + ": no repository: " + top.complaint);
+  if (!top.good) throw InputError(folder.string() + ": not a repository: " + top.complaint);
 }
 
 std::string Repository::commit(const std::string& name) const {
@@ -114,7 +114,7 @@ std::string Repository::commit(const std::string& name) const {
                                (name.empty() ? "HEAD" : name) + "^{commit}"},
                               true);
   if (!found.good)
-    throw InputError("'" + printable(name) + "' is no commit of " + folder_.string());
+    throw InputError("'" + printable(name) + "' is not a commit of " + folder_.string());
   return stripped_end(found.text);
 }
 

@@ -71,7 +71,7 @@ class Area final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(area, Area, "Area strain: shear collapse shows here though no link is strained",
+TAUT_METRIC(area, Area, "Area strain, which shows a collapse in shear that strains no link",
             "A/A0 - 1 of each face");
 
 }  // namespace taut

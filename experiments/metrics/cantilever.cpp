@@ -14,16 +14,16 @@ class Cantilever final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "cantilever.angle",
        .unit = kDegrees,
-       .help = "angle below the level at which the middle of the last row is seen from the clamp, "
-               "mean over the last second; of a sheet that starts across gravity and whose pins "
-               "are its first two rows, the clamp in the middle between them",
+       .help = "angle below the horizontal at which the clamp sees the middle of the last row, "
+               "mean over the last second; has a value if the sheet starts across gravity and its "
+               "first two rows are pinned: the clamp is midway between them",
        .in_series = true,
        .title = "angle of a cantilever"},
       {.name = "cantilever.bending_length",
        .unit = kLength,
-       .help = "bending length (B/w)^(1/3) after Peirce from that angle and the overhang L: "
-               "L (cos(angle/2)/(8 tan(angle)))^(1/3), too long by 0.4 % at 20 degrees, 1.9 % at "
-               "41.5, 4.4 % at 60; none beyond, where it misses (57 % at 87)",
+       .help = "Peirce's bending length (B/w)^(1/3) from that angle and the overhang L: L "
+               "(cos(angle/2)/(8 tan(angle)))^(1/3), too long by 0.4 % at 20 degrees, 1.9 % at "
+               "41.5, 4.4 % at 60; no value beyond 60, where the formula fails (57 % at 87)",
        .title = "bending length"}};
   static bool measures(const Scene& scene) {
     if (!scene.mesh.grid || scene.mesh.grid->nv < 3 || scene.gravity.isZero(0)) return false;

@@ -16,8 +16,8 @@ class ContactForce final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "contact.force",
        .unit = kForce,
-       .help = "size of the sum of all forces of colliders on the cloth, by its momentum, of its "
-               "mean over the last second: the weight, where the cloth lies still",
+       .help = "magnitude of the mean total force of all colliders on the cloth over the last "
+               "second, from the cloth's momentum; equals the weight if the cloth lies still",
        .title = "force of all colliders on the cloth"},
       {"contact.force.peak", kForce, "the largest over the run", false, Window::run,
        "largest force of all colliders on the cloth"},
@@ -68,7 +68,7 @@ class ContactForce final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(contact_force, ContactForce, "With what the colliders hold a cloth that nothing pins",
+TAUT_METRIC(contact_force, ContactForce, "Force with which colliders hold a cloth without pins",
             "momentum of the whole cloth");
 
 }  // namespace taut

@@ -17,12 +17,11 @@ class Drape final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "drape.coefficient",
        .unit = kSignedShare,
-       .help =
-           "(shadow - support)/(cloth - support), mean over the last second: the area that the "
-           "cloth covers seen along gravity, that of the support, and that of all faces at "
-           "rest; 100 %: flat, 0 %: hangs straight down. The support of a round cloth is the "
-           "disc of its pinned vertices (ISO 9073-9), of others the faces whose corners are all "
-           "pinned. Of scenes whose pinned faces lie across gravity",
+       .help = "(shadow - support)/(cloth - support), mean over the last second: the area that the "
+               "cloth covers seen along gravity, the area of the support, and that of all faces at "
+               "rest; 100 %: flat, 0 %: hangs straight down. The support is the disc of the pinned "
+               "vertices if the cloth is round (ISO 9073-9), otherwise the faces whose corners are "
+               "all pinned. Has a value if the pinned faces lie across gravity",
        .in_series = true,
        .title = "drape coefficient"}};
   static bool measures(const Scene& scene) {

@@ -102,9 +102,9 @@ class Edges final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
       {"edge.passages", kErrorCount,
-       "how often an edge of the cloth goes through the axis of a capsule or an edge of a box or a "
-       "body of triangles, returns included: a thread over a rod between two of its vertices; "
-       "their ways are straight from substep to substep, in the collider's own frame",
+       "number of times that an edge of the cloth passes through the axis of a capsule or through "
+       "an edge of a box or a body of triangles, returns included; paths are straight from substep "
+       "to substep in the collider's frame",
        false, Window::run, "passages of edges"},
   };
   static bool measures(const Scene& scene) {
@@ -223,7 +223,7 @@ class Edges final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(edges, Edges, "How often edges of the cloth go through those of a collider",
+TAUT_METRIC(edges, Edges, "How often edges of the cloth pass through edges of a collider",
             "roots of the volume between two edges along their way");
 
 }  // namespace taut

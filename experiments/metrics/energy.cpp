@@ -14,9 +14,8 @@ class Energy final : public Metric {
        true},
       {"energy.kinetic", kNumber, "its kinetic part, mean over the last second", true},
       {"energy.peak", kNumber,
-       "largest (kinetic + potential energy)/(m g L) after any step, the start left out: below 0 "
-       "if "
-       "the cloth never has again what it had there",
+       "largest (kinetic + potential energy)/(m g L) after any step, not counting the start: below "
+       "0 if the cloth never regains its initial energy",
        false, Window::run},
   };
   static bool measures(const Scene& scene) { return !scene.gravity.isZero(0); }

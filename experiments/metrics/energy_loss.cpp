@@ -17,13 +17,12 @@ class EnergyLoss final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "energy.loss",
        .unit = kSignedShare,
-       .help =
-           "kinetic + potential energy lost from the first turning point to the last, over the "
-           "sum of the largest kinetic energies between them; a turning point is a least "
-           "kinetic energy of at most a quarter of the largest on either side; none with "
-           "colliders, self-collision, wind, damping or moving pins, which do work; none if that "
-           "sum is below a thousandth of m g L (cloth at rest) or the loss above it (cloth that "
-           "sinks and does not swing)",
+       .help = "kinetic + potential energy lost from the first turning point to the last, over the "
+               "sum of the largest kinetic energies between them; a turning point is a minimum of "
+               "the kinetic energy of at most a quarter of the maximum on either side. No value "
+               "with colliders, self-collision, wind, damping or moving pins, which do work; none "
+               "if that sum is below a thousandth of m g L (cloth at rest) or if the loss exceeds "
+               "it (cloth that sinks and does not swing)",
        .window = Window::run,
        .title = "energy lost from peak to peak"},
   };
@@ -80,7 +79,7 @@ class EnergyLoss final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(energy_loss, EnergyLoss, "Energy that a swing loses: artificial damping of any motion",
+TAUT_METRIC(energy_loss, EnergyLoss, "Energy that a swing loses: the solver's artificial damping",
             "energies at successive turning points; 0 for rods and springs without damping");
 
 }  // namespace taut

@@ -51,13 +51,13 @@ class Faces final : public Metric {
       {"face.peak", kErrorLength, "the same over the run", false, Window::run,
        "peak penetration of faces", Role::face_depth},
       {"face.geometry", kLength,
-       "the part of a face's depth in a ball or capsule that is geometry: how deep it could be if "
-       "its corners lay exactly at the scene's thickness, in a ball l^2/(4R) for a right triangle "
-       "with legs l; largest in the last second",
+       "part of a face's depth in a ball or capsule that its size alone causes: its depth if its "
+       "corners lay exactly at the scene's thickness, in a ball l^2/(4R) for a right triangle with "
+       "legs l; largest in the last second",
        true},
       {"face.excess", kErrorLength,
-       "largest depth of a face below a ball's or capsule's surface beyond its geometric part, in "
-       "the last second",
+       "largest depth of a face in a ball or capsule beyond the part that its size causes, in the "
+       "last second",
        true},
       {"face.ball", kErrorLength, "face.max of the balls alone"},
       {"face.box", kErrorLength, "face.max of the boxes alone"},
@@ -65,9 +65,9 @@ class Faces final : public Metric {
       {"face.mesh", kErrorLength,
        "face.max of the bodies of triangles alone, to 1 % of a face's longest side"},
       {"face.passages", kErrorCount,
-       "how often the middle of a ball, a corner of a box, a place of a capsule's axis or a vertex "
-       "of a body of triangles goes through a face, returns included; their ways are straight from "
-       "step to step (a body's: in its own frame)",
+       "number of times that the centre of a ball, a corner of a box, a point of a capsule's axis "
+       "or a vertex of a body of triangles passes through a face, returns included; paths are "
+       "straight from step to step (a body's in its own frame)",
        false, Window::run, "passages through faces"},
   };
   static bool measures(const Scene& scene) {

@@ -37,7 +37,7 @@ class Jitter final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(jitter, Jitter, "Motion that is left in the last second: noise, if it should rest",
+TAUT_METRIC(jitter, Jitter, "Motion left in the last second: noise, if the cloth should rest",
             "RMS speed");
 
 }  // namespace taut

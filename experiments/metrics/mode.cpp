@@ -50,21 +50,18 @@ class Mode final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "mode.damping",
        .unit = kErrorShare,
-       .help =
-           "damping ratio of the lowest mode of small swings, which nothing damps in truth: "
-           "d/sqrt(4 pi^2 + d^2), d the logarithmic decrement per period, from the first "
-           "amplitude to the last of at least 1 % of it; only of rows hung from a pinned one, let "
-           "go at most 0.1 rad from rest, without damping, wind, colliders or self-collision; rows "
-           "that "
-           "stretch by much trade swinging for bouncing",
+       .help = "damping ratio of the lowest mode of small swings, whose exact value is 0: d/sqrt(4 "
+               "pi^2 + d^2), d the logarithmic decrement per period, from the first amplitude to "
+               "the last of at least 1 % of it. Has a value for rows that hang from a pinned one "
+               "and are let go at most 0.1 rad from rest, without damping, wind, colliders or "
+               "self-collision; rows that stretch much bounce instead of swinging",
        .window = Window::run,
        .title = "damping ratio of the lowest mode",
        .role = Role::motion},
       {.name = "mode.period",
        .unit = kSignedShare,
-       .help =
-           "its period over the closed form of hanging rods, 2 pi/w with K s = w^2 M s, minus 1, "
-           "from times at which it passes the middle",
+       .help = "period of that mode over the closed form for hanging rods, 2 pi/w with K s = w^2 M "
+               "s, minus 1; measured between passages through the middle",
        .window = Window::run,
        .title = "error of the period of the lowest mode"},
   };

@@ -9,18 +9,19 @@ class Momentum final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "momentum.linear",
        .unit = kErrorSpeed,
-       .help = "|P - P_start - m g t| / m of the whole cloth's momentum P, largest over the run; "
-               "only of free flight: pins, colliders, wind and damping change it",
+       .help =
+           "|P - P_start - m g t| / m for the momentum P of the whole cloth, largest over the run; "
+           "has a value in free flight only, since pins, colliders, wind and damping change P",
        .in_series = true,
        .window = Window::run,
-       .title = "momentum that is wrong, per mass"},
+       .title = "error of momentum, per mass"},
       {.name = "momentum.angular",
        .unit = kErrorShare,
-       .help = "|L - L_start| / |L_start| of the angular momentum L about the centre of mass, "
-               "largest over the run; only of free flight that begins with a spin",
+       .help = "|L - L_start| / |L_start| for the angular momentum L about the centre of mass, "
+               "largest over the run; has a value in free flight that starts with a spin",
        .in_series = false,
        .window = Window::run,
-       .title = "angular momentum that is wrong"},
+       .title = "error of angular momentum"},
   };
   static bool measures(const Scene& scene) {
     return scene.pins.empty() && scene.colliders.empty() && !scene.wind && scene.damping == 0;
@@ -70,7 +71,7 @@ class Momentum final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(momentum, Momentum, "Whether momentum and angular momentum are kept in free flight",
+TAUT_METRIC(momentum, Momentum, "Whether free flight conserves momentum and angular momentum",
             "Newton's second law for the whole cloth; inner forces come in pairs");
 
 }  // namespace taut

@@ -11,10 +11,9 @@ class Pins final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "pins.force",
        .unit = kNumber,
-       .help =
-           "|force of all pins on the cloth| / (m g), mean over the last second; 1 at rest. From "
-           "the momentum P of the free vertices: dP/dt - m g, the scene's damping taken off; "
-           "none with colliders or wind, which push as well",
+       .help = "|force of all pins on the cloth| / (m g), mean over the last second; 1 at rest. "
+               "Computed from the momentum P of the free vertices: dP/dt - m g, less the scene's "
+               "damping; no value with colliders or wind, which push, too",
        .in_series = true,
        .title = "pin force over weight"},
       {.name = "pins.force.peak",

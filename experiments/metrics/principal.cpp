@@ -34,7 +34,7 @@ class Principal final : public Metric {
       {"principal.second.p95", kSignedShare, "its 95th percentile, mean of ten moments"},
       {"principal.second.max", kSignedShare, "its largest, of ten moments"},
       {"principal.warp.p50", kErrorShare,
-       "strain | |F d| - 1 | along the grid's v, which a hanging sheet hangs along: median"},
+       "strain | |F d| - 1 | along the grid's v, the direction in which a sheet hangs: median"},
       {"principal.warp.p95", kErrorShare, "its 95th percentile, mean of ten moments"},
       {"principal.warp.max", kErrorShare, "its largest, of ten moments"},
       {"principal.weft.p50", kErrorShare, "the same strain along the grid's u: median"},

@@ -38,32 +38,30 @@ class Distance final : public Metric {
       {.name = "motion.share",
        .unit = kSignedShare,
        .help =
-           "share of the way travelled: of the ways of the free vertices from each moment of the "
-           "dynamic reference to the next (0.5 s), sum of (cloth's . reference's) over sum of "
-           "reference's squared; 0 of a cloth that stands still; none if the reference hardly "
-           "moves, at most "
-           "5 % of the cloth's size",
+           "share of the reference's motion that the cloth makes: sum of (cloth's move . "
+           "reference's move) over the sum of the reference's squared, over the free vertices' "
+           "moves from each moment of the dynamic reference to the next (0.5 s). 0 if the cloth "
+           "stands still; no value if the reference hardly moves, at most 5 % of the cloth's size",
        .window = Window::none,
        .title = "share of the way travelled",
        .role = Role::motion},
       {.name = kMotionError,
        .unit = kErrorShare,
        .help = "distance of the free vertices from the dynamic reference at its moments, RMS, over "
-               "the reference's distance from the start; 1 of a cloth that stands still",
+               "the reference's distance from the start; 1 if the cloth stands still",
        .window = Window::none,
        .title = "distance from the reference in motion, per way"},
       {.name = "motion.phase",
        .unit = kTime,
-       .help =
-           "shift of time that brings the cloth nearest to the dynamic reference at its moments; "
-           "positive: late; at most the first moment (0.5 s), of the moments that the run "
-           "outlasts by as much",
+       .help = "time shift that brings the cloth nearest to the dynamic reference at its moments; "
+               "positive if the cloth is late; at most 0.5 s (the first moment), over the moments "
+               "at least that long before the end of the run",
        .window = Window::none,
        .title = "phase behind the reference in motion"},
       {.name = "motion.horizon",
        .unit = kTime,
-       .help = "last moment of the dynamic reference that the run reached: beyond it the motion is "
-               "chaotic or was not computed",
+       .help = "last moment of the dynamic reference that the run reached; beyond the reference, "
+               "motion is chaotic or was not computed",
        .window = Window::none,
        .title = "horizon of the reference in motion"},
   };

@@ -10,18 +10,18 @@ class SelfIntersection final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "self.crossings",
        .unit = kErrorCount,
-       .help = "pairs of faces that share no vertex and cross or coincide (nearer than 1 % of the "
-               "radius: layers that lie in one plane cross nowhere), at the end",
+       .help = "pairs of faces that share no vertex and cross, or coincide (nearer than 1 % of the "
+               "radius, since layers in one plane do not cross), at the end",
        .in_series = true,
        .window = Window::end,
        .title = "crossing faces",
        .kept = true},
       {"self.crossings.max", kErrorCount, "the same, largest of ten moments of the last second"},
       {"self.crossings.peak", kErrorCount,
-       "the same, largest of those and twenty moments of the run", false, Window::run},
+       "the same, largest of these and of twenty moments of the run", false, Window::run},
       {"self.gap", kSignedLength,
        "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
-       "overlap of the particles' balls, worst of ten moments of the last second",
+       "how far the particles' balls overlap, worst of ten moments of the last second",
        true},
       {.name = "self.contour",
        .unit = kErrorLength,

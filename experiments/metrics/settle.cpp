@@ -11,9 +11,8 @@ class Settle final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "settle.time",
        .unit = kTime,
-       .help = "when the last rest begins: from a step on no free vertex is faster than 5 mm/s or "
-               "goes further than 0.5 mm from where it was at that step; the duration if one still "
-               "does at the end",
+       .help = "time after which no free vertex is faster than 5 mm/s or goes further than 0.5 mm "
+               "from where it was then; the duration if one still does at the end",
        .window = Window::run,
        .kept = true},
   };

@@ -40,13 +40,13 @@ class Slip final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
       {"slip.error", kErrorAcceleration,
-       "distance of the centre of mass's acceleration along the plane from what Coulomb's law "
-       "makes of the normal force that acted, mean over the last second"},
+       "difference between the acceleration of the centre of mass along the plane and the one that "
+       "Coulomb's law gives for the normal force that acted, mean over the last second"},
       {"slip.error.peak", kErrorAcceleration, "the same, largest over the run", false, Window::run},
       {.name = "slip.distance",
        .unit = kErrorLength,
-       .help = "how far the centre of mass is along the plane from where a block would be that "
-               "felt the same normal forces, at the end",
+       .help = "distance along the plane between the centre of mass and a block under the same "
+               "normal forces, at the end",
        .in_series = true,
        .window = Window::end,
        .title = "distance from Coulomb's law",
@@ -121,7 +121,7 @@ class Slip final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(slip, Slip, "Whether friction on a plane, or a flat body, is Coulomb's",
+TAUT_METRIC(slip, Slip, "Whether friction on a plane or a flat body obeys Coulomb's law",
             "momentum of the whole cloth against Coulomb's law, step by step");
 
 }  // namespace taut

@@ -52,11 +52,11 @@ class StepErrors final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = "step.error",
        .unit = kErrorLength,
-       .help = "distance of the free vertices from the exact step of implicit Euler from the "
-               "solver's own state before, without that step, RMS over vertices, mean over every "
-               "16th step or eight of a long run; of a substep, where the solver has them; none "
-               "where fewer than half of "
-               "these steps can be believed",
+       .help =
+           "distance between the free vertices after a step and where the exact step of implicit "
+           "Euler leads from the solver's own state before it, RMS over vertices, mean over every "
+           "16th step, or eight steps of a long run; the last substep is judged if the solver has "
+           "substeps. No value if fewer than half of these steps can be believed",
        .window = Window::run,
        .title = "distance from the exact step",
        .role = Role::step_error,
@@ -65,23 +65,21 @@ class StepErrors final : public Metric {
        "largest distance from the exact step"},
       {.name = kShareBySteps,
        .unit = kSignedShare,
-       .help =
-           "share of the way that the cloth would have gone in the time T = 1.3 sqrt(size/g), half "
-           "a second of a square metre, if no step "
-           "had missed any of the exact step at the lengths that the links have: w.(w + l) "
-           "over |w + l|^2, w its way beside that of its pins or, without any, of its centre of "
-           "mass, l the sum of (T - t) times the velocity that the step at t misses along its own "
-           "way; none if it would hardly have moved, at most 5 % of its size, or farther than "
-           "twice "
-           "a fall, or if rounding is above a tenth of the way: l, each step missing |x|/sqrt(3) "
-           "2^-24 of coordinates that are all floats, else 2^-53; where exact steps lead is known "
-           "and "
-           "way.share says it. 0 of a cloth that stands still",
+       .help = "share of the way that the cloth would have gone in the time T = 1.3 sqrt(size/g), "
+               "half a second for a square metre, if every step had been exact at the lengths that "
+               "its links have: w.(w + l)/|w + l|^2. w is the cloth's way relative to its pins or, "
+               "without pins, to its centre of mass; l is the sum over steps of (T - t) times the "
+               "velocity that the step at t misses along its own way. 0 if the cloth stands still. "
+               "No value if it would have moved by at most 5 % of its size or by more than twice a "
+               "fall; if rounding may be more than a tenth of the way (a step rounds by "
+               "|x|/sqrt(3) times 2^-24 if all coordinates are floats, else 2^-53); or if "
+               "way.share has a value, which knows where exact steps lead",
        .window = Window::none,
-       .title = "share of the way, by what its steps miss"},
+       .title = "share of the way, from what steps miss"},
       {"step.error.believed", kSignedShare,
-       "share of these steps whose distance can be believed: no sheet about to buckle", false,
-       Window::run, "steps whose distance from the exact one can be believed"},
+       "share of these steps whose distance can be believed, since the sheet is not about to "
+       "buckle",
+       false, Window::run, "steps whose distance from the exact one can be believed"},
   };
   static constexpr bool kFollowsPath = true;
 

@@ -100,9 +100,8 @@ class Stretch final : public Metric {
        .falls_with_sweeps = true},
       {.name = kRmsStretchPeak,
        .unit = kErrorShare,
-       .help =
-           "strain of the structural and shear links, RMS over links, at that moment of the run "
-           "at which it is largest",
+       .help = "strain of the structural and shear links, RMS over links, at the moment of the run "
+               "at which it is largest",
        .window = Window::run,
        .title = "largest RMS stretch of the run",
        .floor = kRounding,

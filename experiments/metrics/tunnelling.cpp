@@ -235,8 +235,8 @@ class Tunnelling final : public Metric {
       {.name = "tunnelling.count",
        .unit = kErrorCount,
        .help = "free vertices that end on the other side of a ball, box, capsule or body of "
-               "triangles: in through one side and out through the opposite one, even within one "
-               "substep; their path is straight from substep to substep",
+               "triangles: they went in through one side and out through the opposite one, even "
+               "within one substep; paths are straight from substep to substep",
        .in_series = true,
        .window = Window::end,
        .title = "vertices on the other side",

@@ -24,12 +24,13 @@ class Way final : public Metric {
   static constexpr ValueSpec kValues[] = {
       {.name = kShareOfWay,
        .unit = kSignedShare,
-       .help = "share of the way that exact steps of implicit Euler lead the cloth in the time T = "
-               "1.3 sqrt(size/g), half a second of a square metre: sum of w.e over sum of |e|^2 at "
-               "eight times, w the cloth's way from the start beside that of its pins, e that of "
-               "the exact steps, of the scene's links with at most 1e5 N/m. 0 of a cloth that "
-               "stands still; none with contact, bending, wind or pins that let go, of more than "
-               "2500 vertices, or if e is less than 1 % of the cloth's size, RMS over vertices",
+       .help =
+           "share of the way that exact steps of implicit Euler lead the cloth in the time T = 1.3 "
+           "sqrt(size/g), half a second for a square metre: sum of w.e over sum of |e|^2 at eight "
+           "times. w is the cloth's way from the start relative to its pins; e is that of exact "
+           "steps of the scene's links, with at most 1e5 N/m. 0 if the cloth stands still. No "
+           "value with contact, bending, wind or pins that let go, with more than 2500 vertices, "
+           "or if e is less than 1 % of the cloth's size, RMS over vertices",
        .window = Window::none,
        .title = "share of the way of exact steps"},
   };
@@ -90,7 +91,8 @@ class Way final : public Metric {
 
 }  // namespace
 
-TAUT_METRIC(way, Way, "How much of its way a cloth goes at first: who freezes",
+TAUT_METRIC(way, Way,
+            "How much of its way a cloth goes at first, which shows solvers that freeze it",
             "Newton's method on every step from the scene's start");
 
 }  // namespace taut

@@ -25,7 +25,7 @@ struct TimeSeries {
   std::vector<double> t;  ///< s
   std::vector<double> y;  ///< SI; NaN: no value at this moment
   std::string key = {};   ///< of the case; "": it is not stored
-  double floor = 0;       ///< of strain, by the rounding of a file of positions; 0: it has none
+  double floor = 0;  ///< strain that the rounding of a file of positions makes; 0: there is none
 };
 
 /// A study that was run, or as much of it as there is.
@@ -60,7 +60,7 @@ struct Clip {
   std::string bytes;   ///< the file
   std::string poster;  ///< picture shown before a video plays and in print; may be empty
   std::string poster_type = "image/png";  ///< or "image/jpeg"
-  std::string alt;                        ///< what is to be seen, for those who cannot see it
+  std::string alt;                        ///< description for readers who cannot see it
   /// Who is in it, from left to right.
   struct Panel {
     std::string solver, settings;
@@ -96,16 +96,17 @@ struct Differences {
   std::vector<std::pair<Record, Record>> pairs;  ///< cases that both have
   std::vector<std::pair<BenchedCase, BenchedCase>> timed;
   std::size_t only_a = 0, only_b = 0;  ///< cases that the other one lacks
-  double noise = 0;  ///< how far identical code differed from itself in either, as a share
+  double noise =
+      0;  ///< largest difference of identical code from itself in either folder, as a share
 };
 
-/// Everything that a report is made of. Empty parts become a line that says which command makes
-/// them.
+/// Everything that a report is made of. In place of an empty part the page names the command that
+/// makes it.
 struct ReportInput {
   std::string question = {};  ///< that heads the page; "": none
   std::string title;          ///< "": from the solvers' names
   std::string command;        ///< the command line that made it all
-  std::string vectors = {};   ///< what simd=auto stands for where the page is made: "avx2"
+  std::string vectors = {};   ///< the instructions that simd=auto chooses on this machine: "avx2"
   std::vector<std::string> cost_hosts;  ///< where this study's cost was measured, and what is shown
   std::vector<std::pair<std::string, std::string>> provenance;  ///< "compiler" -> "g++ 12.2.0"
   std::vector<SolverInfo> solvers;
@@ -122,7 +123,7 @@ struct ReportInput {
   std::vector<ParameterFrontier> frontiers = {};  ///< solver by solver, parameter by parameter
   std::vector<OneStep> steps = {};                ///< of `taut converge`, scene by scene
   std::vector<History> histories = {};            ///< of the studies, build by build
-  /// Inputs that could not be understood, and why: the page leaves them out and says so.
+  /// Inputs that could not be read, and why; the page names them.
   std::vector<std::pair<std::string, std::string>> left_out = {};
 };
 

@@ -198,12 +198,12 @@ class Builder {
     for (const ComparedSolver& one : compared_.all)
       if (one.name == solver)
         for (const Record* r : one.cases)
-          push_unique(compared, arithmetic_of(*r, input_.vectors).text());
+          push_unique(compared, arithmetic_of(*r, input_.vectors).brief());
     if (input_.bench)
       for (const SceneBench& scene : input_.bench->scenes)
         for (const BenchedCase& c : scene.cases)
           if (c.record.solver == solver)
-            push_unique(timed, arithmetic_of(c.record, input_.vectors).text());
+            push_unique(timed, arithmetic_of(c.record, input_.vectors).brief());
     const std::string one = join(compared, " or "), other = join(timed, " or ");
     return one == other || other.empty() ? one : one.empty() ? other : one + "; timed: " + other;
   }

@@ -11,7 +11,6 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/questions/case_list.hpp"
 #include "experiments/report/questions/compared_solvers.hpp"
-#include "experiments/require/answers.hpp"
 #include "experiments/study/main_job.hpp"
 #include "experiments/system/files.hpp"
 
@@ -108,7 +107,9 @@ void keep_current(StudyBench& bench) {
   for (SceneBench& scene : bench.scenes)
     std::erase_if(scene.cases, [&](const BenchedCase& c) {
       try {
-        return maker.make(c.record.spec).key != c.record.key;
+        const Case one = maker.make(c.record.spec);
+        if (!scene.limits) scene.limits = default_limits(*one.scene);
+        return one.key != c.record.key;
       } catch (const InputError&) {
         return true;  // the scene or the solver is no longer there
       }
@@ -340,7 +341,6 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
     std::erase_if(input.bench->scenes, [](const SceneBench& scene) { return !scene.in_turns; });
     if (input.bench->scenes.empty()) input.bench.reset();
   }
-  if (input.bench) mark_not_accepted(*input.bench);
   for (const Study& study : studies) add_study(input, study, store, timed);
   complete_quoted(input, store);
   const ComparedSolvers compared = compared_solvers_of(input);

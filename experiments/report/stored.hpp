@@ -29,7 +29,7 @@ std::vector<TimeSeries> shown_series(const Series& table, const TimeSeries& of);
 std::vector<TimeSeries> stored_series(const Records&, const std::string& value, const Store&);
 
 /// Keeps of a bench only the cases that this build would run the same way, and the scenes that have
-/// any.
+/// any, each with its default limits.
 void keep_current(StudyBench&);
 
 /// Adds the maps among these studies (two axes and a plot of kind "stability") of which the store

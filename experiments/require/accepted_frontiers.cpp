@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/model/text.hpp"
-#include "experiments/require/answers.hpp"
+#include "experiments/study/limits.hpp"
 #include "experiments/system/read_all.hpp"
 
 namespace taut {
@@ -14,9 +14,9 @@ bool is_answered(const BothFrontiers& both) {
   return both.stable.frontier.kind != Frontier::Kind::not_answered;
 }
 
-std::vector<KeptAnswer> limits_of(const std::vector<std::string>& keep, const Scene& scene) {
+std::vector<Limit> limits_of(const std::vector<std::string>& keep, const Scene& scene) {
   if (keep.empty()) return default_limits(scene);
-  std::vector<KeptAnswer> limits;
+  std::vector<Limit> limits;
   read_all(keep, [&](const std::string& text) { limits.push_back(parse_limit(text, scene)); });
   return limits;
 }
@@ -38,7 +38,7 @@ bool AcceptedFrontiers::any_answered() const {
 std::optional<AcceptedFrontiers> find_accepted_frontiers(const AcceptedFrontiersWanted& wanted,
                                                          Store& store) {
   AcceptedFrontiers found;
-  std::vector<KeptAnswer> limits;
+  std::vector<Limit> limits;
   for (const std::string& solver : wanted.solvers) {
     FrontierQuestion question = question_of(wanted, solver);
     const Case first = make_case(question.at(question.range.from));
@@ -50,8 +50,8 @@ std::optional<AcceptedFrontiers> find_accepted_frontiers(const AcceptedFrontiers
     if (both.stable.interrupted) return {};
     found.of_solvers.emplace_back(std::move(question), std::move(both));
   }
-  found.limits = join(limits, ", ", [](const KeptAnswer& limit) {
-    return limit.name + " at most " + text(limit, limit.tolerance);
+  found.limits = join(limits, ", ", [](const Limit& limit) {
+    return limit.name + " at most " + limit.text(limit.most);
   });
   return found;
 }

@@ -7,55 +7,24 @@
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/study/limits.hpp"
 #include "experiments/timing/statistics.hpp"
-#include "experiments/timing/study_bench.hpp"
 
 namespace taut {
 
 namespace {
 
-bool same(const Unit& unit, const Unit& other) {
-  return unit.si == other.si && unit.shown == other.shown;
-}
-
-/// What 100 % is of; NaN: of the full model's value.
-double whole(const KeptAnswer& answer, const Scene& scene) {
-  const Unit unit = unit_of(answer);
-  return unit.si == "m"      ? extent(scene)
-         : unit.si == "s"    ? scene.duration()
-         : unit.shown == "%" ? 1
-                             : std::nan("");
-}
+/// What 100 % is of.
 double whole(const KeptAnswer& answer, const Observation& full) {
-  const double of_scene = whole(answer, *full.one.scene);
+  const double of_scene = hundred_percent(unit_of(answer), *full.one.scene);
   return std::isnan(of_scene) ? std::abs(value_of(answer, full)) : of_scene;
 }
-
-bool is_count(const Unit& unit) { return same(unit, kCount) && !unit.logarithmic; }
 
 double default_tolerance(const KeptAnswer& answer, const Observation& full) {
   const Unit unit = unit_of(answer);
   if (is_count(unit)) return 0;
   const double share = answer.is_shape() || unit.shown == "%" ? 0.01 : unit.si == "m" ? 0.001 : 0.1;
   return share * whole(answer, full);
-}
-
-/// The number after the colon of `asked`, in SI; `hundred`: what 100 % is of.
-double tolerance_of(const std::string& asked, const Unit& known, double hundred) {
-  const std::string text = asked.substr(asked.find(':') + 1);
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
-  const bool shown = unit == known.shown && unit != "%";
-  const bool share = unit == "%" && !std::isnan(hundred);
-  if (end == text.c_str() || !std::isfinite(number) || number < 0 ||
-      !(unit.empty() || share || shown))
-    throw InputError("--keep " + asked + ": expected a number of at least 0 after ':' and then " +
-                     (known.shown.empty() || known.shown == "%"
-                          ? std::string()
-                          : "'" + std::string(known.shown) + "', ") +
-                     "'%' or nothing");
-  return share ? number / 100 * hundred : shown && !unit.empty() ? number / known.scale : number;
 }
 
 /// The scene's place of a vertex of a grid in another grid of the same sheet, bilinearly.
@@ -125,13 +94,9 @@ std::string text(const KeptAnswer& answer, double value) {
 }
 
 std::string name_of_answer(const std::string& asked) {
-  const std::string name = asked.substr(0, asked.find(':'));
   std::vector<std::string> names = value_names();
   names.emplace_back(kShapeAnswer);
-  if (std::ranges::find(names, name) == names.end())
-    throw InputError("--keep " + asked + ": unknown metric value '" + name + "'" +
-                     suggestion(name, names));
-  return name;
+  return name_of_kept(asked, names);
 }
 
 KeptAnswer parse_answer(const std::string& asked, const Observation& full) {
@@ -143,52 +108,8 @@ KeptAnswer parse_answer(const std::string& asked, const Observation& full) {
     answer.tolerance = default_tolerance(answer, full);
     return answer;
   }
-  answer.tolerance = tolerance_of(asked, unit_of(answer), whole(answer, full));
+  answer.tolerance = number_of_kept(asked, unit_of(answer), whole(answer, full));
   return answer;
-}
-
-KeptAnswer parse_limit(const std::string& asked, const Scene& scene) {
-  KeptAnswer limit{name_of_answer(asked), 0};
-  const MetricEntry* metric = find_value(limit.name).first;
-  if (!metric) throw InputError("--keep " + asked + ": is no metric value (taut list metrics)");
-  if (asked.find(':') == std::string::npos)
-    throw InputError("--keep " + asked + ": expected a limit after ':', as in " + asked + ":1%");
-  if (!metric->make(scene)) throw InputError("--keep " + asked + ": has no value on this scene");
-  limit.tolerance = tolerance_of(asked, unit_of(limit), whole(limit, scene));
-  return limit;
-}
-
-std::vector<KeptAnswer> default_limits(const Scene& scene) {
-  std::vector<KeptAnswer> all;
-  for (const MetricEntry* metric : metrics()) {
-    if (!metric->make(scene)) continue;
-    for (const ValueSpec& value : metric->values) {
-      const bool depth = value.role == Role::vertex_depth;
-      if (depth || value.role == Role::passages || (value.kept && is_count(value.unit)))
-        all.push_back({std::string(value.name), depth ? 0.001 * extent(scene) : 0});
-      if (value.name == kMotionError) all.push_back({std::string(value.name), 0.25});
-      if (value.role == Role::error) all.push_back({std::string(value.name), kMostStretch});
-    }
-  }
-  return all;
-}
-
-std::string beyond(const Record& record, const std::vector<KeptAnswer>& limits) {
-  std::string said;
-  for (const KeptAnswer& limit : limits)
-    if (const double value = std::abs(record.value(limit.name)); value > limit.tolerance)
-      said += (said.empty() ? "" : "; ") + limit.name + " " + text(limit, value) + ", more than " +
-              text(limit, limit.tolerance);
-  return said;
-}
-
-void mark_not_accepted(StudyBench& bench) {
-  CaseMaker maker;
-  for (SceneBench& scene : bench.scenes) {
-    if (scene.cases.empty()) continue;
-    const auto limits = default_limits(*maker.make(scene.cases.front().record.spec).scene);
-    for (BenchedCase& c : scene.cases) c.not_accepted = beyond(c.record, limits);
-  }
 }
 
 std::vector<std::string> default_answers(const Observation& full) {

@@ -46,28 +46,6 @@ KeptAnswer parse_answer(const std::string&, const Observation& full);
 /// The METRIC alone. Throws InputError: unknown name.
 std::string name_of_answer(const std::string& asked);
 
-/// "METRIC:LIMIT", the largest size of a value that is accepted of a scene: in SI units, in the
-/// unit shown, or in "%" of the cloth's extent and of the duration; of shares, points. Throws
-/// InputError.
-KeptAnswer parse_limit(const std::string&, const Scene&);
-/// The largest RMS stretch of a cloth that can be shown to anybody.
-inline constexpr double kMostStretch = 0.1;
-
-/// What is accepted unless something is asked for: no passage and no crossing, depths below 0.1 %
-/// of the cloth's extent, an RMS stretch up to kMostStretch, and, for a strain alone is small of a
-/// cloth that stands still, a motion within 25 % of its way from the dynamic reference; as far as
-/// the scene has them. No passages of edges and faces: past an edge of a box they happen to every
-/// solver that keeps vertices alone outside (`--keep edge.passages:0` asks for none).
-std::vector<KeptAnswer> default_limits(const Scene&);
-/// What a case does beyond these limits: "penetration.peak 3.1 mm, more than 1 mm"; "": nothing.
-std::string beyond(const Record&, const std::vector<KeptAnswer>&);
-
-struct StudyBench;
-
-/// Marks the cases of a bench that go beyond the default limits of their scenes (not_accepted):
-/// they are shown and win nothing. Throws InputError: a scene cannot be made.
-void mark_not_accepted(StudyBench&);
-
 /// What is kept unless something is asked for: shape, largest stretch, depth of vertices (and of
 /// faces, if the solver keeps them out), crossings, settling time; as far as the case has them.
 std::vector<std::string> default_answers(const Observation& full);

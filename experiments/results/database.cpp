@@ -43,7 +43,7 @@ namespace {
 Database::Database(fs::path file, Access access) : file_(std::move(file)) {
   std::error_code none;
   if (fs::exists(file_, none) && !fs::is_regular_file(file_, none))
-    throw InputError(file_.string() + ": is no regular file");  // opening a pipe would wait
+    throw InputError(file_.string() + ": is not a regular file");  // opening a pipe would wait
   errno = 0;
   try {
     db_ = std::make_unique<SQLite::Database>(fs::absolute(file_),
@@ -102,23 +102,24 @@ std::int64_t Database::number_of(const std::string& sql) {
 }
 
 namespace {
-constexpr const char* kParts =
-    "SELECT type || ' ' || name, sql FROM sqlite_master WHERE sql NOT NULL";
+constexpr const char* kParts = "SELECT type, name, sql FROM sqlite_master WHERE sql NOT NULL";
 }
 
-std::map<std::string, std::string> Database::parts() {
-  std::map<std::string, std::string> all;
+Database::Parts Database::parts() {
+  Parts all;
   Rows row = rows(kParts);
-  while (row.next()) all[row.text(0)] = row.text(1);
+  while (row.next()) all[{row.text(0), row.text(1)}] = row.text(2);
   return all;
 }
 
-std::map<std::string, std::string> parts_made_by(const std::string& statements) {
+Database::Parts parts_made_by(const std::string& statements) {
   SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   made.exec(statements);
-  std::map<std::string, std::string> all;
+  Database::Parts all;
   SQLite::Statement row(made, kParts);
-  while (row.executeStep()) all[row.getColumn(0).getString()] = row.getColumn(1).getString();
+  while (row.executeStep())
+    all[{row.getColumn(0).getString(), row.getColumn(1).getString()}] =
+        row.getColumn(2).getString();
   return all;
 }
 

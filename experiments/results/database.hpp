@@ -76,9 +76,10 @@ class Database {
   /// All of what `work` writes or, if it throws, nothing. Within another one: part of that.
   void transaction(const std::function<void()>& work);
 
-  /// The statements that made the tables, indexes, views and triggers, by kind and name: "table
-  /// cases".
-  std::map<std::string, std::string> parts();
+  /// The statements that made the tables, indexes, views and triggers, by kind and name ("table",
+  /// "cases").
+  using Parts = std::map<std::pair<std::string, std::string>, std::string>;
+  Parts parts();
 
   struct Bytes {
     const std::string& bytes;
@@ -117,7 +118,7 @@ class Database {
 };
 
 /// What Database::parts() would say of a file that these statements made.
-std::map<std::string, std::string> parts_made_by(const std::string& statements);
+Database::Parts parts_made_by(const std::string& statements);
 
 /// The file is no SQLite file, or not a whole one, or its indexes and references do not agree with
 /// its rows.

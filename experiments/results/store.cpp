@@ -53,13 +53,13 @@ Store::Commit beside(const std::optional<Record>& old, const Record& record, boo
 /// Why nothing in the file can be trusted to be what it is called; "": it can. A view of a foreign
 /// file in the place of a table may never end, a trigger does what it wants.
 std::string wrong_part(Database& database) {
-  static const std::map<std::string, std::string> kOurs = parts_made_by(tables());
-  const std::map<std::string, std::string> theirs = database.parts();
-  for (const auto& [name, sql] : kOurs)
-    if (const auto at = theirs.find(name); at == theirs.end() || at->second != sql)
-      return "its " + name + " is not that of a results file";
-  for (const auto& [name, sql] : theirs)
-    if (name.starts_with("trigger ")) return "it has a " + name;
+  static const Database::Parts kOurs = parts_made_by(tables());
+  const Database::Parts theirs = database.parts();
+  for (const auto& [part, sql] : kOurs)
+    if (const auto at = theirs.find(part); at == theirs.end() || at->second != sql)
+      return "its " + part.first + " " + part.second + " is not that of a results file";
+  for (const auto& [part, sql] : theirs)
+    if (part.first == "trigger") return "it has a trigger " + part.second;
   return {};
 }
 

@@ -115,7 +115,8 @@ Record record_of(const std::string& scene, double dt, const Table& points,
 Answer one_step(const StepQuestion& question) {
   const Scene scene = load_scene(find_scene(question.scene), question.settings);
   if (scene.self_collision)
-    throw InputError("converge: self-collision is no part of the exact step; take a scene without");
+    throw InputError(
+        "converge: self-collision is not part of the exact step; take a scene without");
   const double at = std::round(question.at / scene.dt) * scene.dt;
   const State state = state_at(scene, parse_solver(question.from), at);
   return one_step_answer({scene.name, join(question.settings, ", "), question.from, at, scene.dt},

@@ -64,7 +64,7 @@ Table cases_of(const StudyBench& bench, const BenchReport& report) {
     const auto first =
         static_cast<std::size_t>(std::ranges::find_if(scene.cases, timed) - scene.cases.begin());
     for (std::size_t i = 0; i < scene.cases.size(); ++i) {
-      const auto& [record, timing, not_accepted] = scene.cases[i];
+      const auto& [record, timing] = scene.cases[i];
       Cell id(record.id), cost, cpu, wall, bytes;
       id.key = record.key;
       if (timing.failure.empty()) {
@@ -93,7 +93,7 @@ Table samples_of(const StudyBench& bench) {
                {"cpu", "CPU time", kMilliseconds},
                {"wall", "wall time", kMilliseconds}}};
   for (const SceneBench& scene : bench.scenes)
-    for (const auto& [record, timing, not_accepted] : scene.cases)
+    for (const auto& [record, timing] : scene.cases)
       for (std::size_t k = 0; k < timing.samples.size(); ++k)
         table.rows.push_back({scene.scene, record.id, k, timing.samples[k], timing.wall[k]});
   table.detail = true;

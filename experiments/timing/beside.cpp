@@ -64,7 +64,7 @@ constexpr PublicCode kKnown[] = {
 const PublicCode& known(const std::filesystem::path& checkout) {
   for (const PublicCode& one : kKnown)
     if (std::filesystem::exists(checkout / one.mark)) return one;
-  throw InputError(checkout.string() + ": no checkout that an adapter knows: " +
+  throw InputError(checkout.string() + ": no adapter knows this checkout: " +
                    join(kKnown, ", ", [](const PublicCode& one) {
                      return std::string(one.name) + " (which has " + std::string(one.mark) + ")";
                    }));

@@ -23,6 +23,9 @@ namespace taut {
 
 namespace {
 
+/// Why a case wins nothing in a bench of which nobody said what its scene accepts.
+constexpr const char* kNobodyAsked = "nobody asked what its scene accepts";
+
 /// What the digest of a scene's bench is made of: all that the file holds of it.
 class DigestedBench {
  public:
@@ -88,7 +91,7 @@ SceneBench scene_in(const Store& store, const StudyBench& study, const Database:
 
 void insert(Database& database, const StudyBench& study, const SceneBench& scene) {
   DigestedBench digested(study, scene);
-  for (const auto& [record, timing, not_accepted] : scene.cases) digested.add(record.key, timing);
+  for (const auto& [record, timing] : scene.cases) digested.add(record.key, timing);
   database.run(
       "INSERT INTO benches (study, host, build, machine, made, scene, in_turns, control_low, "
       "control, control_high, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
@@ -96,7 +99,7 @@ void insert(Database& database, const StudyBench& study, const SceneBench& scene
       static_cast<int>(scene.in_turns), scene.control.low, scene.control.mid, scene.control.high,
       digested.digest());
   const std::int64_t bench = database.number_of("SELECT last_insert_rowid()");
-  for (const auto& [record, timing, not_accepted] : scene.cases) {
+  for (const auto& [record, timing] : scene.cases) {
     database.run(
         "INSERT INTO timings (bench_id, key, peak_bytes, failure, remark) VALUES (?, ?, ?, ?, ?)",
         bench, record.key, timing.peak_bytes, timing.failure, timing.remark);
@@ -146,15 +149,15 @@ std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
     if (failure.empty() && !c.stable()) failure = describe(c.record.status);
     const std::string off = failure.empty() && of_strain ? hardly_moves(c.record) : "";
     if (failure.empty()) failure = off;
-    const bool refused = failure.empty() && !c.not_accepted.empty();
-    if (refused) failure = c.not_accepted;
+    const bool refused = failure.empty();
+    if (refused) failure = limits ? beyond(c.record, *limits) : kNobodyAsked;
     all.push_back({.solver = c.record.solver,
                    .setting = c.record.spec.solver,
                    .cost = c.cost(),
                    .error = std::abs(c.record.value(metric)),
                    .failure = failure,
                    .hardly_moves = !off.empty(),
-                   .not_accepted = refused});
+                   .not_accepted = refused && !failure.empty()});
   }
   return all;
 }
@@ -191,11 +194,11 @@ bool SceneBench::searched_to_the_end(const std::string& solver) const {
 }
 
 SceneBench bench_scene(const std::string& scene, const std::vector<Record>& records,
-                       const TimingOptions& options) {
+                       const std::vector<Limit>& limits, const TimingOptions& options) {
   std::vector<CaseToTime> cases;
   for (const Record& record : records) cases.push_back({record.spec, steps_done(record)});
   TimingSession bench = time_cases(cases, options);
-  SceneBench result{scene, bench.control, {}};
+  SceneBench result{.scene = scene, .control = bench.control, .cases = {}, .limits = limits};
   for (std::size_t i = 0; i < records.size(); ++i)
     result.cases.push_back({records[i], std::move(bench.timings[i])});
   return result;
@@ -222,8 +225,11 @@ StudyBench bench_study(
     const std::string& name, const std::vector<Record>& records,
     const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of) {
   StudyBench result = StudyBench::here(name);
-  for (const auto& [scene, own] : by_scene(records))
-    result.scenes.push_back(bench_scene(scene, own, options_of(scene, own.size())));
+  CaseMaker maker;
+  for (const auto& [scene, own] : by_scene(records)) {
+    const auto limits = default_limits(*maker.make(own.front().spec).scene);
+    result.scenes.push_back(bench_scene(scene, own, limits, options_of(scene, own.size())));
+  }
   return result;
 }
 

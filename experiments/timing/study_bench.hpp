@@ -8,6 +8,7 @@
 
 #include "experiments/case/record.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/study/limits.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
@@ -56,7 +57,6 @@ inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  
 struct BenchedCase {
   Record record;
   Timing timing;
-  std::string not_accepted = {};  ///< what it does that its scene does not accept: "" nothing
 
   /// CPU seconds per simulated second, with its 95 % interval over the samples.
   Interval cost() const;
@@ -76,8 +76,11 @@ struct SceneBench {
   Interval control;   ///< the first case against itself: how far apart the same code strays here
   std::vector<BenchedCase> cases;
   bool in_turns = true;  ///< false: one after the other, without control; no two can be compared
+  /// What its scene accepts; nothing: nobody asked the scene, so that no case can win anything.
+  std::optional<std::vector<Limit>> limits = {};
 
-  /// The cases by their error in the metric's value; same order.
+  /// The cases by their error in the metric's value; same order. Those beyond the limits are
+  /// refused (Candidate::not_accepted).
   std::vector<Candidate> candidates(const std::string& metric) const;
   /// Cost of case i over case j per simulated second, from their interleaved samples; nothing if
   /// either failed, or if they were not timed in turns.
@@ -103,15 +106,16 @@ struct StudyBench {
   std::vector<Record> records() const;
 };
 
-/// Times these cases scene by scene. Other settings of a scene make another scene, except the time
-/// step: costs are those of a simulated second. Calls `options_of` before each scene.
+/// Times these cases scene by scene, within the default limits of each. Other settings of a scene
+/// make another scene, except the time step: costs are those of a simulated second. Calls
+/// `options_of` before each scene. Throws InputError: a scene cannot be made.
 StudyBench bench_study(
     const std::string& name, const std::vector<Record>&,
     const std::function<TimingOptions(const std::string& scene, std::size_t cases)>& options_of);
 
-/// Times cases of one scene whose physics are known. mark_not_accepted() then says which of them do
-/// what their scene does not accept.
-SceneBench bench_scene(const std::string& scene, const std::vector<Record>&, const TimingOptions&);
+/// Times cases of one scene whose physics are known. The limits: what is accepted of them.
+SceneBench bench_scene(const std::string& scene, const std::vector<Record>&,
+                       const std::vector<Limit>& limits, const TimingOptions&);
 
 /// Names of the solvers in a bench, in order of appearance.
 std::vector<std::string> solvers_of(const SceneBench&);

@@ -43,12 +43,20 @@ double turning_angle(const std::string& solver, double amplitude, double dt) {
 
 double solver_quarter(const std::string& solver, double amplitude, double dt) {
   Simulation sim(pendulum(amplitude, dt), solver);
-  return quarter_period([&] { return sim.step(), sim.x(1); }, dt);
+  const auto next = [&] {
+    sim.step();
+    return sim.x(1);
+  };
+  return quarter_period(next, dt);
 }
 
 double shake_quarter(double amplitude, double dt) {
   reference::Shake shake(pendulum(amplitude, dt), dt);
-  return quarter_period([&] { return shake.step(), shake.state().x[1]; }, dt);
+  const auto next = [&] {
+    shake.step();
+    return shake.state().x[1];
+  };
+  return quarter_period(next, dt);
 }
 
 struct Convergence {

@@ -30,6 +30,7 @@ CaseRun run(const std::string& solver, const std::string& dt) {
 Json model() {
   StudyResult study{"sweeps", "?", {}, 0, {{"hang", -1}}};
   StudyBench bench{"sweeps", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
+  bench.scenes[0].limits.emplace();
   ReportInput input;
   for (const std::string sweeps : {"1", "4", "16", "64"})
     for (const std::string dt : {"1/240", "1/64", "1/32"})

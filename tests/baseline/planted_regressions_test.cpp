@@ -64,7 +64,10 @@ TEST(PlantedRegressions, EachOfTenIsCaughtAndANoOpIsNot) {
       {"the scene changed", each([](BaselineRow& r) { r.scene += "'"; }), true},
       {"a case is renamed", [](Baseline& rows) { rows[2].id += " (new)"; }, true},
       {"a setting changed",
-       [](Baseline& rows) { rows[2].id += ",omega=1.1", rows[2].spec.solver += ",omega=1.1"; },
+       [](Baseline& rows) {
+         rows[2].id += ",omega=1.1";
+         rows[2].spec.solver += ",omega=1.1";
+       },
        true},
   };
   ASSERT_EQ(plants.size(), 10u);

@@ -35,7 +35,7 @@ class Beside(CommandLine):
 
     def test_what_is_no_checkout_is_said(self):
         said = self.beside(self.folder, expect=2).err
-        self.assertIn("no checkout that an adapter knows", said)
+        self.assertIn("no adapter knows this checkout", said)
         self.assertIn("TinyVBD (which has Strand.h)", said)
         self.assertIn("takes no study or scene", self.taut("bench", "hang", "--beside", STUBS / "ShapeOp", expect=2).err)
 

@@ -227,7 +227,8 @@ def films(checks):
     page.settle()
     checks.true(page.run(f"{video}.paused"), "another one stops it")
     drag(0.3 * film["duration"])
-    click(), click()  # the focus is where a click puts it
+    click()
+    click()  # the focus is where a click puts it
     page.settle()
     start, frame = page.run(now), film["frame"]
     page.press("ArrowRight", "ArrowRight", "ArrowRight")

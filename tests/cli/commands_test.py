@@ -756,7 +756,7 @@ searched = "mine-searched.toml"
 
     def test_what_new_writes_runs(self):
         self.taut("new", "study", "mine")
-        self.assertIn("is there already", self.taut("new", "study", "mine", expect=2).err)
+        self.assertIn("already exists", self.taut("new", "study", "mine", expect=2).err)
         self.assertIn("ok 6", self.taut("run", "./mine.toml").err)
         self.assertIn("mine", self.taut("run", "./mine.toml", "--table", "stretch.rms").err)
         self.taut("new", "scene", "cloth")

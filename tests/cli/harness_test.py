@@ -230,8 +230,8 @@ class Input(CommandLine):
         os.mkfifo(self.folder / "pipe.toml")
         os.mkfifo(self.folder / "pipe.obj")
         self.refuse("./pipe.toml", "pipe.toml: no such scene file")
-        for mesh, says in [("/dev/zero", "/dev/zero: is no regular file"), ("/proc/self/mem", "/proc/self/mem: cannot be read"),
-                           ("pipe.obj", "pipe.obj: is no regular file"), ("none.obj", "none.obj: cannot be read: No such file")]:
+        for mesh, says in [("/dev/zero", "/dev/zero: is not a regular file"), ("/proc/self/mem", "/proc/self/mem: cannot be read"),
+                           ("pipe.obj", "pipe.obj: is not a regular file"), ("none.obj", "none.obj: cannot be read: No such file")]:
             (self.folder / "mesh.toml").write_text(f'[cloth]\nmesh = "{mesh}"\nmass = 1\n')
             self.refuse("./mesh.toml", "./mesh.toml:2:8: 'mesh' in [cloth] cannot be used: ")
             self.refuse("./mesh.toml", says)
@@ -244,7 +244,7 @@ class Input(CommandLine):
         for words in (["external", "score", "./small.toml", "pipe.pc2"], ["external", "score", "./small.toml", "pipe.npy"],
                       ["run", "./pipe.toml"], ["case", "./small.toml", "jakobsen", "--set", 'cloth.mesh="pipe.npy"'],
                       ["run", study], ["export", study], ["report", study], ["cluster", "merge", "results/runs"]):
-            self.assertRegex(self.taut(*words, expect=2).err, "is no regular file|no such study file", words)
+            self.assertRegex(self.taut(*words, expect=2).err, "is not a regular file|no such study file", words)
 
     def test_documents_without_bottom(self):
         for name, text in [("keys", ".".join(["a"] * 60_000) + " = 1\n"), ("tables", "[" + ".".join(["a"] * 60_000) + "]\n"),

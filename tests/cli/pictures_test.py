@@ -39,6 +39,13 @@ class Pictures(CommandLine):
         for words in [["--video", "--sheet"], ["-o", "a.jpg"], ["--video", "-o", "a.png"], ["-o", "."]]:
             self.taut("render", *SIDE_BY_SIDE, *words, expect=2)
         self.assertIn("--at 100 is after the end at ", self.render(*SIDE_BY_SIDE, "--at", "0.1", "--at", "100", expect=2).err)
+        for first, second in [(["--set", "cloth.mass=1"], ["--set", "cloth.mass = 2"]),
+                              (["--dt", "1/60"], ["--set", 'time.dt="1/120"']),
+                              (["--duration", "1"], ["--set", "time.duration=2"])]:
+            key = second[1].split("=")[0].strip()
+            said = self.render(*SIDE_BY_SIDE, *first, *second, expect=2).err
+            self.assertIn(f"both set {key}: leave out one of them", said)
+            self.assertNotIn("running", said, "the error comes first")
         self.assertEqual(self.files(), [])
 
     def test_a_video_says_what_a_frame_takes(self):

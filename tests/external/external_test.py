@@ -179,7 +179,7 @@ class Everywhere(Programs):
                 self.assertIn(f"{name}.toml: '{name}' is no name of a solver", said)
             file.unlink()
         os.mkfifo(self.solvers / "pipe.toml")
-        self.assertIn("pipe.toml: is no regular file", self.taut("list", "solvers", expect=2).err)
+        self.assertIn("pipe.toml: is not a regular file", self.taut("list", "solvers", expect=2).err)
         (self.solvers / "pipe.toml").unlink()
 
     def test_any_kind_of_parameter_may_be_called_substeps_or_iterations(self):

@@ -98,7 +98,7 @@ TEST_F(Histories, ACostStepsBeyondIntervalAndControl) {
   timed("one", "two", 2.1, 0.01);
   timed("two", "three", 1.2, 0.4);
   timed("two", "gone", 3, 0.01);
-  timed("one", "three", 2.1, 0.01);  // of a bisection: two is in between
+  timed("one", "three", 2.1, 0.01);  // a bisection skipped two, which lies in between
   const History found = history();
   ASSERT_EQ(found.steps.size(), 1U);
   EXPECT_EQ(found.builds[found.steps[0].now].id, "two");

@@ -373,7 +373,7 @@ TEST_F(Positions, TextFilesAreReadWholeUpToTheirLimitOrRefused) {
   says(path, 69999, "is larger than 0 MiB");
   says(file("large", std::string((3 << 20) + 1, 'x')), 3 << 20, "is larger than 3 MiB");
   says(folder_, 100, "is a folder, not a file");
-  says("/dev/null", 100, "is no regular file");
+  says("/dev/null", 100, "is not a regular file");
   says(folder_ / "absent", 100, "cannot be read: No such file or directory");
   if (fs::exists("/proc/self/mem")) {  // nothing lies at address 0
     says("/proc/self/mem", 100, "cannot be read: Input/output error");

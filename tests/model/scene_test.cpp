@@ -207,7 +207,10 @@ TEST(Content, DiffersWithEveryMemberButTheLabels) {
       [](Scene& s) { std::swap(s.mesh.triangles[0][1], s.mesh.triangles[0][2]); },
       [](Scene& s) { s.mesh.mass[5] *= 2; },
       [](Scene& s) { s.mesh.grid.reset(); },
-      [](Scene& s) { s.mesh.grid->nu = 2, s.mesh.grid->nv = 3; },
+      [](Scene& s) {
+        s.mesh.grid->nu = 2;
+        s.mesh.grid->nv = 3;
+      },
       [](Scene& s) { s.start.x[0].z() += 1; },
       [](Scene& s) { s.start.v[5].x() += 1; },
       [](Scene& s) { s.pins[1] = 1; },

@@ -323,7 +323,7 @@ TEST(Chosen, AHistoryHasALineForEachCase) {
 TEST(Chosen, ACostIsThatOfTheCheapestWithinTheError) {
   ReportInput input = chosen();
   std::vector<Record>& records = input.studies[0].records;
-  SceneBench scene{"hang", {1 / 1.02, 1, 1.02}, {}};
+  SceneBench scene{"hang", {1 / 1.02, 1, 1.02}, {}, true, std::vector<Limit>{}};
   for (const auto& [at, error, cost] : {std::tuple{0u, 0.08, 1.0},
                                         {2u, 0.008, 4.0},
                                         {4u, 0.007, 6.0},

@@ -9,8 +9,8 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/input.hpp"
 
-// Result sets that never were: failures that left values behind, ties, noise, one solver alone,
-// metrics missing, colliders that are gone before the last second, unequal substeps.
+// Invented results: failures that left values behind, ties, noise, a single solver, missing
+// metrics, colliders that are gone before the last second, unequal substeps.
 namespace taut::report::made_up {
 
 class Maker {
@@ -42,7 +42,7 @@ class Maker {
     return input;
   }
 
-  /// How it ended and what it measured. Failures keep values that would flatter them.
+  /// Sets the status and the values. Failures keep values that would flatter them.
   void fill(Record& r) {
     end(r);
     const bool failure = !completed(r.status);
@@ -145,6 +145,7 @@ class Maker {
     for (const std::string& scene : scenes) {
       const double noise = chance(0.3) ? 0.4 : 0.02;
       SceneBench one{scene, {1 / (1 + noise * uniform()), 1, 1 + noise * uniform()}, {}};
+      one.limits.emplace();
       for (const std::string& solver : names) {
         if (chance(0.1)) continue;
         const double speed = between(0.5, 4);

@@ -386,6 +386,7 @@ TEST_F(Plots, SeriesAreDrawnAsTheyAre) {
   EXPECT_NEAR(std::stod(drawn[2]), 1e-5, 1e-18) << "the rounding of its file";
 
   StudyBench bench{"trade", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
+  bench.scenes[0].limits.emplace();
   for (const auto& [solver, seconds] : {std::pair{"jakobsen", 0.002}, {"bullet", 0.005}}) {
     BenchedCase c{made(solver, solver, 4, 0.005), {}};
     c.timing.samples.assign(4, seconds);

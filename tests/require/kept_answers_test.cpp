@@ -80,33 +80,6 @@ TEST(KeptAnswers, HaveToleranceByTheirKind) {
   EXPECT_EQ(wrong("shpae"), "--keep shpae: unknown metric value 'shpae'; did you mean 'shape'?");
 }
 
-// A strain is small of a cloth that stands still, too: so a motion is kept where one is known.
-TEST(KeptAnswers, LimitsByDefaultAreOfContactAndOfMotion) {
-  const auto limits = [](const char* scene) {
-    std::map<std::string, double> all;
-    for (const KeptAnswer& limit : default_limits(*make_case({scene, {}, "jakobsen"}).scene))
-      all[limit.name] = limit.tolerance;
-    return all;
-  };
-  EXPECT_EQ(limits("swing"),
-            (std::map<std::string, double>{{"motion.error", 0.25}, {"stretch.rms", 0.1}}));
-  EXPECT_EQ(limits("ball").count("motion.error"), 0u);
-  EXPECT_GT(limits("ball").at("penetration.peak"), 0);
-  EXPECT_EQ(limits("ball").at("tunnelling.events"), 0);
-}
-
-TEST(KeptAnswers, WhatASceneDoesNotAcceptIsMarkedInABench) {
-  BenchedCase through{still("ball", {}).record, {}};
-  through.record.spec = {"ball", {}, "jakobsen"};
-  BenchedCase kept = through;
-  through.record.values["tunnelling.events"] = 2;
-  kept.record.values["tunnelling.events"] = 0;
-  StudyBench bench{.study = "trade", .machine = "", .scenes = {{"ball", {}, {through, kept}}}};
-  mark_not_accepted(bench);
-  EXPECT_EQ(bench.scenes[0].cases[0].not_accepted, "tunnelling.events 2, more than 0");
-  EXPECT_EQ(bench.scenes[0].cases[1].not_accepted, "");
-}
-
 TEST(KeptAnswers, ByDefaultAreThoseThatTheCaseHas) {
   Observation full = still("ball", {});
   full.record.values = {{"stretch.max", 0.02},

@@ -380,7 +380,10 @@ TEST_F(StoreTest, ManyCommitsTogetherAreAllOrNone) {
                  InputError);
     EXPECT_TRUE(store_.keys().empty()) << again << ": one that failed is over";
   }
-  store_.together([&] { store_.commit(a), store_.commit(b); });
+  store_.together([&] {
+    store_.commit(a);
+    store_.commit(b);
+  });
   EXPECT_EQ(store_.keys(), (std::vector{a.key, b.key}));
   EXPECT_EQ(to_json(*store_.find(b.key)), to_json(b));
 }

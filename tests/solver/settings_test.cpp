@@ -42,7 +42,7 @@ TEST(SolverSettings, OfJakobsenAreTheseLines) {
   const Lines all{{"time step", "0.0078125 s x 2"},
                   {"integration", "Verlet"},
                   {"projection", "sqrt-free, weighted by inverse mass"},
-                  {"link order", "coloured"},
+                  {"link order", "coloured (links of a colour share no vertex)"},
                   {"gravity", "the scene's"},
                   {"precision", "float"},
                   {"damping", "velocity x " + shortest(std::exp(-0.5 / 128)) + " per substep"},

@@ -61,7 +61,10 @@ std::string changed(const std::string& solver, const Change& c) {
 Scene changed(Scene s, const Change& c) {
   const double speed = factor(c, "m/s"), stiffness = factor(c, "N/m");
   const auto vector = [&](Vec3& v, double by) { v = Vec3(c.turn * (by * v)); };
-  const auto place = [&](Vec3& x) { vector(x, c.metre), x += c.away; };
+  const auto place = [&](Vec3& x) {
+    vector(x, c.metre);
+    x += c.away;
+  };
   const auto motion = [&](Motion& m) {
     vector(m.velocity, speed);
     m.velocity += c.speed;

@@ -66,7 +66,10 @@ TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeIt) {
     for (const int threads : {2, 5}) {
       ThreadPool pool(threads);
       std::vector<std::uint32_t> value(blocks, 1), want(blocks, 1);
-      const auto mix = [](std::uint32_t& a, std::uint32_t b) { dawdle(), a = 31 * a + b; };
+      const auto mix = [](std::uint32_t& a, std::uint32_t b) {
+        dawdle();
+        a = 31 * a + b;
+      };
       for (std::size_t stage = 0; stage < kStages; ++stage) {
         const auto n = static_cast<std::uint32_t>(stage);
         const auto one = [&mix, n](std::vector<std::uint32_t>& v, std::size_t block) {

@@ -25,7 +25,7 @@ struct Triangles {
   }
 };
 
-/// Two triangles on each side.
+/// Two triangles for each side of the box.
 inline Triangles box_of_triangles(const Vec3& half) {
   Triangles box;
   for (const int v : {0, 1, 2, 3, 4, 5, 6, 7})
@@ -73,7 +73,7 @@ inline Triangles ball_of_triangles(double radius, int times) {
   return ball;
 }
 
-/// Round the y axis. `bumps` [m] moves its vertices along the radius of the tube.
+/// A torus about the y axis. `bumps` [m] moves its vertices along the radius of the tube.
 inline Triangles torus(double radius, double tube, int around, int across, double bumps = 0) {
   Triangles body;
   for (int i = 0; i < around; ++i)

@@ -1,4 +1,4 @@
-// Files that are whole or not there, names that nobody else has, and where shipped data are.
+// Files are whole or absent, temporary names are unique, and shipped data are found.
 #include "experiments/system/files.hpp"
 
 #include <fcntl.h>

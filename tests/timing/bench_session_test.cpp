@@ -47,6 +47,7 @@ TEST(BenchedCases, CountIfTheyWereTimedAndCompleted) {
 
 TEST(BenchedCases, AreCandidatesByErrorOrFailure) {
   SceneBench bench{"sheet", {1, 1, 1}, {timed("a", {1, 3}), timed("b", {1, 1}), timed("c", {})}};
+  bench.limits.emplace();
   bench.cases[0].record.values["e"] = -0.25;
   bench.cases[1].record.status = {Status::Kind::exploded, "energy", 12, 3};
   bench.cases[2].timing.failure = "no clock";
@@ -58,6 +59,21 @@ TEST(BenchedCases, AreCandidatesByErrorOrFailure) {
   EXPECT_TRUE(std::isnan(all[1].error));
   EXPECT_EQ(all[2].failure, "no clock");
   EXPECT_EQ(solvers_of(bench), (std::vector<std::string>{"a", "b", "c"}));
+}
+
+TEST(BenchedCases, BeyondTheLimitsOfTheirSceneWinNothing) {
+  SceneBench bench{"ball", {1, 1, 1}, {timed("a", {1, 1}), timed("b", {1, 1})}};
+  bench.cases[0].record.values["tunnelling.events"] = 2;
+  bench.cases[1].record.values["tunnelling.events"] = 0;
+  bench.limits = {{"tunnelling.events", 0}};
+  const auto judged = bench.candidates("e");
+  EXPECT_TRUE(judged[0].not_accepted);
+  EXPECT_EQ(judged[0].failure, "tunnelling.events 2, more than 0");
+  EXPECT_FALSE(judged[1].not_accepted);
+  EXPECT_EQ(judged[1].failure, "");
+  bench.limits.reset();
+  for (const Candidate& one : bench.candidates("e"))
+    EXPECT_EQ(one.failure, "nobody asked what its scene accepts");
 }
 
 TEST(BenchedCases, AreComparedWithinASessionAlone) {

@@ -16,7 +16,10 @@ class Counting final : public Solver {
   Counting(std::unique_ptr<Solver> solver, int& steps)
       : solver_(std::move(solver)), steps_(steps) {}
   void load(const State& state) override { solver_->load(state); }
-  void step(double t, double dt) override { ++steps_, solver_->step(t, dt); }
+  void step(double t, double dt) override {
+    ++steps_;
+    solver_->step(t, dt);
+  }
   void store(State& state) const override { solver_->store(state); }
   std::vector<PassCost> step_cost() const override { return solver_->step_cost(); }
 

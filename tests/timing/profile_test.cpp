@@ -20,7 +20,9 @@ BenchedCase timed(const std::string& solver, double cost, double error,
   return c;
 }
 
-SceneBench scene(std::vector<BenchedCase> cases) { return {"scene", {1, 1, 1}, std::move(cases)}; }
+SceneBench scene(std::vector<BenchedCase> cases) {
+  return {"scene", {1, 1, 1}, std::move(cases), true, std::vector<Limit>{{"tunnelling.events", 0}}};
+}
 
 TEST(Profiles, AreSharesOfProblemsWithinAFactorOfTheBest) {
   const double levels[] = {0.1, 0.01};
@@ -41,7 +43,7 @@ TEST(Profiles, AreSharesOfProblemsWithinAFactorOfTheBest) {
 TEST(Profiles, WhatASceneDoesNotAcceptWinsNothing) {
   const double levels[] = {0.1};
   BenchedCase through = timed("a", 1, 0.01);
-  through.not_accepted = "tunnelling.events 2, more than 0";
+  through.record.values["tunnelling.events"] = 2;
   const auto found = performance_profiles(
       {scene({through, timed("a", 8, 0.01), timed("b", 9, 0.01), timed("b", 4, 0.01)})}, "e",
       levels);

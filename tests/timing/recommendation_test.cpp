@@ -21,7 +21,7 @@ BenchedCase finalist(const std::string& solver, double cost, double error) {
 }
 
 SceneBench bench(std::vector<BenchedCase> cases, double noise = 0.01) {
-  return {"scene", {1 - noise, 1, 1 + noise}, std::move(cases)};
+  return {"scene", {1 - noise, 1, 1 + noise}, std::move(cases), true, std::vector<Limit>{}};
 }
 
 /// The rows of the table that people see.

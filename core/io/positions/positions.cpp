@@ -215,7 +215,8 @@ class Pc2Writer final : public PositionWriter {
   void append(double, const std::vector<Vec3>& x) override {
     std::string header(kPc2Magic), frame;
     const auto put = [&](auto value) { append_number(header, value, endian::little); };
-    put(std::int32_t{1}), put(static_cast<std::int32_t>(x.size()));  // version, vertices
+    put(std::int32_t{1});  // version
+    put(static_cast<std::int32_t>(x.size()));
     put(0.f);
     put(1.f);
     put(++frames_);  // first frame, rate, frames

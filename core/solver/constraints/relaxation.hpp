@@ -42,8 +42,8 @@ inline constexpr std::pair<std::string_view, Order> kOrders[] = {{"mesh", Order:
                                                                  {"jolt", Order::jolt}};
 inline constexpr ParamSpec kLayoutParam =
     ParamSpec::choice("layout", "auto", "auto|interleaved|batches",
-                      "of the links under order=coloured: interleaved (AoSoA) for a regular sheet, "
-                      "or colour batches for any mesh");
+                      "memory layout of the links with order=coloured: interleaved (AoSoA) for a "
+                      "regular sheet, or colour batches for any mesh");
 inline constexpr std::pair<std::string_view, LinkLayout> kLayouts[] = {
     {"auto", LinkLayout::automatic},
     {"interleaved", LinkLayout::interleaved},

@@ -12,8 +12,9 @@
 
 namespace taut {
 
-/// The cloth against itself: every particle is a ball, no two may overlap. Pairs come from a
-/// uniform grid and are projected in every sweep. Three things that OctreePass (octree.hpp) lacks:
+/// The cloth against itself: every particle is a ball, and no two may overlap. A uniform grid
+/// finds the pairs, which are projected in every sweep. OctreePass (octree.hpp) lacks three
+/// things:
 ///
 /// - pairs are found wherever they are, not only within one cell;
 /// - two particles keep at most their distance at rest, so that a radius larger than the spacing
@@ -22,15 +23,16 @@ namespace taut {
 /// - two particles that have changed sides since the step began go back, so that a layer that
 ///   arrives fast, by up to four diameters a step, does not pass between.
 ///
-/// In a cloth that moves fast, the pairs of a step are those within 3/2 diameters and their own way
-/// in it: half a diameter is left for what the sweeps do to them. In a slow one they are those
-/// within a diameter and a skin, and serve until a particle has moved a quarter of the skin against
-/// the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at all. Those within 3/2
-/// diameters at rest are known once and for all and never searched for: they are nearly all that
-/// there is in a sheet that does not touch itself.
+/// In a cloth that moves fast, the pairs of a step are those within 3/2 diameters plus their own
+/// way in the step, which leaves half a diameter for the sweeps. In a slow cloth they are those
+/// within a diameter and a skin, and are used until a particle has moved a quarter of the skin
+/// against
+/// the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at all. Pairs within
+/// 3/2 diameters at rest are known once and for all and never searched for: a sheet that does not
+/// touch itself has few others.
 ///
-/// With a solver that has a target y, a pair keeps what parts it, a push c [m] from a to b, from
-/// sweep to sweep and from substep to substep. It is as long as needed, were a and b free:
+/// With a solver that has a target y, a pair keeps the push c [m] from a to b that parts it, from
+/// sweep to sweep and from substep to substep. Its length is the one needed if a and b were free:
 ///
 ///     c' = n max(0, least - n . (d - c)),    d = x_b - x_a,  n = d/|d|
 ///
@@ -39,7 +41,7 @@ namespace taut {
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
-  /// solver: null, or that of the links, whose target moves as well.
+  /// solver: the pass of the links if it has a target, which moves with the particles; else null.
   SelfCollidePass(const Scene& scene, Simd simd, Pass<Real>* solver, ThreadPool& pool)
       : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
         kernels_(kernels<Real>(simd)),
@@ -87,9 +89,9 @@ class SelfCollidePass final : public Pass<Real> {
   struct Pair {
     std::uint32_t a, b;  ///< slots
     Real least;          ///< m
-    Real share;          ///< of a in their parting: w_a / (w_a + w_b)
+    Real share;          ///< of the correction that moves a: w_a / (w_a + w_b)
   };
-  /// A pair that may come from one side to the other in this step.
+  /// A pair that may swap sides in this step.
   struct Crossing : Pair {
     Vec4T<Real> before;  ///< from a to b when the step began [m]
   };
@@ -178,7 +180,7 @@ class SelfCollidePass final : public Pass<Real> {
     store_vec4<packed>(r, stride_, load_vec4<packed>(r, stride_) + by);
   }
 
-  /// Whether the way from `before` to `now` comes nearer to the origin than `least`.
+  /// Whether the path from `before` to `now` comes nearer to the origin than `least`.
   static bool passed(const Vec4T<Real>& before, const Vec4T<Real>& now, Real least) {
     const Vec4T<Real> way = now - before;
     const Real share = std::clamp(-dot(before, way) / squared_norm(way), Real(0), Real(1));

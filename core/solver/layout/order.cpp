@@ -84,7 +84,10 @@ std::vector<Phase> phases(std::vector<Tile> tiles, std::size_t vertices) {
         return false;
       };
       if (touches([&](int p) { return p == now; })) continue;
-      touches([&](int& p) { return p = now, false; });
+      touches([&](int& p) {
+        p = now;
+        return false;
+      });
       phase.push_back(std::move(tiles[t]));
       taken[t] = true;
       --left;

@@ -17,10 +17,10 @@ namespace taut::solver::implicit {
 /// Contact, wind and damping would act at another time than the links.
 class Integrator {
  public:
-  static constexpr ParamSpec kParam = ParamSpec::choice(
-      "integrator", "euler", "euler|bdf2|midpoint",
-      "implicit Euler, BDF2 or the implicit midpoint rule, which lose less; the last "
-      "two in free motion alone: without wind, damping and contact");
+  static constexpr ParamSpec kParam =
+      ParamSpec::choice("integrator", "euler", "euler|bdf2|midpoint",
+                        "implicit Euler, or BDF2 or the implicit midpoint rule, which lose less "
+                        "energy but run only without wind, damping and contact");
 
   Integrator(const Params&, const Vec3& gravity);  ///< m/s^2
   void forget() { before_.clear(); }               ///< no step was before the next

@@ -17,12 +17,12 @@ namespace taut::solver::implicit {
 /// links, and f, of the linear system's solution, is not.
 class KeptTensions {
  public:
-  static constexpr ParamSpec kParam = ParamSpec::choice(
-      "multipliers", "off", "off|keep",
-      "keep each link's tension from step to step, and with it what links resist "
-      "across: three iterations are then enough, from the prediction on and "
-      "without a line search, which ends steps that go astray; steps in which the cloth touches "
-      "a collider are Newton's as they are");
+  static constexpr ParamSpec kParam =
+      ParamSpec::choice("multipliers", "off", "off|keep",
+                        "keep each link's tension, and with it the link's resistance to sideways "
+                        "motion, from step to step: three iterations from the prediction are then "
+                        "enough, without a line search. A step that goes astray, and one in which "
+                        "the cloth touches a collider, is computed by Newton's method as usual");
 
   /// Of springs that outlive them.
   KeptTensions(const Params& params, const std::vector<Spring>& springs)

@@ -32,12 +32,12 @@ Target target_of(const Options& options) {
 }
 
 /// What --keep says, or what the scene accepts; the error says how much of itself is accepted.
-std::vector<KeptAnswer> limits_of(const Options& options, const Target& target) {
+std::vector<Limit> limits_of(const Options& options, const Target& target) {
   const Scene scene = load_scene(find_scene(options.scene), options.settings);
-  std::vector<KeptAnswer> limits;
+  std::vector<Limit> limits;
   if (options.keep.empty()) limits = default_limits(scene);
   if (target.error)
-    std::erase_if(limits, [&](const KeptAnswer& limit) { return limit.name == options.metric; });
+    std::erase_if(limits, [&](const Limit& limit) { return limit.name == options.metric; });
   read_all(options.keep, [&](const std::string& asked) {
     if (asked != "nothing") limits.push_back(parse_limit(asked, scene));
   });
@@ -55,7 +55,7 @@ int search(const Options& options) {
 
 int run(Options options) {
   if (options.scene.empty() == options.study.empty())
-    throw InputError("advise what? A scene, or --study");
+    throw InputError("advise needs a scene or --study");
   if (!options.study.empty()) return search(options);
   find_scene(options.scene);
   const Target target = target_of(options);

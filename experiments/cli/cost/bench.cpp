@@ -1,6 +1,5 @@
 #include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
-#include "experiments/require/answers.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/timing/bench_answer.hpp"
@@ -24,10 +23,8 @@ struct Options {
 
 StudyBench bench(const StudyCases& study, const std::string& name, const Options& options,
                  Store& store) {
-  StudyBench timed =
-      bench_study(name, run_and_collect(study, store, "taut bench"), tell_timing(options.timing));
-  mark_not_accepted(timed);
-  return timed;
+  return bench_study(name, run_and_collect(study, store, "taut bench"),
+                     tell_timing(options.timing));
 }
 
 StudyBench timed(const std::string& name, const Options& options, Store& store) {
@@ -86,7 +83,7 @@ int run(const Options& options) {
     }
     progress() << kept << '\n';
   }
-  if (options.what.empty()) throw InputError("bench what? A study, or a scene with --solver");
+  if (options.what.empty()) throw InputError("bench needs a study, or a scene with --solver");
   Store store(options.out);
   bool slower = false;
   for (const std::string& name : options.what)

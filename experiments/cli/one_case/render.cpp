@@ -28,7 +28,8 @@ std::pair<int, int> parse_size(const std::string& text) {
   char end = 0;
   if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &end) != 2 || width < 320 ||
       height < 240 || width > 7680 || height > 4320 || width % 2 != 0 || height % 2 != 0)
-    throw InputError("--size '" + text + "': WIDTHxHEIGHT, even, 320x240 to 7680x4320");
+    throw InputError("--size '" + text +
+                     "': expected WIDTHxHEIGHT, both even, 320x240 to 7680x4320");
   return {width, height};
 }
 
@@ -76,7 +77,7 @@ std::vector<double> times_of(const Options& options, std::vector<std::string>& o
   for (const std::string& at : options.at) times.push_back(parse_number(at));
   if (times.empty()) return times;
   std::ranges::sort(times);
-  if (times.front() < 0) throw InputError("--at: times are not negative");
+  if (times.front() < 0) throw InputError("--at: expected times of at least 0");
   const Scene scene = load_scene(find_scene(options.what.scene), overrides);
   if (times.back() > scene.duration() + scene.dt)
     throw InputError("--at " + number_text(times.back()) + " is after the end at " +
@@ -92,7 +93,8 @@ int run(Options options) {
   check_output(options);
   RunRequest& what = options.what;
   if (what.solvers.empty() || what.solvers.size() > std::size_t{kMostPanels})
-    throw InputError("one to nine --solver, for example --solver jakobsen --solver bullet");
+    throw InputError(
+        "expected one to nine --solver, for example --solver jakobsen --solver bullet");
   check_solvers(what.solvers);
   what.overrides = options.changes.settings();
   Drawing drawing = drawing_of(options);

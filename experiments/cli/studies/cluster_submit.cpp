@@ -54,8 +54,8 @@ int run(const Options& o) {
   const fs::path folder =
       o.folder.empty() ? results_folder() / "cluster" / study.name : fs::path(o.folder);
   if (fs::exists(folder))
-    throw InputError(folder.string() + " is already there: `taut cluster status " +
-                     folder.string() + "`, or name another with --folder");
+    throw InputError(folder.string() + " already exists: `taut cluster status " + folder.string() +
+                     "`, or name another with --folder");
   const Plan made = write_folder(folder, {.study = study,
                                           .limits = o.limits,
                                           .shards = o.shards,

@@ -22,7 +22,7 @@ std::filesystem::path file_of(const std::string& name) {
   };
   if (stem.empty() || stem.front() == '.' || !std::ranges::all_of(stem, plain))
     throw InputError("'" + name + "': a name has letters, digits, '-', '_' and '.' only");
-  if (std::filesystem::exists(file)) throw InputError(file.string() + " is there already");
+  if (std::filesystem::exists(file)) throw InputError(file.string() + " already exists");
   return file;
 }
 

@@ -32,7 +32,7 @@ void write_regular(const std::filesystem::path& file, const std::string& bytes) 
   std::error_code none;
   if (!std::filesystem::is_regular_file(file, none)) std::filesystem::remove(file, none);
   if (std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
-    throw InputError(file.string() + ": is no regular file");
+    throw InputError(file.string() + ": is not a regular file");
   write_file(file, bytes);
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
@@ -164,7 +165,9 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};
     if (along == "setting") {
       point.along = point.x;
-      point.name = labels.of(record);
+      const std::vector<std::string> parts = labels.parts(record);
+      point.name = join(parts, ", ");
+      point.parts = parts.size();
     }
     curves[where->second].points.push_back(std::move(point));
   }
@@ -265,7 +268,7 @@ Chart make_chart(std::string kind, const Records& records, const std::string& x,
     for (const Point& p : curve.points) {
       substeps.insert(work_of(*p.record).substeps);
       sweeps.insert(work_of(*p.record).sweeps);
-      if (p.name.find(',') != std::string::npos) chart.join = false;
+      if (p.parts > 1) chart.join = false;
     }
     if (along == "setting" && substeps.size() > 1 && sweeps.size() > 1) chart.join = false;
   }

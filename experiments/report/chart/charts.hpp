@@ -16,8 +16,9 @@ struct Point {
   double x = 0, y = 0;
   double along = 0;  ///< the setting that orders the curve
   const Record* record = nullptr;
-  std::string name =
-      {};  ///< under "setting": the accuracy parameters, "16 × 2" for substeps x sweeps
+  /// Under "setting": the accuracy parameters, "16 × 2" for substeps x sweeps.
+  std::string name = {};
+  std::size_t parts = 0;  ///< of the name: the work, and each other parameter
 
   /// It has a value that may be compared; everything else is drawn as a glyph.
   bool measured() const;

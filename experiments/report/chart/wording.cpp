@@ -226,12 +226,21 @@ std::vector<std::string> labelled_parameters(const std::string& solver) {
   return all;
 }
 
+std::string link_order_parameter(const std::string& solver) {
+  const SolverEntry* entry = find_entry(solver);
+  return entry ? std::string(entry->accuracy.link_order) : "";
+}
+
+std::vector<std::string> stiffness_parameters(const std::string& solver) {
+  const SolverEntry* entry = find_entry(solver);
+  return parts_of(entry ? entry->accuracy.stiffness.parameters : "");
+}
+
 std::vector<std::string> searched_parameters(const std::string& solver) {
   std::vector<std::string> all = labelled_parameters(solver);
   const SolverEntry* entry = find_entry(solver);
   if (!entry) return all;
-  for (const std::string& name : parts_of(entry->accuracy.stiffness.parameters))
-    push_unique(all, name);
+  for (const std::string& name : stiffness_parameters(solver)) push_unique(all, name);
   for (const auto& [name, values] : entry->accuracy.alternatives)
     push_unique(all, std::string(name));
   return all;
@@ -334,12 +343,17 @@ SettingLabels::SettingLabels(const Records& all) {
       if (const auto value = setting_of(*r, name)) seen_[{r->solver, name}].insert(*value);
 }
 
-std::string SettingLabels::of(const Record& record, std::string_view beside) const {
-  std::string text;
+std::string SettingLabels::of(const Record& record, const std::vector<std::string>& beside) const {
+  return join(parts(record, beside), ", ");
+}
+
+std::vector<std::string> SettingLabels::parts(const Record& record,
+                                              const std::vector<std::string>& beside) const {
+  std::vector<std::string> all;
   bool any = false, work = false;
   for (const std::string& name : names_in_labels(record.solver)) {
     const auto value = setting_of(record, name);
-    if (!value || name == beside) continue;
+    if (!value || std::ranges::count(beside, name) > 0) continue;
     const auto seen = seen_.find({record.solver, name});
     const bool varies = seen != seen_.end() && seen->second.size() > seen->second.count(*value);
     if (!varies) continue;
@@ -349,13 +363,13 @@ std::string SettingLabels::of(const Record& record, std::string_view beside) con
     else if (*value == default_of(record.solver, name))
       continue;
     else if (*value == "on")
-      text += ", " + name;
+      all.push_back(name);
     else
-      text +=
-          ", " + (std::isfinite(number(*value)) || *value == "off" ? name + "=" + *value : *value);
+      all.push_back(std::isfinite(number(*value)) || *value == "off" ? name + "=" + *value
+                                                                     : *value);
   }
-  if (work || (any && text.empty())) return work_of(record).text() + text;
-  return text.empty() ? "" : text.substr(2);
+  if (work || (any && all.empty())) all.insert(all.begin(), work_of(record).text());
+  return all;
 }
 
 }  // namespace taut::report

@@ -84,6 +84,10 @@ std::map<std::string, std::string> other_settings(const Record&);
 /// The parameters that labels of this solver name beside substeps and sweeps, by its entry; empty
 /// for a solver that this program lacks.
 std::vector<std::string> labelled_parameters(const std::string& solver);
+/// The parameter that its link order comes of; "": there is none.
+std::string link_order_parameter(const std::string& solver);
+/// The parameters that are the stiffness of its springs.
+std::vector<std::string> stiffness_parameters(const std::string& solver);
 /// The parameters that a search may vary, the labelled ones included: cases that differ in these
 /// alone are settings of one solver.
 std::vector<std::string> searched_parameters(const std::string& solver);
@@ -112,8 +116,10 @@ class SettingLabels {
  public:
   explicit SettingLabels(const Records&);
   /// "2 × 8, mesh": what varies, first the work, then what differs from the solver's defaults; if
-  /// nothing does, the work. "" if nothing varies. Without the parameter that is shown beside it.
-  std::string of(const Record&, std::string_view beside = "") const;
+  /// nothing does, the work. "" if nothing varies. Without the parameters that are shown beside it.
+  std::string of(const Record&, const std::vector<std::string>& beside = {}) const;
+  /// The same, a part for each: the work, then a part for every other parameter.
+  std::vector<std::string> parts(const Record&, const std::vector<std::string>& beside = {}) const;
 
  private:
   std::map<std::pair<std::string, std::string>, std::set<std::string>> seen_;  ///< solver, name

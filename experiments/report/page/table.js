@@ -62,14 +62,11 @@ function spreadOf([low, mid, high], column) {
 const lacks = ({state, value}) =>
     Boolean(state) && state !== 'value' && !Number.isFinite(middle(value));
 
-/**
- * What a cell shows. `most`: the number of a full bar; without it there is no bar. `brief`: only
- * what stands before the colon of a note.
- */
-function cellContent(cell, column, most, brief) {
+/** What a cell shows. `most`: the number of a full bar; without it there is no bar. */
+function cellContent(cell, column, most) {
   const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value),
         note = cell.note ?? '';
-  const noted = cell.state === 'hardly_moves' ? 'hardly moves' : brief ? note.split(':')[0] : note;
+  const noted = cell.state === 'hardly_moves' ? 'hardly moves' : note;
   const whole = [note, explain(note)].filter(Boolean).join('\n');
   const share = 100 * Math.max(0, value) / most;
   const spread = Array.isArray(cell.value) && spreadOf(cell.value, column);
@@ -86,7 +83,7 @@ function cellContent(cell, column, most, brief) {
 }
 
 /** A row: its head, then a cell for each column; those of solvers vanish with them. */
-function tableRow(table, cells, props, head, bars, brief) {
+function tableRow(table, cells, props, head, bars) {
   const most = bars ? d3.max(cells, (cell) => middle(cell.value)) : 0;
   return el(
       'tr', props, el('th', {scope: 'row'}, head ?? cellContent(cells[0], table.columns[0])),
@@ -94,14 +91,14 @@ function tableRow(table, cells, props, head, bars, brief) {
         const column = table.columns[i + 1], solver = solvers.get(column.name);
         return el(
             'td', {'data-s': solver?.order, className: solver && lacks(cell) ? 'none' : ''},
-            cellContent(cell, column, most, brief));
+            cellContent(cell, column, most));
       }));
 }
 /** The heads of the columns, with units unless `first` stands in the place of the first. */
 function tableHeads(table, first) {
   const solverHead = ({name, heading}) => {
     const {arithmetic} = solverOf(name);
-    const how = arithmetic && explained(plainArithmetic(arithmetic), {className: 'arithmetic'});
+    const how = arithmetic && explained(arithmetic, {className: 'arithmetic'});
     return [named(name, heading), how];
   };
   const head = (column, i) => {
@@ -187,7 +184,7 @@ function questionRows(table) {
           el('small', {title: cells[0].note ?? ''}, cells[0].value,
              cells[0].scene && cells[0].note && ` ${cells[0].note}`)
         ],
-        true, true);
+        true);
     body.prepend(head);
   });
   return body;

@@ -36,7 +36,6 @@ const frameCost = {
   unit: 'ms',
   scale: 1e3 * (model.winners?.frame ?? 1)
 };
-const plainArithmetic = (text) => text.replace(/ \(\w+\)/g, '');
 
 /**
  * A setting that reaches the error: who, over whom by how much, at what cost, at which setting, in

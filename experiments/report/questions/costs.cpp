@@ -26,14 +26,15 @@ SceneBench with_shared_parameters(SceneBench bench) {
   return bench;
 }
 
-std::string setting_text(const SceneBench& bench, std::size_t at, std::string_view beside) {
+std::string setting_text(const SceneBench& bench, std::size_t at, std::vector<std::string> beside) {
   Records records;
   for (const BenchedCase& c : bench.cases) records.push_back(&c.record);
   const Record& one = bench.cases[at].record;
+  const std::string order = link_order(one);
+  if (!order.empty()) beside.push_back(link_order_parameter(one.solver));
   std::string label = SettingLabels(records).of(one, beside);
   if (label.empty()) label = work_of(one).text();
-  const std::string order = link_order(one);
-  return label + (order.empty() || label.find(order) != std::string::npos ? "" : ", " + order);
+  return label + (order.empty() ? "" : ", " + order);
 }
 
 std::optional<Cell> only_uncounted(const std::vector<Candidate>& candidates,
@@ -224,6 +225,10 @@ class Costs {
                     bounds.emplace_back(bounds_of(scene, own)), scene.bench.control);
       table.rows.push_back(std::move(row));
     }
+    const auto any = [](const std::vector<bool>& of_row) {
+      return std::ranges::count(of_row, true) > 0;
+    };
+    if (std::ranges::any_of(bounds, any)) table.caption += std::string("; ") + kUpperBoundMeans;
     table.rows.push_back(mean_price(table, ratios, bounds));
     answer.add(std::move(table));
   }

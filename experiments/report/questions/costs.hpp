@@ -21,8 +21,8 @@ inline constexpr const char* kWithoutExtras =
 /// Without the cases that use a parameter which another solver of the scene lacks.
 SceneBench with_shared_parameters(SceneBench);
 /// "4 × 2, coloured": of cases of one scene those parameters that take several values, without the
-/// one that is shown beside it.
-std::string setting_text(const SceneBench&, std::size_t at, std::string_view beside = "");
+/// those that are shown beside it.
+std::string setting_text(const SceneBench&, std::size_t at, std::vector<std::string> beside = {});
 
 /// If the settings of a solver that reach the error do not count: a cell of these words, with the
 /// state and the reason, such as "hardly moves: 5 % of the way".
@@ -33,7 +33,10 @@ std::optional<Cell> only_uncounted(const std::vector<Candidate>&, const std::str
 /// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is then
 /// an upper bound.
 bool is_upper_bound(const SceneBench&, const std::vector<Candidate>&, std::size_t at);
-/// "; at most: its cheapest setting tried": behind the setting of an upper bound.
-inline constexpr const char* kUpperBound = "; at most: its cheapest setting tried";
+/// Behind the setting of an upper bound.
+inline constexpr const char* kUpperBound = "; at most";
+/// What it means.
+inline constexpr const char* kUpperBoundMeans =
+    "at most: no cheaper setting of that solver was tried";
 
 }  // namespace taut::report

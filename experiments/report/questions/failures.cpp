@@ -2,6 +2,7 @@
 #include <map>
 
 #include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/questions/questions.hpp"
 #include "experiments/report/questions/rows.hpp"
 

@@ -40,12 +40,17 @@ class SceneWinners {
   }
 
  private:
+  /// Its arithmetic and the stiffness of its links stand beside its setting.
   Contender contender(std::size_t at) {
     const Record& r = bench_.cases[at].record;
+    const std::string links = links_text(r);
+    std::vector<std::string> beside{"precision"};
+    if (!links.empty())
+      for (const std::string& name : stiffness_parameters(r.solver)) beside.push_back(name);
     return {r.solver,
-            setting_text(bench_, at, "precision"),
+            setting_text(bench_, at, beside),
             arithmetic_of(r, input_.vectors),
-            links_text(r),
+            links,
             candidates_[at].cost,
             candidates_[at].error,
             r.value(std::string(kRmsStretchPeak)),
@@ -249,7 +254,7 @@ std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<cons
     const Arithmetic own = arithmetic_of(*r, vectors);
     arithmetics[own.brief()] = own.meaning();
     if (const ResolvedSetting* order = find_setting(r->resolved_settings, kLinkOrder))
-      orders[order->compared()] = order->text.substr(0, order->text.find(';'));
+      orders[order->compared()] = order->text;
     for (const std::string& name : labelled_parameters(r->solver))
       if (const auto at = r->params.find(name); at != r->params.end())
         seen[{r->solver, name}].insert(at->second);
@@ -269,11 +274,7 @@ std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<cons
                        "all links at once, of 8 iterations");
   terms.insert(terms.end(), arithmetics.begin(), arithmetics.end());
   for (const auto& [order, text] : orders)
-    if (!order.empty())
-      terms.emplace_back(order, order == text
-                                    ? "order in which links are visited: those of a colour "
-                                      "share no vertex"
-                                    : "order in which links are visited: " + text);
+    if (!order.empty()) terms.emplace_back(order, "order in which links are visited: " + text);
   terms.insert(terms.end(), parameters.begin(), parameters.end());
   return terms;
 }

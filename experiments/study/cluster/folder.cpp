@@ -163,7 +163,8 @@ Answer status_of(const fs::path& folder) {
   std::map<int, std::map<std::string, std::string>> planned;  // ids by shard and key
   if (Store::is_at(folder) && fs::is_directory(folder / "shards"))
     for (const PlannedKey& one : Store(folder).planned()) planned[one.shard][one.key] = one.id;
-  if (planned.empty()) throw InputError(folder.string() + ": no folder of `taut cluster submit`");
+  if (planned.empty())
+    throw InputError(folder.string() + ": not a folder of `taut cluster submit`");
   Table shards{"shards", "", {{"shard"}, {"state"}, {"cases"}, {"done"}, {"host"}, {"started"}}},
       failed{"failed", "failed", {{"shard"}, {"case"}, {"status"}}};
   std::size_t cases = 0, done = 0;

@@ -158,7 +158,8 @@ std::vector<ParameterFrontier> frontiers_of(const Answer& answer) {
                           .law = text("law"),
                           .beyond = {text("beyond_scene"), {}, text("beyond_solver")}};
     if (std::isnan(one.from) || std::isnan(one.to))
-      throw InputError("this is no answer of taut frontier --all: no range of " + one.parameter);
+      throw InputError("this is not an answer of taut frontier --all: no range of " +
+                       one.parameter);
     for (const auto& own : beyond.rows)
       if (beyond.at(own, "solver").text() == one.solver &&
           beyond.at(own, "parameter").text() == one.parameter)

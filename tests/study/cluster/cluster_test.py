@@ -158,7 +158,7 @@ class Submit(Cluster):
             self.assertIn(said, process.err)
             self.assertFalse((self.folder / "c").exists(), options)
         self.submit("--shards", 2, study=study)
-        self.assertIn("already there", self.submit(study=study, expect=2).err)
+        self.assertIn("already exists", self.submit(study=study, expect=2).err)
         (self.folder / "up.toml").write_text('summary = "A"\n[cloth]\nmesh = "../x.obj"\narea_density = 0.1\n[time]\ndt = "1/64"\nduration = 1\n')
         (self.folder.parent / "x.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         self.addCleanup((self.folder.parent / "x.obj").unlink)

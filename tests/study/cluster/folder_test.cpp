@@ -136,7 +136,7 @@ TEST_F(Folder, ItsStatusIsThatOfEveryShard) {
   write_file(folder / "job.sh", "#!/bin/bash\n#SBATCH\n");
   EXPECT_TRUE(status_of(folder).fact("start").text().ends_with("sbatch --array=2,3 job.sh"));
   EXPECT_EQ(refused([&] { status_of(root_.path()); }),
-            root_.path().string() + ": no folder of `taut cluster submit`");
+            root_.path().string() + ": not a folder of `taut cluster submit`");
 }
 
 TEST_F(Folder, AMergeTakesResultsBeforeFailures) {

@@ -67,6 +67,8 @@ TEST(Hosts, TheModelHasTheCostOfOneHostAndNamesTheOthers) {
   EXPECT_EQ(both.costs(), (std::vector{1e-3, 2e-3})) << "of this host, whatever others measured";
   const ReportInput input = stored_results({both.study}, both.store);
   EXPECT_EQ(input.bench->machine, StudyBench::here("").machine);
+  ASSERT_EQ(input.bench->scenes.size(), 1u);
+  EXPECT_TRUE(input.bench->scenes[0].limits) << "without them no case can win anything";
   ASSERT_EQ(input.cost_hosts.size(), 3u);
   EXPECT_NE(input.cost_hosts[0].find("; shown"), std::string::npos);
   for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {

@@ -24,7 +24,8 @@ function start(Jolt) {
   settings.mObjectLayerPairFilter = layers;
   settings.mBroadPhaseLayerInterface = broad;
   settings.mObjectVsBroadPhaseLayerFilter = new Jolt.ObjectVsBroadPhaseLayerFilterTable(broad, 1, layers, 1);
-  const engine = new Jolt.JoltInterface(settings), system = engine.GetPhysicsSystem(), bodies = system.GetBodyInterface();
+  const system = new Jolt.JoltInterface(settings).GetPhysicsSystem();
+  const bodies = system.GetBodyInterface();
 
   const vector = ([x, y, z]) => new Jolt.Vec3(x, y, z);
 
@@ -45,26 +46,37 @@ function start(Jolt) {
   function still({type, normal, offset, center, radius, half_extents: half, rotation, vertices, triangles, friction}) {
     let shape, at, turned = Jolt.Quat.prototype.sIdentity();
     if (type === 'ball') {
-      shape = new Jolt.SphereShape(radius), at = center;
+      shape = new Jolt.SphereShape(radius);
+      at = center;
     } else if (type === 'box' || type === 'mesh') {
-      shape = type === 'box' ? new Jolt.BoxShape(vector(half), 0, null) : surface(vertices, triangles), at = center;
+      shape = type === 'box' ? new Jolt.BoxShape(vector(half), 0, null) : surface(vertices, triangles);
+      at = center;
       turned = new Jolt.Quat(rotation[1], rotation[2], rotation[3], rotation[0]);
     } else {  // its upper side is the plane
       const kDeep = 50;
-      shape = new Jolt.BoxShape(new Jolt.Vec3(kDeep, kDeep, kDeep), 0, null), at = normal.map((n) => n * (offset - kDeep));
+      shape = new Jolt.BoxShape(new Jolt.Vec3(kDeep, kDeep, kDeep), 0, null);
+      at = normal.map((n) => n * (offset - kDeep));
       turned = Jolt.Quat.prototype.sFromTo(new Jolt.Vec3(0, 1, 0), vector(normal));
     }
     const settings = new Jolt.BodyCreationSettings(shape, new Jolt.RVec3(...at), turned, Jolt.EMotionType_Static, 0);
-    settings.mFriction = friction, settings.mRestitution = 0;
+    settings.mFriction = friction;
+    settings.mRestitution = 0;
     return bodies.CreateBody(settings).GetID();
   }
 
   class Cloth {
     static cannot(scene) {
       const mapped = (c) => !c.motion && !c.frames && ['plane', 'ball', 'box', 'mesh'].includes(c.type);
-      const effects = {'colliders that move or deform, capsules': !scene.colliders.every(mapped),
-        'several frictions': new Set(scene.colliders.map((c) => c.friction)).size > 1, wind: scene.wind, 'self-collision': scene.self_collision,
-        'moving pins': scene.pin_motions.length > 0, damping: scene.damping > 0, 'elastic links': scene.stiffness, bending: scene.bending};
+      const effects = {
+        'colliders that move or deform, capsules': !scene.colliders.every(mapped),
+        'several frictions': new Set(scene.colliders.map((c) => c.friction)).size > 1,
+        wind: scene.wind,
+        'self-collision': scene.self_collision,
+        'moving pins': scene.pin_motions.length > 0,
+        damping: scene.damping > 0,
+        'elastic links': scene.stiffness,
+        bending: scene.bending,
+      };
       const present = Object.keys(effects).filter((name) => effects[name]);
       return present.length > 0 ? [`${present.join(', ')}: not mapped to Jolt`] : [];
     }
@@ -82,20 +94,33 @@ function start(Jolt) {
         shared.mEdgeConstraints.push_back(edge);
         Jolt.destroy(edge);
       }
-      if (scene.colliders.length > 0) shared.mVertexRadius = scene.thickness;  // until 0.36; since 0.37 it is the creation's
+      const touches = scene.colliders.length > 0;
+      if (touches) shared.mVertexRadius = scene.thickness;  // until 0.36; since 0.37 it is the creation's
       shared.Optimize();
-      const creation = new Jolt.SoftBodyCreationSettings(shared, new Jolt.RVec3(0, 0, 0), Jolt.Quat.prototype.sIdentity(), 0);
-      Object.assign(creation, {mNumIterations: params.substeps, mUpdatePosition: false, mLinearDamping: 0, mVertexRadius: 0,
-        mAllowSleeping: false, mMaxLinearVelocity: 1e6});
-      if (scene.colliders.length > 0) creation.mVertexRadius = scene.thickness, creation.mFriction = scene.colliders[0].friction;
-      for (const id of live.splice(0)) bodies.RemoveBody(id), bodies.DestroyBody(id);
+      const origin = new Jolt.RVec3(0, 0, 0), upright = Jolt.Quat.prototype.sIdentity();
+      const creation = new Jolt.SoftBodyCreationSettings(shared, origin, upright, 0);
+      Object.assign(creation, {
+        mNumIterations: params.substeps,
+        mUpdatePosition: false,
+        mLinearDamping: 0,
+        mVertexRadius: touches ? scene.thickness : 0,
+        mAllowSleeping: false,
+        mMaxLinearVelocity: 1e6,
+      });
+      if (touches) creation.mFriction = scene.colliders[0].friction;
+      for (const id of live.splice(0)) {
+        bodies.RemoveBody(id);
+        bodies.DestroyBody(id);
+      }
       this.body = bodies.CreateSoftBody(creation);
       live.push(this.body.GetID());
       for (const collider of scene.colliders) live.push(still(collider));
       for (const id of live) bodies.AddBody(id, Jolt.EActivation_Activate);
       system.SetGravity(new Jolt.Vec3(...scene.gravity));
       this.motion = Jolt.castObject(this.body.GetMotionProperties(), Jolt.SoftBodyMotionProperties);
-      this.n = scene.vertices, this.links = scene.links.length, this.substeps = params.substeps;
+      this.n = scene.vertices;
+      this.links = scene.links.length;
+      this.substeps = params.substeps;
     }
 
     /// Where vertex 0 lies; memory may have grown since the last call.
@@ -122,12 +147,30 @@ function start(Jolt) {
     }
 
     plan() { return [{pass: 'edges', items: this.links, repeats: this.substeps, projections: true}]; }
-    settings() { return {precision: 'float32', order: 'as Optimize() sorts the edges', projection: 'exact, compliance 0'}; }
+    settings() {
+      return {
+        precision: 'float32',
+        order: 'as Optimize() sorts the edges',
+        projection: 'exact, compliance 0',
+      };
+    }
   }
+  const {version} = JSON.parse(fs.readFileSync(path.join(kPackage, 'package.json')));
   Cloth.about = {
-    protocol: 'taut-solver/3', name: 'jolt', version: `jolt-physics ${JSON.parse(fs.readFileSync(path.join(kPackage, 'package.json'))).version}`,
-    summary: "Jolt Physics' soft body: XPBD edges without compliance", source: 'J. Rouwe, Jolt Physics; npm jolt-physics',
-    params: {substeps: {type: 'integer', min: 1, max: 10000, default: 5, doc: "Jolt's mNumIterations: substeps of one sweep each"}},
+    protocol: 'taut-solver/3',
+    name: 'jolt',
+    version: `jolt-physics ${version}`,
+    summary: "Jolt Physics' soft body: XPBD edges without compliance",
+    source: 'J. Rouwe, Jolt Physics; npm jolt-physics',
+    params: {
+      substeps: {
+        type: 'integer',
+        min: 1,
+        max: 10000,
+        default: 5,
+        doc: "Jolt's mNumIterations: substeps of one sweep each",
+      },
+    },
   };
   const live = [];  // ids of bodies
   serve(Cloth);
@@ -135,4 +178,7 @@ function start(Jolt) {
 
 import(pathToFileURL(path.join(kPackage, 'dist', 'jolt-physics.wasm-compat.js')).href)
   .then((module) => module.default()).then(start)
-  .catch((error) => { console.error(`${error.stack}`); process.exit(1); });
+  .catch((error) => {
+    console.error(`${error.stack}`);
+    process.exit(1);
+  });

@@ -51,7 +51,11 @@ function serve(Solver) {
       const cannot = Solver.cannot ? Solver.cannot(scene, params) : [];
       if (cannot.length > 0) return {cannot};
       live = new Solver(scene, params);
-      return {vertices: scene.vertices, ...(live.plan && {plan: live.plan()}), ...(live.settings && {settings: live.settings()})};
+      return {
+        vertices: scene.vertices,
+        ...(live.plan && {plan: live.plan()}),
+        ...(live.settings && {settings: live.settings()}),
+      };
     },
     load: (request) => {
       const all = doubles(take(request.bytes)), half = all.length / 2;
