@@ -21,9 +21,14 @@ struct TouchingPiece {
   TouchingVertex at;
   ContactForce force;
 
-  Vec3 place(const std::vector<Vec3>& x) const {
-    return weights[0] * x[to_index(corners[0])] + weights[1] * x[to_index(corners[1])] +
-           weights[2] * x[to_index(corners[2])];
+  /// x: places by vertex [m].
+  template <class Places>
+  Vec3 place(const Places& x) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c)
+      sum += weights[static_cast<Eigen::Index>(c)] *
+             Vec3(x[to_index(corners[c])].template cast<double>());
+    return sum;
   }
 };
 
@@ -45,6 +50,9 @@ struct TouchingPieces {
     return k;
   }
 };
+
+/// Of the stiffness of all else at a vertex, that of its contact.
+inline constexpr double kOfElsewhere = 3;
 
 /// Of a change of the forces of contact, the gradient that is left before they take it.
 inline constexpr double kSettled = 0.3;
@@ -126,8 +134,9 @@ class AugmentedContacts {
   bool update(const Particles<Real>& p, const std::vector<Vec3>& x, double h, double left,
               double rounding);
 
- private:
   static Part part(const TouchingVertex& at, const ContactForce& held, double k, const Vec3& x);
+
+ private:
   std::unique_ptr<Contacts> contacts_;    ///< null: none
   std::vector<TouchingVertex> touching_;  ///< of this iteration
   std::vector<ContactForce> acting_;      ///< [touching]
