@@ -14,8 +14,14 @@ namespace {
 
 using Rows = CoupledContacts::Rows;
 
-/// Each makes the dense matrix of contacts larger by a row.
-constexpr std::size_t kMostPieces = 160;
+constexpr double kSame = 1e-9;  ///< of a normal and of an offset [m]
+
+/// By vertex.
+struct Before {
+  static int vertex(const TouchingVertex& at) { return static_cast<int>(at.vertex); }
+  bool operator()(const TouchingVertex& at, int v) const { return vertex(at) < v; }
+  bool operator()(int v, const TouchingVertex& at) const { return v < vertex(at); }
+};
 
 /// The unknowns, which are the vertices that move; -1: a pin.
 std::vector<int> unknown_of_vertices(std::span<const double> w) {
@@ -58,7 +64,8 @@ struct GlobalSystem<Real>::Contact {
   std::unique_ptr<Contacts> contacts;
   std::vector<TouchingVertex> touching;  ///< of this iteration: vertices, then pieces
   std::size_t vertices = 0;              ///< of them
-  TouchingPieces pieces{.solved = true, .most = kMostPieces};
+  TouchingPieces pieces{.solved = true};
+  std::vector<TouchingPiece*> solved;  ///< of them, which vertices alone do not keep out
   using Corners = std::vector<std::pair<Eigen::Index, double>>;
   std::vector<Corners> places;  ///< [touching] among `rows`, with their weights
   std::vector<Eigen::Index> place_of_row;
@@ -78,17 +85,41 @@ struct GlobalSystem<Real>::Contact {
   void find(const P& p) {
     contacts->find(p, touching);
     vertices = touching.size();
-    for (const TouchingPiece& piece : pieces.all) touching.push_back(piece.at);
+    solved.clear();
+    for (TouchingPiece& piece : pieces.all) {
+      if (is_kept_out_by_corners(piece)) {
+        piece.force = {};
+        continue;
+      }
+      solved.push_back(&piece);
+      touching.push_back(piece.at);
+    }
+  }
+  /// All corners are at the same flat place of the collider as the piece.
+  bool is_kept_out_by_corners(const TouchingPiece& piece) const {
+    const auto at_plane = [&](int corner) {
+      const auto [first, last] = std::equal_range(
+          touching.begin(), touching.begin() + static_cast<std::ptrdiff_t>(vertices), corner,
+          Before{});
+      return std::any_of(first, last, [&](const TouchingVertex& at) {
+        return (at.normal - piece.at.normal).squaredNorm() < kSame * kSame &&
+               std::abs(at.offset - piece.at.offset) < kSame;
+      });
+    };
+    for (std::size_t k = 0; k < 3; ++k)
+      if (piece.weights[static_cast<Eigen::Index>(k)] != 0 && !at_plane(piece.corners[k]))
+        return false;
+    return true;
   }
   ContactForce& force(std::size_t c) {
-    if (c >= vertices) return pieces.all[c - vertices].force;
+    if (c >= vertices) return solved[c - vertices]->force;
     return contacts->force(touching[c].vertex, touching[c].collider);
   }
   /// f(vertex, weight): its place is their sum.
   template <class F>
   void each_corner(std::size_t c, const F& f) const {
     if (c < vertices) return f(touching[c].vertex, 1.0);
-    const TouchingPiece& piece = pieces.all[c - vertices];
+    const TouchingPiece& piece = *solved[c - vertices];
     for (std::size_t k = 0; k < 3; ++k)
       if (const double weight = piece.weights[static_cast<Eigen::Index>(k)]; weight != 0)
         f(to_index(piece.corners[k]), weight);
@@ -337,7 +368,7 @@ void GlobalSystem<Real>::resolve_contacts(Particles<Real>& p) {
     for (const auto& [place, weight] : contact.places[c])
       change.row(place) += weight * contact.touching[c].total(contact.force(c)).transpose();
   x += compliance * change;
-  change += contact.pieces.all.empty() ? contact.resolve_vertices(x) : contact.resolve_all(x);
+  change += contact.solved.empty() ? contact.resolve_vertices(x) : contact.resolve_all(x);
   if (change.isZero(0)) return;
   rows_.fill(0);
   for (std::size_t c = 0; c < rows.size(); ++c)

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -37,8 +36,6 @@ struct TouchingPieces {
   std::vector<TouchingPiece> all;
   /// The solver leaves the forces as contact asks for; else they follow after each iteration.
   bool solved = false;
-  /// So many it takes at most; more are held one by one, as for any other solver with a target.
-  std::size_t most = std::numeric_limits<std::size_t>::max();
   std::span<const double> stiffness;  ///< [n] N/m, of contact at each vertex
   double left = 0, rounding = 0;      ///< N, as in AugmentedContacts::update()
   bool changed = false;               ///< a force has, by more than that

@@ -96,23 +96,20 @@ class FaceContactPass final : public Pass<Real> {
       to_body_ = body->rotation.conjugate().toRotationMatrix();
     }
     if (continuous_ && !deforming_) remember_sides(p);
-    for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep
-      if (held_[f].holds())
+    for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
+      if (held_[f].holds()) {
         held_[f].force = turned(held_[f], at_start(p, faces_[f], held_[f].weights));
-    solved_ = pieces_ != nullptr;
-    if (solved_) find_touching(p, p.previous);
-    if (solved_ && pieces_->all.size() > pieces_->most) leave_solver();
-    if (solver_ && !solved_) add_forces(p.x, p, dt);  // p.x is y
+        if (!pieces_) add_force(p.x, p, faces_[f], held_[f].weights, dt * dt * held_[f].force);
+      }
+    if (pieces_) find_touching(p, p.previous);
   }
 
   void apply(Particles<Real>& p, double, double dt) override {
-    if (solved_) {
-      keep_forces();
+    if (pieces_) {
+      if (pieces_->solved) keep_forces();
       const std::span<TouchingPiece> touching = find_touching(p, p.x);
-      if (!pieces_->solved) return follow(p, touching, dt);
-      if (pieces_->all.size() <= pieces_->most) return;
-      leave_solver();
-      add_forces(*solver_->target(), p, dt);
+      if (!pieces_->solved) follow(p, touching, dt);
+      return;
     }
     for (std::size_t f = 0; f < faces_.size(); ++f)
       for (int round = 0; round < kRounds && !keep_out(p, f, dt); ++round) {
@@ -196,12 +193,6 @@ class FaceContactPass final : public Pass<Real> {
       if (piece.found_by == this)
         held_[piece.number] = {piece.at.total(piece.force), piece.weights};
   }
-  /// For the rest of the substep it does not see them.
-  void leave_solver() {
-    std::erase_if(pieces_->all, [&](const TouchingPiece& piece) { return piece.found_by == this; });
-    solved_ = false;
-  }
-
   /// The forces of what touches after an iteration, as those of vertices (AugmentedContacts).
   void follow(const Particles<Real>& p, std::span<TouchingPiece> touching, double h) {
     std::vector<ContactForce> acting;
@@ -410,11 +401,6 @@ class FaceContactPass final : public Pass<Real> {
     return {dot(motion_.turn[0], f), dot(motion_.turn[1], f), dot(motion_.turn[2], f)};
   }
 
-  /// Moves x by all that hold a piece.
-  void add_forces(Points<Real>& x, const Particles<Real>& p, double h) const {
-    for (std::size_t f = 0; f < held_.size(); ++f)
-      if (held_[f].holds()) add_force(x, p, faces_[f], held_[f].weights, h * h * held_[f].force);
-  }
   /// push: force times h^2 [N s^2].
   static void add_force(Points<Real>& x, const Particles<Real>& p, const Triangle& face,
                         const Vec3& weights, const Vec3& push) {
@@ -477,7 +463,6 @@ class FaceContactPass final : public Pass<Real> {
   std::vector<Triangle> faces_;
   Pass<Real>* solver_;         ///< null: none with a target
   TouchingPieces* pieces_;     ///< of a solver that takes them into its solve; else null
-  bool solved_ = false;        ///< it does in this substep
   std::vector<Held> held_;     ///< [pieces]; empty without one
   std::vector<Corners> safe_;  ///< [pieces] m, of edges; remember_sides()
   Shape shape_;  ///< at the end of the step, grown by the thickness unless it is a body's
