@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -107,8 +108,7 @@ class VertexBlocks {
       share(groups_.first_group(colour + 1) - first, [&](std::size_t begin, std::size_t end) {
         sweep_groups(p, v, first + begin, first + end);
       });
-      if (!pieces_.all.empty())
-        left2 += move_pieces(p, v, first, groups_.first_group(colour + 1));
+      if (!pieces_.all.empty()) left2 += move_pieces(p, v, first, groups_.first_group(colour + 1));
     }
     pieces_.left = std::sqrt(left2);
   }
@@ -213,8 +213,9 @@ class VertexBlocks {
   bool is_corner(std::size_t i) const { return !pieces_.all.empty() && !pieces_of_[i].empty(); }
 
   /// The corners of pieces of a colour: one thread's, for those of one piece may be in one colour.
+  /// Returns the sum of the squared forces on them [N^2].
   double move_pieces(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t begin,
-                   std::size_t end) {
+                     std::size_t end) {
     double left2 = 0;
     visit(begin, end, [&](std::size_t i, std::size_t, std::size_t) {
       if (is_corner(i)) p.x.set(i, before_[i]);
@@ -261,9 +262,9 @@ class VertexBlocks {
   }
 
   /// Moves vertex i again from where it was before the lanes moved it: to the minimum of the same
-  /// model outside of the colliders, with friction.
-  double move_in_contact(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t i, std::size_t g,
-                       int lane) {
+  /// model outside of the colliders, with friction. Returns the squared force that was on it [N^2].
+  double move_in_contact(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t i,
+                         std::size_t g, int lane) {
     p.x.set(i, before_[i]);  // slots without a link lead to the vertex itself
     const Vec3 x = before_[i].template cast<double>();
     const Vec3 previous = p.previous[i].template cast<double>();
@@ -288,11 +289,11 @@ class VertexBlocks {
   std::vector<Slot> slots_;
   AdaptiveStart<Real> start_;
   std::unique_ptr<Contacts> contacts_;  ///< null: none
-  TouchingPieces pieces_;
   struct Corner {
     const TouchingPiece* piece;
     double weight;
   };
+  TouchingPieces pieces_;                       ///< of this sweep
   std::vector<std::vector<Corner>> pieces_of_;  ///< [n] in this sweep
   std::vector<double> piece_stiffness_;         ///< TouchingPieces::stiffness
   std::vector<std::vector<Bent>> bent_;         ///< [n] elements of each vertex; empty: no bending
