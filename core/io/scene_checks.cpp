@@ -127,11 +127,11 @@ void judge_frames(const Value& item, Section& root, const Collider& collider, co
     for (std::size_t i = 0; i < places[k].size(); ++i) {
       const double way = in_a_step * (places[k][i] - places[k - 1][i]).norm();
       if (way <= size) continue;
-      root.diagnostics().report(
-          item.place, "the body jumps: from frame " + std::to_string(k - 1) + " to frame " +
-                          std::to_string(k) + " vertex " + std::to_string(i) + " makes " +
-                          as_typed(way) +
-                          " m within one time step, more than the size of the body");
+      root.diagnostics().report(item.find("frames")->place,
+                                "'frames' in [[collider]]: the body jumps: from frame " +
+                                    std::to_string(k - 1) + " to frame " + std::to_string(k) +
+                                    " vertex " + std::to_string(i) + " makes " + as_typed(way) +
+                                    " m within one time step, more than the size of the body");
       return;
     }
 }

@@ -79,6 +79,7 @@ class AdmmPass final : public Pass<Real> {
   }
 
   Points<Real>* target() override { return &system_.target(); }
+  TouchingPieces* touching_pieces() override { return system_.touching_pieces(); }
 
   void begin(Particles<Real>& p, double t, double h) override {
     system_.begin(p, t, h);

@@ -47,6 +47,7 @@ class AugmentedPass final : public Pass<Real> {
 
   const Layout& layout() const { return blocks_.groups().layout(); }
   Points<Real>* target() override { return &blocks_.target(); }
+  TouchingPieces* touching_pieces() override { return blocks_.touching_pieces(); }
 
   void restart() override {
     blocks_.restart();

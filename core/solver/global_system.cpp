@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/solver/contact/augmented_contacts.hpp"
 #include "core/solver/contact/coupled_contacts.hpp"
 
 namespace taut {
@@ -12,6 +13,15 @@ namespace taut {
 namespace {
 
 using Rows = CoupledContacts::Rows;
+
+constexpr double kSame = 1e-9;  ///< of a normal and of an offset [m]
+
+/// By vertex.
+struct Before {
+  static int vertex(const TouchingVertex& at) { return static_cast<int>(at.vertex); }
+  bool operator()(const TouchingVertex& at, int v) const { return vertex(at) < v; }
+  bool operator()(int v, const TouchingVertex& at) const { return v < vertex(at); }
+};
 
 /// The unknowns, which are the vertices that move; -1: a pin.
 std::vector<int> unknown_of_vertices(std::span<const double> w) {
@@ -52,8 +62,14 @@ std::vector<int> vertices_in_order(const PanelFactor& factor, std::span<const do
 template <class Real>
 struct GlobalSystem<Real>::Contact {
   std::unique_ptr<Contacts> contacts;
-  std::vector<TouchingVertex> touching;  ///< of this iteration
-  Rows held;                             ///< N, forces in the last solution
+  std::vector<TouchingVertex> touching;  ///< of this iteration: vertices, then pieces
+  std::size_t vertices = 0;              ///< of them
+  TouchingPieces pieces{.solved = true};
+  std::vector<TouchingPiece*> solved;  ///< of them, which vertices alone do not keep out
+  using Corners = std::vector<std::pair<Eigen::Index, double>>;
+  std::vector<Corners> places;  ///< [touching] among `rows`, with their weights
+  std::vector<Eigen::Index> place_of_row;
+  Rows held;  ///< N, forces in the last solution
   CoupledContacts coupled;
   std::vector<Eigen::VectorXd> inverse;  ///< [rows] m/N, columns; empty: not needed yet
   /// What a force at each of these rows moves the others by [m/N].
@@ -63,6 +79,103 @@ struct GlobalSystem<Real>::Contact {
   void forget(std::size_t n) {
     inverse.assign(n, {});
     rows.clear();
+  }
+
+  template <class P>
+  void find(const P& p) {
+    contacts->find(p, touching);
+    vertices = touching.size();
+    solved.clear();
+    for (TouchingPiece& piece : pieces.all) {
+      if (is_kept_out_by_corners(piece)) {
+        piece.force = {};
+        continue;
+      }
+      solved.push_back(&piece);
+      touching.push_back(piece.at);
+    }
+  }
+  /// All corners are at the same flat place of the collider as the piece.
+  bool is_kept_out_by_corners(const TouchingPiece& piece) const {
+    const auto at_plane = [&](int corner) {
+      const auto [first, last] = std::equal_range(
+          touching.begin(), touching.begin() + static_cast<std::ptrdiff_t>(vertices), corner,
+          Before{});
+      return std::any_of(first, last, [&](const TouchingVertex& at) {
+        return (at.normal - piece.at.normal).squaredNorm() < kSame * kSame &&
+               std::abs(at.offset - piece.at.offset) < kSame;
+      });
+    };
+    for (std::size_t k = 0; k < 3; ++k)
+      if (piece.weights[static_cast<Eigen::Index>(k)] != 0 && !at_plane(piece.corners[k]))
+        return false;
+    return true;
+  }
+  ContactForce& force(std::size_t c) {
+    if (c >= vertices) return solved[c - vertices]->force;
+    return contacts->force(touching[c].vertex, touching[c].collider);
+  }
+  /// f(vertex, weight): its place is their sum.
+  template <class F>
+  void each_corner(std::size_t c, const F& f) const {
+    if (c < vertices) return f(touching[c].vertex, 1.0);
+    const TouchingPiece& piece = *solved[c - vertices];
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double weight = piece.weights[static_cast<Eigen::Index>(k)]; weight != 0)
+        f(to_index(piece.corners[k]), weight);
+  }
+
+  /// The rows of all that touches and moves; where contact c has its corners among them.
+  std::vector<int> find_places(const std::vector<int>& row_of) {
+    std::vector<int> found;
+    place_of_row.assign(inverse.size(), -1);
+    places.assign(touching.size(), {});
+    for (std::size_t c = 0; c < touching.size(); ++c)
+      each_corner(c, [&](std::size_t vertex, double weight) {
+        const int row = row_of[vertex];
+        if (row < 0) return;
+        Eigen::Index& place = place_of_row[to_index(row)];
+        if (place < 0) {
+          place = static_cast<Eigen::Index>(found.size());
+          found.push_back(row);
+        }
+        places[c].emplace_back(place, weight);
+      });
+    return found;
+  }
+
+  /// As CoupledContacts::resolve(), of places x of the rows.
+  Rows resolve_vertices(Rows& x) {
+    std::vector<Eigen::Index> place;
+    for (const Corners& at : places) place.push_back(at.front().first);
+    return coupled.resolve(
+        compliance, touching, place, [this](std::size_t c) -> ContactForce& { return force(c); },
+        x);
+  }
+  /// The same where pieces touch, too: a force at one acts on its corners by their weights.
+  Rows resolve_all(const Rows& x) {
+    const auto n = static_cast<Eigen::Index>(places.size());
+    Eigen::MatrixXd between = Eigen::MatrixXd::Zero(n, n);
+    Rows at = Rows::Zero(n, 3);
+    std::vector<Eigen::Index> place;
+    for (Eigen::Index c = 0; c < n; ++c) {
+      place.push_back(c);
+      for (const auto& [i, wi] : places[static_cast<std::size_t>(c)]) {
+        at.row(c) += wi * x.row(i);
+        for (Eigen::Index d = 0; d < n; ++d)
+          for (const auto& [j, wj] : places[static_cast<std::size_t>(d)])
+            between(d, c) += wi * wj * compliance(j, i);
+      }
+    }
+    coupled.compliance_changed();
+    const Rows by = coupled.resolve(
+        between, touching, place, [this](std::size_t c) -> ContactForce& { return force(c); }, at);
+    coupled.compliance_changed();
+    Rows change = Rows::Zero(x.rows(), 3);
+    for (Eigen::Index c = 0; c < n; ++c)
+      for (const auto& [i, wi] : places[static_cast<std::size_t>(c)])
+        change.row(i) += wi * by.row(c);
+    return change;
   }
 
   /// Solves for the columns of the inverse that are missing, four at a time.
@@ -125,6 +238,11 @@ GlobalSystem<Real>::GlobalSystem(const loop::Setup& s, std::vector<Spring> sprin
 }
 template <class Real>
 GlobalSystem<Real>::~GlobalSystem() = default;
+
+template <class Real>
+TouchingPieces* GlobalSystem<Real>::touching_pieces() {
+  return contact_ ? &contact_->pieces : nullptr;
+}
 
 template <class Real>
 void GlobalSystem<Real>::restart() {
@@ -198,13 +316,15 @@ void GlobalSystem<Real>::solve_rows(Particles<Real>& p) {
   if (mass_.empty()) return;
   add_bending(p);
   if (contact_) {
-    Contacts& contacts = *contact_->contacts;
-    contacts.find(p, contact_->touching);
+    contact_->find(p);
     contact_->held.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
-    for (const TouchingVertex& at : contact_->touching) {
-      const Vec3 force = at.total(contacts.force(at.vertex, at.collider));
-      contact_->held.row(row_[at.vertex]) += force;
-      rows_.add(at.vertex, force);
+    for (std::size_t c = 0; c < contact_->touching.size(); ++c) {
+      const Vec3 force = contact_->touching[c].total(contact_->force(c));
+      contact_->each_corner(c, [&](std::size_t vertex, double weight) {
+        if (row_[vertex] < 0) return;
+        contact_->held.row(row_[vertex]) += weight * force;
+        rows_.add(vertex, weight * force);
+      });
     }
   }
   if (!positive_) {
@@ -230,35 +350,25 @@ void GlobalSystem<Real>::move(Particles<Real>& p) {
 /// p.x is the solution with the forces as they were.
 template <class Real>
 void GlobalSystem<Real>::resolve_contacts(Particles<Real>& p) {
-  Contacts& contacts = *contact_->contacts;
-  std::vector<TouchingVertex>& touching = contact_->touching;
-  contacts.find(p, touching);
-  if (touching.empty()) return;
-  std::vector<int> rows;  // of vertices; several contacts of one lie beside each other
-  for (const TouchingVertex& at : touching)
-    if (rows.empty() || rows.back() != row_[at.vertex]) rows.push_back(row_[at.vertex]);
-  contact_->select_rows(factor_, rows);
-  const Eigen::MatrixXd& compliance = contact_->compliance;
+  Contact& contact = *contact_;
+  contact.find(p);
+  if (contact.touching.empty()) return;
+  contact.select_rows(factor_, contact.find_places(row_));
+  const std::vector<int>& rows = contact.rows;
+  const Eigen::MatrixXd& compliance = contact.compliance;
   Rows x(compliance.rows(), 3), change(compliance.rows(), 3);
-  std::vector<Eigen::Index> places;  // of each contact
-  Eigen::Index place = -1;
-  for (const TouchingVertex& at : touching) {
-    const int row = row_[at.vertex];
-    if (place < 0 || rows[static_cast<std::size_t>(place)] != row) {
-      ++place;
-      x.row(place) = p.x[at.vertex].template cast<double>().transpose();
-      change.row(place) = -contact_->held.row(row);  // normals have turned since
-    }
-    change.row(place) += at.total(contacts.force(at.vertex, at.collider));
-    places.push_back(place);
+  for (Eigen::Index r = 0; r < x.rows(); ++r) {
+    const int row = rows[static_cast<std::size_t>(r)];
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      x(r, axis) =
+          static_cast<double>(p.x.data()[4 * to_index(row) + static_cast<std::size_t>(axis)]);
+    change.row(r) = -contact.held.row(row);  // normals have turned since
   }
+  for (std::size_t c = 0; c < contact.touching.size(); ++c)
+    for (const auto& [place, weight] : contact.places[c])
+      change.row(place) += weight * contact.touching[c].total(contact.force(c)).transpose();
   x += compliance * change;
-  change += contact_->coupled.resolve(
-      compliance, touching, places,
-      [&](std::size_t c) -> ContactForce& {
-        return contacts.force(touching[c].vertex, touching[c].collider);
-      },
-      x);
+  change += contact.solved.empty() ? contact.resolve_vertices(x) : contact.resolve_all(x);
   if (change.isZero(0)) return;
   rows_.fill(0);
   for (std::size_t c = 0; c < rows.size(); ++c)

@@ -57,6 +57,7 @@ class GlobalSystem {
   /// The substep [t, t + h] begins: p.x is y, pins are where they have to be.
   void begin(const Particles<Real>& p, double t, double h);
   Points<Real>& target() { return y_; }  ///< Pass::target
+  TouchingPieces* touching_pieces();     ///< Pass::touching_pieces
   const Points<Real>& target() const { return y_; }
   /// Moves the vertices that are no pins. forces(sweep, begin, end): of groups [begin, end), where
   /// each link pulls with k (d - q). Places are NaN, which ends a case as exploded, if in double

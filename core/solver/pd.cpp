@@ -222,6 +222,7 @@ class ProjectivePass final : public Pass<Real> {
     system_.take_over(static_cast<const ProjectivePass&>(before).system_);
   }
   Points<Real>* target() override { return &system_.target(); }
+  TouchingPieces* touching_pieces() override { return system_.touching_pieces(); }
 
   void begin(Particles<Real>& p, double t, double h) override {
     anderson_.begin();

@@ -116,8 +116,7 @@ TAUT_TRUTH(hook, 7, 12,
       {-kRod, -kRod, 0}, {kRod, -kRod, 0}, {kRod, kRod, 0}, {-kRod, kRod, 0}};
   for (const std::string solver :
        {"jakobsen:precision=double", "xpbd:precision=double", "mass-spring:substeps=64",
-        "vbd:substeps=4,precision=double", "avbd:precision=double", "implicit:substeps=4",
-        "pd:substeps=4", "admm:substeps=4"})
+        "vbd:precision=double", "avbd:precision=double", "implicit:substeps=4", "pd", "admm"})
     for (const auto& [what, rod] :
          {std::pair("rod", Shape(Capsule{{0, 0, -0.3}, {0, 0, 0.3}, kRod})),
           std::pair("rod of triangles", Shape(MeshBody{.mesh = prism(square, 0.3)}))})
@@ -191,34 +190,43 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
                          Vec3(std::cos(at), std::sin(at), 0));
   }
   const Shape cylinder = MeshBody{.mesh = prism(polygon, 1)};
+  const auto scene = [&](const std::string& solver, const Capstan& rope, double heavy) {
+    Scene s = rope.scene(cylinder, heavy);
+    if (solver_name(solver) == "avbd") s.stiffness = kRigid;
+    return s;
+  };
+  const auto speed = [&](const Scene& s, const std::string& solver, int seconds) {
+    return Simulation(s, solver, 128 * seconds).v(static_cast<int>(s.start.x.size()) - 1).norm();
+  };
   const auto check = [&](const std::string& solver, const Capstan& rope, double ratio,
                          const std::string& beyond) {
-    if (!can_run(findings, solver, rope.scene(cylinder, 1))) return;
+    if (!can_run(findings, solver, scene(solver, rope, 1))) return;
     findings.below(solver, "speed of the heavy end after 4 s at 0.99 of the ratio", "m/s",
-                   rope.speed(solver, cylinder, 0.99 * ratio, 4), 1e-3);
+                   speed(scene(solver, rope, 0.99 * ratio), solver, 4), 1e-3);
     findings.holds(solver, "the heavy end slides at " + beyond + " of the ratio",
-                   rope.speed(solver, cylinder, std::stod(beyond) * ratio, 4) > 3e-3);
+                   speed(scene(solver, rope, std::stod(beyond) * ratio), solver, 4) > 3e-3);
   };
   const Capstan on_vertices;
-  for (const std::string solver : {"implicit", "mass-spring:substeps=64"})
+  // avbd's links start with k-min, 1 N/m: too little for 25 N on a few sweeps
+  const std::string stiff_at_once = "avbd:iterations=100,k-min=1e4";
+  for (const std::string& solver :
+       {std::string("implicit"), std::string("mass-spring:substeps=64"), stiff_at_once})
     check(solver, on_vertices, on_vertices.ratio(), "1.01");
+  const std::string grows = "avbd";
+  if (can_run(findings, grows, scene(grows, on_vertices, 1)))
+    findings.deviates(grows, "speed of the heavy end after 1 s at 0.9 of the ratio", "m/s",
+                      speed(scene(grows, on_vertices, 0.9 * on_vertices.ratio()), grows, 1), 0, 1.2,
+                      0.3,
+                      "at its defaults links start with 1 N/m and grow by 10 N/m^2 of stretch and "
+                      "sweep: the rope is drawn out to more than twice its length before they "
+                      "carry 25 N");
   const Capstan on_links{.out = 1 / std::cos(on_vertices.angle() / 2)};
   check("mass-spring:substeps=64,faces=edges", on_links, on_links.ratio_of_links(), "1.01");
-  // at 1.01 it creeps by 0.5 mm/s, by 6 mm/s with 200 iterations
-  check("implicit:faces=edges", on_links, on_links.ratio_of_links(), "1.02");
-  check("xpbd:substeps=16,faces=edges,precision=double", on_links, on_links.ratio_of_links(),
-        "1.02");
-  for (const auto& [solver, speed] :
-       {std::pair{"pd", 0.16}, {"admm", 0.13}, {"vbd:precision=double", 0.09}}) {
-    const std::string lags = with(solver, "faces=edges");
-    if (can_run(findings, lags, on_links.scene(cylinder, 1)))
-      findings.deviates(
-          lags, "speed of the heavy end after 1 s at 0.9 of the ratio", "m/s",
-          on_links.speed(lags, cylinder, 0.9 * on_links.ratio_of_links(), 1), 0, speed, 0.05,
-          "an edge's force changes in an iteration by what inertia m/h^2 asks for, "
-          "here a thousandth of its links' stiffness: the rope slides off before it has "
-          "grown");
-  }
+  // at 1.01 implicit creeps by 0.5 mm/s, by 6 mm/s with 200 iterations
+  for (const std::string& solver : {std::string("implicit"), std::string("pd"), std::string("admm"),
+                                    std::string("vbd:iterations=40"), stiff_at_once,
+                                    std::string("xpbd:substeps=16,precision=double")})
+    check(with(solver, "faces=edges"), on_links, on_links.ratio_of_links(), "1.02");
 }
 
 TAUT_TRUTH(thin_plate, 7, 17,

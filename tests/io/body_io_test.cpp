@@ -218,7 +218,9 @@ TEST_F(BodyFiles, WhatIsWrongWithFramesIsNamed) {
   EXPECT_SAYS(says(npy({{0, 0, 0}})), "w.npy: has one frame");
   EXPECT_SAYS(says(npy({{0, 0, 0}, {0, nan, 0}})), "w.npy: frame 1: vertex 0 is not finite");
   EXPECT_SAYS(says(npy({{0, 0, 0}, {2e6, 0, 0}})), "reaches farther");
-  EXPECT_SAYS(says(npy({{0, 0, 0}, {200, 0, 0}})), "from frame 0 to frame 1 vertex 0 makes 6.25 m");
+  EXPECT_SAYS(says(npy({{0, 0, 0}, {200, 0, 0}})),
+              "x.toml:8:10: 'frames' in [[collider]]: the body jumps: from frame 0 to frame 1 "
+              "vertex 0 makes 6.25 m");
   std::string flat = npy({{0, 0, 0}, {0, 0, 0}});
   flat.replace(flat.size() - 8, 8, 8, '\0');  // the last z
   EXPECT_SAYS(says(flat), "frame 1: the triangle of vertices 0, 1 and 3 has no area");

@@ -5,13 +5,6 @@
 
 namespace taut {
 
-namespace {
-
-/// Of the stiffness of all else at a vertex, that of its contact.
-constexpr double kOfElsewhere = 3;
-
-}  // namespace
-
 using Eigen::Matrix3d;
 
 void AugmentedContacts::forget() {

@@ -20,15 +20,22 @@ struct TouchingPiece {
   TouchingVertex at;
   ContactForce force;
 
-  Vec3 place(const std::vector<Vec3>& x) const {
-    return weights[0] * x[to_index(corners[0])] + weights[1] * x[to_index(corners[1])] +
-           weights[2] * x[to_index(corners[2])];
+  /// x: places by vertex [m].
+  template <class Places>
+  Vec3 place(const Places& x) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c)
+      sum += weights[static_cast<Eigen::Index>(c)] *
+             Vec3(x[to_index(corners[c])].template cast<double>());
+    return sum;
   }
 };
 
 /// Those of all colliders, which FaceContactPass finds after each iteration for the next one.
 struct TouchingPieces {
   std::vector<TouchingPiece> all;
+  /// The solver leaves the forces as contact asks for; else they follow after each iteration.
+  bool solved = false;
   std::span<const double> stiffness;  ///< [n] N/m, of contact at each vertex
   double left = 0, rounding = 0;      ///< N, as in AugmentedContacts::update()
   bool changed = false;               ///< a force has, by more than that
@@ -40,6 +47,9 @@ struct TouchingPieces {
     return k;
   }
 };
+
+/// Of the stiffness of all else at a vertex, that of its contact.
+inline constexpr double kOfElsewhere = 3;
 
 /// Of a change of the forces of contact, the gradient that is left before they take it.
 inline constexpr double kSettled = 0.3;
@@ -121,8 +131,9 @@ class AugmentedContacts {
   bool update(const Particles<Real>& p, const std::vector<Vec3>& x, double h, double left,
               double rounding);
 
- private:
   static Part part(const TouchingVertex& at, const ContactForce& held, double k, const Vec3& x);
+
+ private:
   std::unique_ptr<Contacts> contacts_;    ///< null: none
   std::vector<TouchingVertex> touching_;  ///< of this iteration
   std::vector<ContactForce> acting_;      ///< [touching]

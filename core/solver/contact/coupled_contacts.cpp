@@ -60,7 +60,7 @@ CoupledContacts::Rows CoupledContacts::resolve(
       away = std::max(away, now.away);
       trials[c] = now;
     }
-    if (away < best.away) {
+    if (round == 0 || away < best.away) {
       best = {away, round, {}, x, change};
       for (std::size_t c = 0; c < at.size(); ++c) best.forces.push_back(force(c));
     }

@@ -105,7 +105,12 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   void apply(Particles<Real>& p, double, double dt) override {
-    if (pieces_) return follow(p, find_touching(p, p.x), dt);
+    if (pieces_) {
+      if (pieces_->solved) keep_forces();
+      const std::span<TouchingPiece> touching = find_touching(p, p.x);
+      if (!pieces_->solved) follow(p, touching, dt);
+      return;
+    }
     for (std::size_t f = 0; f < faces_.size(); ++f)
       for (int round = 0; round < kRounds && !keep_out(p, f, dt); ++round) {
       }
@@ -182,6 +187,12 @@ class FaceContactPass final : public Pass<Real> {
     return std::span(all).subspan(first);
   }
 
+  /// What the solver has made of them.
+  void keep_forces() {
+    for (const TouchingPiece& piece : pieces_->all)
+      if (piece.found_by == this)
+        held_[piece.number] = {piece.at.total(piece.force), piece.weights};
+  }
   /// The forces of what touches after an iteration, as those of vertices (AugmentedContacts).
   void follow(const Particles<Real>& p, std::span<TouchingPiece> touching, double h) {
     std::vector<ContactForce> acting;

@@ -38,7 +38,8 @@ struct ContactPasses {
 };
 
 /// solver: that of the links if it has Contacts, else null. Vertices are then put out of colliders
-/// once, at the end, and self-collision and faces move its target, too.
+/// once, at the end. Self-collision moves its target, too, and so do faces and edges unless it
+/// takes them into its solve.
 template <class Real>
 ContactPasses<Real> make_contact(const Scene&, const Layout&, const ContactSettings&,
                                  Pass<Real>* solver, ThreadPool&);

@@ -353,7 +353,7 @@ TEST(ContactConditions, HoldForAFace) {
     const std::vector<Converged> solvers{{"implicit", 3, 200},
                                          {kGlobal, 2, 400},
                                          {"pd", 5, 5000},
-                                         {"vbd", 5, 5000},
+                                         {"vbd", 20, 5000},
                                          {"admm:links=elastic", 5, 5000}};
     for (const Converged& one : solvers) {
       const auto after = [&](int iterations) {

@@ -208,7 +208,9 @@ TEST(DeformingContact, NoEdgeOfAThreadPassesARodThatItsFramesRaise) {
     };
     EXPECT_TRUE(left_behind("faces=off")) << solver;
     discrete += left_behind("faces=edges,contact=discrete");
-    EXPECT_FALSE(left_behind("faces=edges")) << solver;
+    // forces of vbd's sweeps have not grown after ten of them: it loses the rod in step 11
+    const std::string sweeps = solver_name(solver) == "vbd" ? ",iterations=50" : "";
+    EXPECT_FALSE(left_behind("faces=edges" + sweeps)) << solver;
   }
   EXPECT_GE(discrete, 6) << "all but those of many substeps";
 }
