@@ -34,7 +34,7 @@ def seal_benches(folder):
         parts = [text.encode() for text in texts] + [number(bench[ratio]) for ratio in ("control_low", "control", "control_high")]
         for timing in query(folder, "SELECT * FROM timings WHERE bench_id = ? ORDER BY timing_id", bench["bench_id"]):
             parts += [str(timing[column]).encode() for column in ("key", "failure", "remark", "peak_bytes")]
-            samples = query(folder, "SELECT * FROM samples WHERE timing_id = ? ORDER BY round", timing["timing_id"])
+            samples = query(folder, "SELECT * FROM samples WHERE timing_id = ? ORDER BY sample", timing["timing_id"])
             parts += [number(sample[clock]) for clock in ("cpu", "wall") for sample in samples]
         digest = hashlib.sha256(b"".join(part + b"\0" for part in parts)).hexdigest()
         change(folder, "UPDATE benches SET digest = ? WHERE bench_id = ?", digest, bench["bench_id"])

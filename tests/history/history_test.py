@@ -195,8 +195,8 @@ class BadInput(Repository):
     def test_ranges_that_make_no_sense(self):
         self.repository({}, commits=3)
         git(self.folder / "repo", "branch", "side", "HEAD~1")
-        for commits, said in [("HEAD..HEAD~2", "wrong way round"), ("nobody..HEAD", "'nobody' is no commit of"), ("HEAD", "expected A..B"),
-                              ("HEAD..HEAD", "the same commit"), ("HEAD~1...HEAD", "expected A..B"), ("--all..HEAD", "is no commit"),
+        for commits, said in [("HEAD..HEAD~2", "wrong way round"), ("nobody..HEAD", "'nobody' is not a commit of"), ("HEAD", "expected A..B"),
+                              ("HEAD..HEAD", "the same commit"), ("HEAD~1...HEAD", "expected A..B"), ("--all..HEAD", "is not a commit"),
                               ("..HEAD", "expected A..B")]:
             with self.subTest(commits):
                 self.assertIn(said, self.taut("history", "./study.toml", "--git", "repo", f"--commits={commits}", "--solver", "python3 mine.py",
@@ -204,7 +204,7 @@ class BadInput(Repository):
         self.assertFalse((self.folder / "out" / "checkouts").exists())
 
     def test_folders_that_are_no_repository(self):
-        for folder, said in [("nowhere", "no such folder"), (".", "no repository")]:
+        for folder, said in [("nowhere", "no such folder"), (".", "not a repository")]:
             self.assertIn(said, self.taut("history", "./study.toml", "--git", folder, "--commits", "A..B", "--solver", "python3 mine.py",
                                           expect=2).err)
 

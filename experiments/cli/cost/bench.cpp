@@ -143,7 +143,7 @@ TAUT_VERB(bench) = {
                {"recommended", "scene target solver setting error cost times answer"},
                {"cases",
                 "scene case solver cost cpu wall peak_bytes error status times verdict remark"},
-               {"samples", "scene case round cpu wall"},
+               {"samples", "scene case sample cpu wall"},
                {"iterations", "code each sweeps differs"},
                {"against", "case ratio control verdict wall wall_control"}},
     .bind = taut::bind_verb<taut::verb::bench::add_options, taut::verb::bench::run>};
