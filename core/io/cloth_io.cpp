@@ -388,7 +388,7 @@ bool read_cloth(Section& cloth, const std::filesystem::path& folder, const Fabri
     refuse(cloth, {"scale", "rotation", "weld"}, "belongs to a mesh, not to a grid");
   const bool built = surface ? read_surface(cloth, folder, fabric, said, scene)
                              : read_sheet(cloth, fabric, said, scene);
-  cloth.know("cloth");
+  cloth.know();
   if (!built) return false;
   scene.start.v.assign(scene.start.x.size(), said.velocity);
   scene.pins = read_vertices(cloth, "pins", scene.mesh);
@@ -442,7 +442,7 @@ void read_seams(Section& root, Scene& scene) {
   std::set<VertexPair> known = together(scene);
   std::vector<Link> seams;
   for (const Value* item : items) {
-    Section seam(root.diagnostics(), *item, "[[seam]]");
+    Section seam(root.diagnostics(), *item, "[[seam]]", "seam");
     seam.need({"a", "b"});
     const std::vector<int> a = in_order(seam, "a", scene.mesh), b = in_order(seam, "b", scene.mesh);
     seam.finish();

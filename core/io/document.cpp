@@ -307,17 +307,21 @@ std::optional<double> as_number(const Value& value) {
   }
 }
 
-Section::Section(Diagnostics& diagnostics, const Value& table, std::string name)
-    : diagnostics_(diagnostics), table_(table), name_(std::move(name)) {}
+Section::Section(Diagnostics& diagnostics, const Value& table, std::string name,
+                 std::string scene_section)
+    : diagnostics_(diagnostics),
+      table_(table),
+      name_(std::move(name)),
+      scene_section_(std::move(scene_section)) {}
 
 const Value* Section::find(const std::string& key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   return table_.find(key);
 }
 
-void Section::know(std::string_view scene_section) {
+void Section::know() {
   for (const SceneKey& key : scene_keys())
-    if (key.section() == scene_section) find(std::string(key.name()));
+    if (key.section() == scene_section_) find(std::string(key.name()));
 }
 
 SourceLocation Section::place(const std::string& key) const {
@@ -343,25 +347,17 @@ void Section::wrong_type(const Value& value, const std::string& key, const std::
       value.place, "'" + key + "' in " + name_ + " must be " + wanted + ", not " + describe(value));
 }
 
-namespace {
-
-/// " in s" of "[time]" and "dt"; "" where no unit is known.
-std::string in_unit(const std::string& section, const std::string& key) {
-  const auto begin = section.find_first_not_of('['), end = section.find(']');
-  if (begin == 0 || end == section.npos) return "";
-  const std::string path = section.substr(begin, end - begin) + "." + key;
-  const auto known = std::ranges::find(scene_keys(), path, &SceneKey::path);
+std::string Section::in_unit(const std::string& key) const {
+  const auto known = std::ranges::find(scene_keys(), scene_section_ + "." + key, &SceneKey::path);
   if (known == scene_keys().end() || known->unit.empty() || known->unit == "1") return "";
   return " in " + std::string(known->unit);
 }
-
-}  // namespace
 
 std::optional<double> Section::judged(const Value& value, const std::string& key,
                                       const Range& range) {
   const auto number = as_number(value);
   if (!number) {
-    wrong_type(value, key, "a number" + in_unit(name_, key) + " or a fraction such as \"1/64\"");
+    wrong_type(value, key, "a number" + in_unit(key) + " or a fraction such as \"1/64\"");
   } else if (!std::isfinite(*number)) {
     diagnostics_.report(value.place, "'" + key + "' in " + name_ + " must be finite");
   } else if (!range.holds(*number)) {

@@ -99,8 +99,10 @@ class Diagnostics {
 /// A value that is wrong is reported and then treated as absent, so that reading goes on.
 class Section {
  public:
-  /// `name` as messages print it: "[cloth]".
-  Section(Diagnostics& diagnostics, const Value& table, std::string name);
+  /// `name` as messages print it: "[cloth]". `scene_section`: its section of scene_keys(), "cloth",
+  /// whose units messages name; "": none.
+  Section(Diagnostics& diagnostics, const Value& table, std::string name,
+          std::string scene_section = "");
   Section(Section&&) = default;
 
   const SourceLocation& place() const { return table_.place; }
@@ -110,8 +112,8 @@ class Section {
   const Value* find(const std::string& key);
   /// Where the key stands, or the section if it is absent.
   SourceLocation place(const std::string& key) const;
-  /// Every key of that section of a scene is known.
-  void know(std::string_view scene_section);
+  /// Every key of its section of a scene is known.
+  void know();
   void missing(const std::string& key);
   /// Reports those of the keys that are absent.
   void need(std::initializer_list<std::string_view> keys);
@@ -149,10 +151,11 @@ class Section {
  private:
   std::optional<double> judged(const Value&, const std::string& key, const Range&);
   void wrong_type(const Value&, const std::string& key, const std::string& wanted);
+  std::string in_unit(const std::string& key) const;  ///< " in s"; "": no unit is known
 
   Diagnostics& diagnostics_;
   const Value& table_;
-  std::string name_;
+  std::string name_, scene_section_;
   std::vector<std::string> known_;
 };
 

@@ -106,7 +106,7 @@ Collider read_collider(Section& section, const std::filesystem::path& folder) {
   if (type == "capsule") collider.shape = Capsule();
   if (type == "mesh") collider.shape = MeshBody();
   if (type.empty())
-    section.know("collider");  // which of them belong here is not known
+    section.know();  // without a type all keys are accepted
   else
     std::visit([&](auto& shape) { read_keys(section, "collider", shape); }, collider.shape);
   if (Box* box = std::get_if<Box>(&collider.shape)) box->rotation = read_rotation(section);
@@ -134,7 +134,7 @@ Vec3 initial_velocity(const Motion& motion, const Vec3& x) {
 /// Reads every [[collider]].
 void read_colliders(Section& root, const std::filesystem::path& folder, Scene& scene) {
   for (const Value* item : root.tables("collider")) {
-    Section section(root.diagnostics(), *item, "[[collider]]");
+    Section section(root.diagnostics(), *item, "[[collider]]", "collider");
     scene.colliders.push_back(read_collider(section, folder));
   }
 }
@@ -142,7 +142,7 @@ void read_colliders(Section& root, const std::filesystem::path& folder, Scene& s
 const Range kRelease = Range::positive(1e6);  ///< s
 constexpr std::size_t kMostReleases = 64;     ///< each makes a solver of its own
 
-/// Pins and when the file lets them go [s].
+/// Release times [s] and the pins released then, as the file has them.
 using Timed = std::vector<std::pair<double, std::vector<int>>>;
 
 /// Reads every [[pin_motion]]. Without a mesh (`built` false) only the motions are judged. Those
@@ -150,7 +150,7 @@ using Timed = std::vector<std::pair<double, std::vector<int>>>;
 void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
   std::set<int> moved;
   for (const Value* item : root.tables("pin_motion")) {
-    Section section(root.diagnostics(), *item, "[[pin_motion]]");
+    Section section(root.diagnostics(), *item, "[[pin_motion]]", "pin_motion");
     PinMotion group;
     section.need({"vertices"});
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);
@@ -164,8 +164,8 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
         break;
       }
       if (!moved.insert(vertex).second) {
-        section.report("vertices",
-                       "names vertex " + std::to_string(vertex) + ", which moves already");
+        section.report("vertices", "names vertex " + std::to_string(vertex) +
+                                       ", which another pin_motion moves");
         break;
       }
       const auto v = static_cast<std::size_t>(vertex);
@@ -176,7 +176,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
   }
 }
 
-/// When all pins let go that have no time of their own [s].
+/// The release time [s] of pins without their own; nothing: they hold.
 std::optional<double> read_release(Section& cloth) {
   const auto release = cloth.number("release", kRelease);
   if (release && !cloth.find("pins"))
@@ -184,8 +184,8 @@ std::optional<double> read_release(Section& cloth) {
   return release;
 }
 
-/// Each falls on the first step boundary at or after its time, which forgives the rounding of dt.
-/// One at or after the end lets nothing go: a remark says so.
+/// Puts each release on the first step boundary at or after its time, which forgives the rounding
+/// of dt. One at or after the end has no effect: a remark says so.
 void set_releases(const std::optional<double>& of_others, Timed timed, Section& root,
                   Scene& scene) {
   if (of_others) {
@@ -223,7 +223,7 @@ const Value& part(Section& root, const std::string& key) {
   return table ? *table : kAbsent;
 }
 
-/// Of each family [N/m]; those that are not named are rigid.
+/// Reads the stiffness [N/m] of each family; families that are not named are rigid.
 void read_stiffness(Section& links, Scene& scene) {
   const Value* table = links.table("stiffness");
   if (!table) return;
@@ -244,8 +244,8 @@ const Fabric* read_fabric(Section& root) {
   return fabric;
 }
 
-/// A fabric that a study or the command line names stands in the place of what the scene's file
-/// says. What is set beside the fabric, in the same place or after it, contradicts it.
+/// A fabric named by a study or the command line replaces the values of the scene's file. A value
+/// set beside the fabric, in the same place or after it, conflicts with it.
 void judge_fabric(Section& root) {
   const Value* fabric = root.find("fabric");
   if (!fabric) return;
@@ -256,8 +256,8 @@ void judge_fabric(Section& root) {
       const Value* value = table ? table->find(key) : nullptr;
       if (!value || (fabric->place.override >= 0 && value->latest_override() < 0)) continue;
       root.diagnostics().report(value->place, std::string("'") + key + "' in [" + name +
-                                                  "] is what fabric = \"" + fabric->string +
-                                                  "\" sets: leave out one of them");
+                                                  "] conflicts with fabric = \"" + fabric->string +
+                                                  "\", which sets it: remove one");
     }
 }
 
@@ -300,8 +300,8 @@ void set_steps(const FileKeys& said, Section& time, Scene& scene) {
   scene.steps = std::max(1, static_cast<int>(steps));
 }
 
-/// The warp's direction where the scene leaves it open: along v of a grid; any where it makes no
-/// difference.
+/// Sets the warp's direction where the scene does not: along v of a grid; any direction if warp and
+/// weft are equally stiff.
 void complete(Bending& bending, const Mesh& mesh) {
   if (!bending.direction.isZero(0)) return;
   if (mesh.grid && mesh.grid->nv > 1)
@@ -323,7 +323,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   if (fabric) judge_fabric(root);
   FileKeys said;
   const auto read = [&](const char* name, auto&... parts) {
-    Section section(diagnostics, part(root, name), "[" + std::string(name) + "]");
+    Section section(diagnostics, part(root, name), "[" + std::string(name) + "]", name);
     (read_keys(section, name, parts), ...);
     return section;
   };

@@ -85,7 +85,7 @@ class Bytes {
   template <class Part>
   void add(std::string_view section, const Part& part) {
     const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
-      if (!key.later) return add(value);
+      if (!key.added_later) return add(value);
       if (key.counts(value, initial)) add_later(key.path, [&](Bytes& b) { b.add(value); });
     };
     each_key(section, part, visit, keys_);

@@ -11,17 +11,17 @@
 
 #include "core/model/scene.hpp"
 
-// The keys of a scene file, as ParamSpec has those of a solver. From the table come the reader
-// (core/io), the bytes of a scene's digest (content()), the file that external programs get, `taut
-// list keys`, the tables of experiments/scenes/README.md, the ranges of `taut frontier` and what
-// `taut require` leaves out.
+// The keys of a scene file, a row for each. The table drives: the reader (core/io), the bytes of a
+// scene's digest (content()), the file that external programs get, `taut list keys`, the tables of
+// experiments/scenes/README.md, the ranges of `taut frontier` and what `taut require` leaves out.
 
 namespace taut {
 
 /// Largest coordinate, size or displacement that a scene may hold [m].
 inline constexpr double kFar = 1e6;
 
-/// The key of the frames of a body, which came later: no value, but part of a scene's content.
+/// The key of a body's frames, added after results were stored. No SceneKey::Member holds it;
+/// content() includes it.
 inline constexpr std::string_view kFramesKey = "collider.frames";
 
 /// What a number may be. Non-finite numbers are never allowed.
@@ -39,7 +39,7 @@ struct Range {
   std::string text() const;  ///< "greater than 0 and at most 10"
 };
 
-/// What a file says in single values that a Scene holds as vertices, links and steps.
+/// Single values of a file that become vertices, links and steps of a Scene.
 struct FileKeys {
   Vec3 origin = Vec3::Zero();  ///< m
   Vec3 u = Vec3::UnitX();      ///< unit
@@ -80,22 +80,22 @@ struct SceneKey {
   std::string_view choices = {};   ///< "relative|literal": the enumeration, in its order
   std::string_view example = {};   ///< as typed
   std::string_view help = {};      ///< one line
-  std::string_view limits = {};    ///< beyond the range, in words
+  std::string_view limits = {};    ///< restrictions that the range cannot express
   std::string_view fallback = {};  ///< the default in words, where it is no constant
-  std::string_view effect = {};    ///< what `taut require` calls it when it leaves it out
+  std::string_view effect = {};    ///< name of the effect that `taut require` removes
   bool needed = false;
-  /// It came after results were kept: part of the digest only where it is not at its default, so
-  /// that scenes without it keep theirs.
-  bool later = false;
+  /// Added after results were stored. The digest includes it only where it differs from its
+  /// default, so that scenes without it keep their digests.
+  bool added_later = false;
 
-  /// Whether a scene with this value has the key.
+  /// Whether the digest includes the key at this value.
   template <class Value>
   bool counts(const Value& value, const Value& initial) const {
-    return !later || value != initial;
+    return !added_later || value != initial;
   }
 
   SceneKey need() const { return with(&SceneKey::needed, true); }
-  SceneKey came_later() const { return with(&SceneKey::later, true); }
+  SceneKey came_later() const { return with(&SceneKey::added_later, true); }
   SceneKey limited(std::string_view words) const { return with(&SceneKey::limits, words); }
   SceneKey otherwise(std::string_view words) const { return with(&SceneKey::fallback, words); }
   SceneKey left_out_as(std::string_view name) const { return with(&SceneKey::effect, name); }
@@ -119,11 +119,11 @@ struct SceneKey {
 /// In the order of the document.
 std::span<const SceneKey> scene_keys();
 
-/// The key under its dotted path, without the numbers of elements ("collider.0.radius"); nullptr:
-/// none such.
+/// The key of this dotted path, which may number elements ("collider.0.radius"); nullptr: there is
+/// no such key.
 const SceneKey* find_scene_key(std::string_view path);
 
-/// content() and later_keys() as they are with another table of keys.
+/// content() and later_keys() with another table of keys.
 std::string content(const Scene&, std::span<const SceneKey> keys);
 std::vector<std::string> later_keys(const Scene&, std::span<const SceneKey> keys);
 

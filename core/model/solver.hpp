@@ -73,12 +73,12 @@ struct SolverFailure : std::runtime_error {
   std::string status, log;
 };
 
-/// What the solver makes of a setting.
+/// A setting as the solver applies it.
 struct ResolvedSetting {
   std::string name;   ///< "time step"
   std::string text;   ///< for people: "1/64 s, as binary32"
-  std::string token;  ///< by which solvers are compared: "coloured"; "": by the text
-  double number;      ///< what the text says, in SI; NaN: nothing that is computed with
+  std::string token;  ///< by which solvers are compared: "coloured"; "": by `text`
+  double number;      ///< value of `text` in SI; NaN: not a number
 
   ResolvedSetting(std::string_view name_, std::string_view text_, std::string_view token_ = {},
                   double number_ = std::numeric_limits<double>::quiet_NaN())
@@ -93,9 +93,9 @@ struct ResolvedSetting {
 using ResolvedSettings = std::vector<ResolvedSetting>;
 /// A setting that the page shows with each solver, by its token.
 inline constexpr std::string_view kLinkOrder = "link order";
-/// What links are: its number is the stiffness of structural ones [N/m], NaN of rigid ones.
+/// The stiffness of links: its number is that of structural ones [N/m], NaN if they are rigid.
 inline constexpr std::string_view kLinksSetting = "links";
-/// The one of that name; nullptr: there is none.
+/// The setting of that name; nullptr: there is none.
 const ResolvedSetting* find_setting(const ResolvedSettings&, std::string_view name);
 
 /// The parameters that decide how accurate a result is and what it costs, and what a search for a
@@ -109,8 +109,8 @@ struct AccuracyParameters {
   std::string_view sweeps;      ///< more of them need fewer substeps; "": the solver has none
   std::string_view link_order;  ///< the parameter that kLinkOrder resolves; "": there is none
   bool all_at_once = false;     ///< an iteration solves for all links at once: it is no sweep
-  /// Springs that may be softer or stiffer: without sweeps each value needs its own substeps, with
-  /// sweeps a higher one is for what the default does not reach.
+  /// Springs that may be softer or stiffer. Without sweeps each value needs its own substeps; with
+  /// sweeps, a stiffer one is tried where the default misses the error, and each as an alternative.
   Ladder stiffness;
   std::span<const Ladder> alternatives;  ///< tried one at a time, at the best of the others
   /// All that may vary along a curve of error over cost, in the order in which labels name it.
@@ -123,8 +123,8 @@ struct AccuracyParameters {
 struct OptionalEffect {
   std::string_view name;  ///< "contact of faces"
   std::string_view parameter;
-  std::string_view values = "";  ///< "on|edges|off": from the one that costs most to the one that
-                                 ///< may do; none of a whole number, which is halved until it is 1
+  std::string_view values = "";  ///< "on|edges|off": values, dearest first; empty for an integer,
+                                 ///< which is halved down to 1
   bool of_contact = false;       ///< means something with colliders only
 };
 
@@ -147,9 +147,8 @@ struct LinearSweeps {
 /// Neither: no theory is known.
 using LinearModel = std::variant<std::monostate, LinearSprings, LinearSweeps>;
 
-/// Makes solvers: of a scene that lets pins go, one for each of its stages, which follow each
-/// other, so that none has to know of it. Of any other scene it is the function that it is made
-/// from.
+/// Creates solvers. A scene with releases gets one solver per stage (stages()), so that no solver
+/// has to handle releases; for any other scene the wrapped function is called.
 class MakeSolver {
  public:
   MakeSolver() = default;
@@ -157,7 +156,7 @@ class MakeSolver {
   requires std::is_invocable_r_v < std::unique_ptr<Solver>, Function,
   const Scene&, const Params& > MakeSolver(Function bare) : bare_(std::move(bare)) {}
   explicit operator bool() const { return static_cast<bool>(bare_); }
-  /// One that gets scenes as they are: what it makes lets pins go by itself.
+  /// The same without stages, for solvers that handle releases themselves.
   MakeSolver whole() const {
     MakeSolver same = *this;
     same.whole_ = true;
@@ -178,12 +177,12 @@ struct SolverEntry {
   std::string_view summary;           ///< one sentence
   std::string_view source;            ///< paper or library, with version
   std::span<const ParamSpec> params;  ///< drives the command line, the documentation and the errors
-  /// Null: it cannot run, for a stored text alone names it (admit_solver).
+  /// Null: it must not run, since only a stored text names it (admit_solver).
   MakeSolver make;
-  /// Why it would misread this scene, a sentence each; empty: it can.
+  /// Why it would misread this scene, a sentence each; empty: it would not.
   std::function<std::vector<std::string>(const Scene&, const Params&)> unsupported;
   std::function<ResolvedSettings(const Scene&, const Params&)> resolved_settings;
-  DeclaredStep (*declared_step)(const Scene&, const Params&) = nullptr;  ///< null: none is
+  DeclaredStep (*declared_step)(const Scene&, const Params&) = nullptr;  ///< null: it declares none
   /// Which program can run this choice: "taut", "taut-f32", or "" for either. Null: either.
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other one, make() throws InputError.
@@ -191,19 +190,18 @@ struct SolverEntry {
   AccuracyParameters accuracy = {};
   std::span<const OptionalEffect> optional_effects = {};
   LinearModel (*linear_model)(const Scene&, const Params&) = nullptr;  ///< null: none is known
-  /// Digest of what a solver outside this program is made of; "": it is part of this program.
+  /// Digest of the code of a solver outside this program; "": it is part of this program.
   std::string_view implementation = "";
-  /// Which state of its sources such a solver is, for people; "": that of this program.
+  /// Version of the sources of such a solver, for people; "": that of this program.
   std::string_view build = "";
-  /// Parameters that only say where such a solver lies: `implementation` says which it is.
+  /// Parameters that only locate such a solver; `implementation` identifies it.
   std::string_view place = "";
 };
 
 /// A parameter of solvers whose links may comply.
 inline constexpr ParamSpec kMaterial = ParamSpec::choice(
     "material", "scene", "scene|own",
-    "links as stiff as the scene says, if it does; or, for a study, as the solver's parameters "
-    "say");
+    "stiffness of links: the scene's, where it has one, or that of the solver's own parameters");
 /// Whether the links' stiffness is the scene's.
 inline bool takes_stiffness(const Scene& scene, const Params& params) {
   return scene.stiffness != kRigid && params.is("material", "scene");
@@ -215,7 +213,7 @@ Stiffness stiffness_of(const Scene&, const Params&);
 /// SolverEntry::declared_step of a solver that approximates implicit Euler of each substep, with
 /// its links and contact of vertices.
 DeclaredStep implicit_euler(const Scene&, const Params&);
-/// The same of positions with a frame a step, of which nobody knows how they were made.
+/// The same for stored positions, one frame a step, made by an unknown method.
 DeclaredStep implicit_euler_of_a_frame(const Scene&, const Params&);
 /// What the entry declares.
 DeclaredStep declared_step(const SolverEntry&, const Scene&, const Params&);
@@ -226,23 +224,23 @@ std::size_t projections_per_step(const Solver&);
 /// All solvers of this program, sorted by name (generated; see cmake/registry.cmake).
 std::span<const SolverEntry* const> solvers();
 
-/// Where solvers come from that are no part of this program (experiments/external). Entries live as
+/// A source of solvers that are not part of this program (experiments/external). Entries live as
 /// long as the program does.
 struct SolverSource {
   std::vector<std::string> (*names)() = nullptr;
-  /// The entry of "name:params"; null: it has none of that name. What was not admitted is neither
-  /// started nor opened: its entry makes no solver. Throws InputError.
+  /// The entry of "name:params"; null: there is none of that name. A solver that was not admitted
+  /// is neither started nor opened: its entry has no `make`. Throws InputError.
   const SolverEntry* (*find)(std::string_view name, std::string_view params) = nullptr;
   /// Null: what it finds needs no admission.
   void (*admit)(std::string_view name, std::string_view params) = nullptr;
 };
 void set_solver_source(SolverSource);
 
-/// From here on the program or file that a solver's text names may be started and opened. Said of
-/// what the command line and studies hold; a text that was stored is data, and stays it.
+/// Allows the program or file that a solver's text names to be started or opened from now on. Call
+/// it only for texts of the command line or of a study: a stored text is data.
 void admit_solver(std::string_view text);
 
-/// solvers(), and those that the source names, which are admitted.
+/// solvers() and all that the source names; the latter are admitted.
 std::vector<const SolverEntry*> all_solvers();
 
 /// Throws InputError with a suggestion if there is no such solver. `params` is what follows the
@@ -258,8 +256,7 @@ struct SolverChoice {
   std::string canonical() const;
   /// The same, but only the parameters that differ from their defaults: for people.
   std::string brief() const;
-  /// Both without the parameters of the entry's `place`: what a result is addressed by, and what it
-  /// is called.
+  /// Both without the parameters of the entry's `place`: the address and the name of a result.
   std::string addressed() const { return with_params(false, entry->place); }
   std::string called() const { return with_params(true, entry->place); }
   /// Substeps of a step, and sweeps of a substep, by the entry's AccuracyParameters: at least 1.

@@ -9,7 +9,7 @@
 
 #include "experiments/case/record.hpp"
 
-// The fields of a record, as scene_keys() has the keys of a scene. The table makes its JSON
+// The fields of a record, a row for each. The table makes its JSON
 // (record_io), its row in a results file (experiments/results), `taut list record` and, by
 // tests/cli/keys_test.py --write, the tables of the documents. A new field is a member of Record
 // and a row here. Raise kRecordSchema and kSchemaVersion once per release that adds fields: every
@@ -27,12 +27,12 @@ struct RecordColumn {
                    std::string CaseSpec::*, std::vector<std::string> CaseSpec::*,
                    Status::Kind Status::*, std::string Status::*, int Status::*>;
 
-  std::string_view json;    ///< its key; "status.kind": of an object in it
-  std::string_view column;  ///< of the table cases; "": it has a table of its own
+  std::string_view json;    ///< its key; "status.kind": "kind" in the object "status"
+  std::string_view column;  ///< in the table `cases`; "": the field has its own table
   Member member;
   std::string_view help;   ///< one line
   bool is_result = false;  ///< part of result_digest(): the same key must always give the same
-  bool may_lack = false;   ///< a number of -1 is NULL in the file, a text of "" is not in the JSON
+  bool may_lack = false;   ///< optional: -1 is stored as NULL; "" is left out of the JSON
 
   std::string_view type() const;  ///< "text", "number", "whole number", "JSON"
   bool may_be_null() const { return may_lack && type() == "whole number"; }
@@ -54,7 +54,7 @@ template <class AnyRecord, class Value>
 auto& member_of(AnyRecord& r, Value Status::*member) {
   return r.status.*member;
 }
-/// Calls `use` with it, of whichever type, and returns what that returns.
+/// Returns use(the column's member of the record), of whichever type.
 template <class AnyRecord, class Use>
 auto with_member(AnyRecord& record, const RecordColumn& column, const Use& use) {
   return std::visit([&](auto member) { return use(member_of(record, member)); }, column.member);

@@ -67,6 +67,7 @@ struct Clip {
     std::string key = {};  ///< of the case; "": no study ran it
   };
   std::vector<Panel> panels;
+  int columns = 1;  ///< panels side by side
 };
 
 /// What was rendered of a scene.

@@ -15,12 +15,12 @@ namespace taut {
 namespace {
 
 /// What 100 % is of.
-double whole(const KeptAnswer& answer, const Observation& full) {
+double whole(const KeptQuantity& answer, const Observation& full) {
   const double of_scene = hundred_percent(unit_of(answer), *full.one.scene);
   return std::isnan(of_scene) ? std::abs(value_of(answer, full)) : of_scene;
 }
 
-double default_tolerance(const KeptAnswer& answer, const Observation& full) {
+double default_tolerance(const KeptQuantity& answer, const Observation& full) {
   const Unit unit = unit_of(answer);
   if (is_count(unit)) return 0;
   const double share = answer.is_shape() || unit.shown == "%" ? 0.01 : unit.si == "m" ? 0.001 : 0.1;
@@ -67,7 +67,7 @@ double apart(const Scene& scene, const std::vector<Vec3>& x, const Scene& other,
 }
 
 /// A metric's value on a motion, as the full model's scene has it measured.
-double measured(const KeptAnswer& answer, const Scene& scene, const std::vector<Frame>& frames) {
+double measured(const KeptQuantity& answer, const Scene& scene, const std::vector<Frame>& frames) {
   const auto [entry, value] = find_value(answer.name);
   const auto metric = entry->make(scene);
   if (!metric) return std::nan("");
@@ -83,12 +83,12 @@ double measured(const KeptAnswer& answer, const Scene& scene, const std::vector<
 
 }  // namespace
 
-Unit unit_of(const KeptAnswer& answer) {
+Unit unit_of(const KeptQuantity& answer) {
   const ValueSpec* value = find_value(answer.name).second;
   return value ? value->unit : kLength;
 }
 
-std::string text(const KeptAnswer& answer, double value) {
+std::string text(const KeptQuantity& answer, double value) {
   if (!std::isfinite(value)) return "-";
   return number_text(value, unit_of(answer));
 }
@@ -99,9 +99,9 @@ std::string name_of_answer(const std::string& asked) {
   return name_of_kept(asked, names);
 }
 
-KeptAnswer parse_answer(const std::string& asked, const Observation& full) {
+KeptQuantity parse_answer(const std::string& asked, const Observation& full) {
   const auto colon = asked.find(':');
-  KeptAnswer answer{name_of_answer(asked), 0};
+  KeptQuantity answer{name_of_answer(asked), 0};
   if (!answer.is_shape() && std::isnan(value_of(answer, full)))
     throw InputError("--keep " + asked + ": has no value on this scene");
   if (colon == std::string::npos) {
@@ -127,12 +127,12 @@ std::vector<std::string> default_answers(const Observation& full) {
   return names;
 }
 
-double value_of(const KeptAnswer& answer, const Observation& one) {
+double value_of(const KeptQuantity& answer, const Observation& one) {
   const auto found = one.record.values.find(answer.name);
   return found == one.record.values.end() ? std::nan("") : found->second;
 }
 
-double distance(const KeptAnswer& answer, const Observation& full, const Observation& other) {
+double distance(const KeptQuantity& answer, const Observation& full, const Observation& other) {
   if (!completed(other.record.status) || other.frames.empty() || full.frames.empty())
     return kNoAnswer;
   if (answer.is_shape())

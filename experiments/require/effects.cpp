@@ -86,10 +86,13 @@ void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effe
                           }});
   };
   if (spec->kind == ParamSpec::Kind::integer)
-    for (int n = std::stoi(from); n > 1;) reduce_to(std::to_string(n = (n + 1) / 2));
+    for (int n = std::stoi(from); n > 1;) {
+      n = (n + 1) / 2;
+      reduce_to(std::to_string(n));
+    }
   const std::vector<std::string> values = parts_of(effect.values);
-  for (auto at = std::ranges::find(values, from); at != values.end() && ++at != values.end();)
-    reduce_to(*at);
+  const auto own = std::ranges::find(values, from);
+  if (own != values.end()) std::for_each(own + 1, values.end(), reduce_to);
   add(effects, std::string(effect.name), std::move(reductions));
 }
 

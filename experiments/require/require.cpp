@@ -77,7 +77,7 @@ class Search {
     full_ = std::move(*full);
     for (const std::string& text : options_.keep.empty() ? default_answers(full_) : options_.keep) {
       found_.answers.push_back(parse_answer(text, full_));
-      const KeptAnswer& answer = found_.answers.back();
+      const KeptQuantity& answer = found_.answers.back();
       found_.values.push_back(answer.is_shape() ? 0 : value_of(answer, full_));
     }
     const Perturbations other = perturbations(found_.full, folder_);
@@ -117,7 +117,7 @@ class Search {
   bool add_reordered(const std::vector<CaseSpec>& specs) { return add_runs(specs, reordered_); }
 
   void find_horizon(const Observation& other) {
-    const auto shape = std::ranges::find_if(found_.answers, &KeptAnswer::is_shape);
+    const auto shape = std::ranges::find_if(found_.answers, &KeptQuantity::is_shape);
     const double tolerance =
         shape != found_.answers.end() ? shape->tolerance : parse_answer("shape", full_).tolerance;
     if (const auto t = apart_after(full_, other, tolerance)) {
@@ -128,7 +128,7 @@ class Search {
 
   /// The noise of each answer; the shape of a chaotic scene cannot be kept.
   void choose_answers() {
-    for (const KeptAnswer& answer : found_.answers) {
+    for (const KeptQuantity& answer : found_.answers) {
       double most = 0, reordered = 0;
       for (std::size_t i = 0; i < rounded_.size(); ++i) {
         most = std::max(most, distance(answer, full_, rounded_[i]));

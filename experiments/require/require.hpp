@@ -43,8 +43,8 @@ struct EffectTrial {
 /// What a scene requires of a model.
 struct Requirement {
   Case full;
-  std::vector<KeptAnswer> answers;  ///< kept
-  std::vector<double> values;       ///< of the full model; 0 for the shape
+  std::vector<KeptQuantity> answers;  ///< kept
+  std::vector<double> values;         ///< of the full model; 0 for the shape
   /// Largest difference between any two of the full model and the same started off by a rounding
   /// error: what an answer moves by without any reason.
   std::vector<double> noise;

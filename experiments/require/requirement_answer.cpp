@@ -23,7 +23,7 @@ std::string verdict(const EffectTrial& effect) {
   return effect.representative().why.empty() ? "keep" : "keep: " + effect.representative().why;
 }
 
-Column column_of(const KeptAnswer& answer) { return {answer.name, "", unit_of(answer)}; }
+Column column_of(const KeptQuantity& answer) { return {answer.name, "", unit_of(answer)}; }
 
 /// The answers that are kept: what they are, and by how much they may move.
 Table answers_of(const Requirement& found) {
@@ -37,7 +37,7 @@ Table answers_of(const Requirement& found) {
                {"order", "by order of links"},
                Column("unit").in_detail()}};
   for (std::size_t i = 0; i < found.answers.size(); ++i) {
-    const KeptAnswer& answer = found.answers[i];
+    const KeptQuantity& answer = found.answers[i];
     const Unit unit = unit_of(answer);
     const auto said = [&](double value, const std::string& remark = "") {
       std::string note = unit.shown.empty() ? "" : text(answer, value);
@@ -60,7 +60,7 @@ Table answers_of(const Requirement& found) {
 /// What every effect does to the answers, and what it costs.
 Table effects_of(const Requirement& found, std::size_t bytes) {
   Table table{"effects", "by how much the answers move without", {{"name", "effect"}, {"change"}}};
-  for (const KeptAnswer& answer : found.answers) table.columns.push_back(column_of(answer));
+  for (const KeptQuantity& answer : found.answers) table.columns.push_back(column_of(answer));
   table.columns.insert(table.columns.end(), {{"time", "its time", kShare, 2},
                                              {"bytes", "its memory", kKilobytes},
                                              {"verdict"},
@@ -98,7 +98,7 @@ Table trials_of(const Requirement& found) {
                {"steps"},
                {"scene"},
                {"solver"}}};
-  for (const KeptAnswer& answer : found.answers) table.columns.push_back(column_of(answer));
+  for (const KeptQuantity& answer : found.answers) table.columns.push_back(column_of(answer));
   for (const EffectTrial& effect : found.effects)
     for (const ModelTrial& trial : effect.trials) {
       auto& row = table.rows.emplace_back();
@@ -140,7 +140,7 @@ RequirementSummary summary_of(const Requirement& found) {
   summary.scene = found.full.scene->name;
   summary.solver = found.full.choice.brief();
   summary.chaotic = found.chaotic ? "after " + number_text(found.horizon, kTime, 2) : "no";
-  summary.kept = join(found.answers, ", ", &KeptAnswer::name);
+  summary.kept = join(found.answers, ", ", &KeptQuantity::name);
   if (!drop.empty()) summary.can_go = drop;
   if (!found.effects.empty()) summary.required = keep.empty() ? "nothing" : keep;
   if (found.time_ratio) summary.time_left = found.time_ratio->mid;

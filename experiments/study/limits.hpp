@@ -21,15 +21,17 @@ struct Limit {
 /// and of the duration; of shares, points. Throws InputError.
 Limit parse_limit(const std::string&, const Scene&);
 
-/// The largest RMS stretch of a cloth that can be shown to anybody.
+/// The largest RMS stretch that is accepted.
 inline constexpr double kMostStretch = 0.1;
 
-/// What is accepted unless something is asked for, as far as the scene has it: no passage and no
-/// crossing, depths below 0.1 % of the cloth's extent and an RMS stretch up to kMostStretch. The
-/// strain of a cloth that stands still is small, too; so its motion stays within 25 % of its way
-/// from the dynamic reference. Passages of edges and faces are accepted: past an edge of a box
-/// they happen to every solver that keeps vertices alone outside (`--keep edge.passages:0` asks
-/// for none).
+/// The limits unless others are asked for, as far as the scene has the values:
+///   - no passage of a vertex and no crossing;
+///   - depths of vertices of at most 0.1 % of the cloth's extent;
+///   - an RMS stretch of at most kMostStretch;
+///   - a motion error of at most 25 % of the way from the dynamic reference, for cloth that stands
+///     still has little strain.
+/// Passages of edges and faces are accepted: past an edge of a box they happen to every solver that
+/// keeps vertices alone outside (`--keep edge.passages:0` asks for none).
 std::vector<Limit> default_limits(const Scene&);
 
 /// What a case does beyond these limits: "penetration.peak 3.1 mm, more than 1 mm"; "": nothing.

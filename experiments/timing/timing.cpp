@@ -87,7 +87,7 @@ StepTime CheckpointedRun::sample(Solver& solver, int steps) const {
 
 int serve_timing(const Scene& scene, const SolverChoice& choice) {
   if (std::getenv("SLURM_JOB_ID"))
-    pin(choice.params.has("threads") ? std::max(1, choice.params.integer("threads")) : 1);
+    bind_to_cores(choice.params.has("threads") ? std::max(1, choice.params.integer("threads")) : 1);
   const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
   std::cout.precision(17);
   std::cout << "ready" << std::endl;
@@ -115,7 +115,7 @@ int serve_timing(const Scene& scene, const SolverChoice& choice) {
   return 0;
 }
 
-void pin(int cores) {
+void bind_to_cores(int cores) {
   cpu_set_t mine;
   if (sched_getaffinity(0, sizeof mine, &mine) != 0) return;
   for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&mine) > cores; ++core) CPU_CLR(core, &mine);

@@ -22,16 +22,16 @@ struct StepTime {
   double wall = 0;  ///< s; longer than cpu / threads on a busy machine, so only for display
 };
 
-/// A run that was seen once, so that samples can begin anywhere in it: the first steps alone would
-/// miss the contacts, which come later. Up to four states, evenly spaced, at least eight steps
+/// A computed run with up to four stored states, from which samples start: the first steps alone
+/// would miss the contacts, which come later. The states are evenly spaced, at least eight steps
 /// apart.
 class CheckpointedRun {
  public:
   /// Runs the first `steps` steps.
   CheckpointedRun(const Scene&, Solver&, int steps);
   const StepTime& whole() const { return whole_; }
-  /// Time of a step over `steps` steps (at least one from each state); before each state's
-  /// share one untimed step warms the caches.
+  /// Mean time of a step over `steps` steps, at least one from each state. Each start first takes
+  /// one untimed step to warm the caches.
   StepTime sample(Solver&, int steps) const;
 
  private:
@@ -74,20 +74,20 @@ class TimingWorker {
 };
 
 /// The worker's side: reads requests from stdin and answers on stdout until the input ends. In a
-/// Slurm job on as many cores as the solver has threads (pin()).
+/// Slurm job on as many cores as the solver has threads (bind_to_cores()).
 int serve_timing(const Scene&, const SolverChoice&);
 
-/// Keeps this process on as many of the cores that it may use, the last ones: no sample moves
-/// between cores. Nothing if it may use fewer.
-void pin(int cores);
+/// Binds this process to the last `cores` of its allowed cores, so that no sample moves to others.
+/// Does nothing if fewer are allowed.
+void bind_to_cores(int cores);
 
-/// How many times what takes `each` [s] fits into `seconds`; 1 to `most`.
+/// Number of runs of `each` [s] that fit into `seconds`; 1 to `most`.
 int times_within(double seconds, double each, int most);
 
-/// Which program can time the case: this one, or its sibling with the other build of Bullet.
+/// The program that can time the case: this one, or its sibling with the other build of Bullet.
 std::filesystem::path program_of(const CaseSpec&);
 
-/// Steps that say something about cost: all, or those before an explosion.
+/// Steps whose cost counts: all, or those before an explosion.
 int steps_done(const Record&);
 
 /// "Intel ... 2.80GHz, 2 cores".
@@ -123,7 +123,7 @@ struct TimingSession {
 
 struct TimingOptions {
   int rounds = 5;         ///< each gives two samples of every case
-  double seconds = 0.05;  ///< CPU time of one sample: as many steps as fit, all the steps at most;
+  double seconds = 0.05;  ///< CPU time of one sample: as many steps as fit, at most all;
                           ///< they are spread over the whole run
   std::function<void(std::size_t done, std::size_t all)> progress;
   /// No round begins that would not end by then; a case that is not ready by then has a failure.

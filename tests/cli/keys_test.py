@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""The tables of keys in the documents of scenes and of studies are what `taut list keys` prints, those of a record what
-`taut list record` does.
+"""Checks that the tables of keys and of a record in the documents equal `taut list keys` and `taut list record`.
 
 Usage: keys_test.py BUILD [--write]     --write: writes the tables anew"""
 
@@ -22,12 +21,12 @@ def rows_of(answer, name):
 
 
 def code(text):
-    """A value as typed, not a default in words."""
+    """Backquotes around a value as typed; a default in words stays as it is."""
     return f"`{text}`" if re.match(r"""[\[{"\d-]|(true|false)$""", text) else text
 
 
 def markdown(columns, rows):
-    """A table as the documents have it: an empty cell is one blank."""
+    """A Markdown table; an empty cell is one blank."""
     def line(cells):
         return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|\n"
     return line(columns) + "|---" * len(columns) + "|\n" + "".join(map(line, rows))
@@ -46,7 +45,7 @@ def scene_tables(rows):
 
 
 def replaced(text, heading, table):
-    """The document with this table in the place of the first after the heading."""
+    """The document with the first table after the heading replaced."""
     before, mark, after = text.partition(heading)
     assert mark, f"no heading {heading!r}"
     found = re.search(r"(?:^\|.*\n)+", after, re.MULTILINE)

@@ -267,7 +267,7 @@ TEST(SceneFiles, EachKindOfBadInputIsNamed) {
       {"collider=[{ radius = 1 }]", "missing key 'type'"},
       {"collider.0.radius=1", "[[collider]]"},
       {"pin_motion=[{ vertices = [5], velocity = [1, 0, 0] }]", "vertex 5, which is no pin"},
-      {"pin_motion=[{ vertices = [0] }, { vertices = [0] }]", "moves already"},
+      {"pin_motion=[{ vertices = [0] }, { vertices = [0] }]", "which another pin_motion moves"},
       {"time.dt=1/60", "Error while parsing"},
   };
   for (const auto& [assignment, expected] : wrong) {
@@ -377,7 +377,8 @@ TEST(SceneFiles, WhatIsSetBesideAFabricContradictsIt) {
             {fabric, "bending.stiffness.warp=2"},
             "'stiffness' in [bending]"}}) {
     const std::string errors = beside(cloth, rest, overrides);
-    EXPECT_NE(errors.find(says + " is what fabric = \"petrak-m1\" sets"), std::string::npos)
+    EXPECT_NE(errors.find(says + " conflicts with fabric = \"petrak-m1\", which sets it"),
+              std::string::npos)
         << cloth << rest << errors;
   }
 }

@@ -339,7 +339,7 @@ TEST(SceneValues, PinsMoveOnceAndFacesAreWhatWindNeeds) {
   EXPECT_EQ(problems(level("pins = [0]", motion)),
             "x:7:12: 'vertices' in [[pin_motion]] names vertex 1, which is no pin");
   EXPECT_EQ(problems(level("pins = [1]", motion + motion)),
-            "x:10:12: 'vertices' in [[pin_motion]] names vertex 1, which moves already");
+            "x:10:12: 'vertices' in [[pin_motion]] names vertex 1, which another pin_motion moves");
   EXPECT_EQ(problems("[wind]\n[cloth]\ngrid = [1, 3]\nsize = [0, 1]\nmass = 1\n"),
             "x:1:1: [wind] acts on faces, and this cloth has none");
   const Scene rests = parse_scene("x", level("pins = [1]", "[[pin_motion]]\nvertices = [1]\n"));

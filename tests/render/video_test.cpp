@@ -345,6 +345,7 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   EXPECT_EQ(other.scene, "thrown4");
   EXPECT_TRUE(other.refused.empty());
   EXPECT_EQ(other.clip.panels.size(), 3u) << "whoever can";
+  EXPECT_EQ(other.clip.columns, 3);
   EXPECT_EQ(other.clip.panels[0].key, "") << "no study ran it";
   EXPECT_EQ(other.duration, 1.5) << "three seconds of film";
   const Image wide = decoded(other.clip.bytes);

@@ -147,7 +147,8 @@ TEST(Chosen, AFilmHasItsPanelsItsBarAndItsEvents) {
       "still",
       "image/jpeg",
       "to be seen",
-      {{"jakobsen", "1 × 16", input.studies[0].records[4].key}, {"bullet", "elsewhere", ""}}};
+      {{"jakobsen", "1 × 16", input.studies[0].records[4].key}, {"bullet", "elsewhere", ""}},
+      2};
   input.media[0].bar = {{"title", "strain"}, {"stops", {"#000000", "#FFFFFF"}}};
   input.series = {
       {"hang", "jakobsen", "J", "stretch.rms", {0, 0.5, 1, 1.5}, {0, 0.1, std::nan(""), 9}},
@@ -163,6 +164,7 @@ TEST(Chosen, AFilmHasItsPanelsItsBarAndItsEvents) {
                                    {"settings", "1 × 16"},
                                    {"case", short_key("hang", "jakobsen", 16)}},
                                   {{"solver", "bullet"}, {"settings", "elsewhere"}}}));
+  EXPECT_EQ(film["columns"], 2);
   EXPECT_EQ(film["bar"], input.media[0].bar);
   const Json range{{"axis", "linear"}, {"low", 0}, {"high", 10 + 0.06 * 10}};  // of 0.1
   const Json line{{"solver", "jakobsen"},

@@ -242,9 +242,9 @@ TEST(Settings, LabelsHaveWhatVariesAndNoMore) {
   all[2].params["order"] = "coloured";
   const SettingLabels labels(all);
   EXPECT_EQ(labels.of(all[0]), "1 × 4, omega=1.5, mesh") << "a number does not speak for itself";
-  EXPECT_EQ(labels.of(all[1]), "1 × 8, mesh, tethers");
+  EXPECT_EQ(labels.of(all[1]), "1 × 8, mesh, tethers=on");
   EXPECT_EQ(labels.of(all[2]), "1 × 8") << "what is as the solver has it is not said";
-  EXPECT_EQ(labels.of(all[1], {"order"}), "1 × 8, tethers") << "what is said beside it";
+  EXPECT_EQ(labels.of(all[1], {"order"}), "1 × 8, tethers=on") << "what is said beside it";
   EXPECT_EQ(labels.of(all[3]), "") << "nothing varies of Bullet's";
 
   std::vector<Record> by_order = at_work({{"jakobsen", {{1, 4}, {1, 4}}}});

@@ -32,7 +32,7 @@ Observation still(
   return moving({scene, settings, "jakobsen"}, {1}, [&](const Vec3& x, double) { return f(x); });
 }
 
-TEST(KeptAnswers, AreShownInTheirUnits) {
+TEST(KeptQuantities, AreShownInTheirUnits) {
   EXPECT_EQ(text({"shape"}, 0.0012), "1.2 mm");
   EXPECT_EQ(text({"stretch.max"}, 0.0256), "2.56 %");
   EXPECT_EQ(text({"settle.time"}, 3.5), "3.5 s");
@@ -42,7 +42,7 @@ TEST(KeptAnswers, AreShownInTheirUnits) {
   EXPECT_EQ(text({"shape"}, kNoAnswer), "-");
 }
 
-TEST(KeptAnswers, HaveToleranceByTheirKind) {
+TEST(KeptQuantities, HaveToleranceByTheirKind) {
   Observation full = still("plane", {"time.duration=4"});
   full.record.values = {{"stretch.max", 0.02},    {"settle.time", 3},      {"energy.mean", -0.5},
                         {"penetration.max", 0.1}, {"tunnelling.count", 3}, {"jitter.rms", 0.2}};
@@ -80,7 +80,7 @@ TEST(KeptAnswers, HaveToleranceByTheirKind) {
   EXPECT_EQ(wrong("shpae"), "--keep shpae: unknown metric value 'shpae'; did you mean 'shape'?");
 }
 
-TEST(KeptAnswers, ByDefaultAreThoseThatTheCaseHas) {
+TEST(KeptQuantities, ByDefaultAreThoseThatTheCaseHas) {
   Observation full = still("ball", {});
   full.record.values = {{"stretch.max", 0.02},
                         {"penetration.max", 0},
@@ -100,8 +100,8 @@ TEST(KeptAnswers, ByDefaultAreThoseThatTheCaseHas) {
             (Names{"shape", "penetration.max", "settle.time", "stretch.max"}));
 }
 
-TEST(KeptAnswers, ShapesAreComparedAtTheCoarserGrid) {
-  const KeptAnswer shape{"shape"};
+TEST(KeptQuantities, ShapesAreComparedAtTheCoarserGrid) {
+  const KeptQuantity shape{"shape"};
   const Observation fine = still("hang", {"cloth.grid=[9, 5]"});
   const auto one_moved = [&](std::size_t vertex) {
     Observation other = still("hang", {"cloth.grid=[9, 5]"});
@@ -136,8 +136,8 @@ TEST(KeptAnswers, ShapesAreComparedAtTheCoarserGrid) {
   EXPECT_EQ(distance(shape, still("disc", {}), fine), kNoAnswer) << "no grid";
 }
 
-TEST(KeptAnswers, AreOfTheLastFrameAndNoneOfARunThatDidNotEnd) {
-  const KeptAnswer shape{"shape"};
+TEST(KeptQuantities, AreOfTheLastFrameAndNoneOfARunThatDidNotEnd) {
+  const KeptQuantity shape{"shape"};
   const CaseSpec spec{"hang", {"cloth.grid=[4, 4]"}, "jakobsen"};
   const auto slides = [](double speed) {
     return [=](const Vec3& x, double t) { return Vec3(x + Vec3(speed * t, 0, 0)); };
@@ -162,14 +162,14 @@ TEST(KeptAnswers, AreOfTheLastFrameAndNoneOfARunThatDidNotEnd) {
   EXPECT_EQ(distance(shape, other, full), kNoAnswer);
 }
 
-TEST(KeptAnswers, ValuesDifferByTheirDistanceOrAsTheirMotionsDo) {
+TEST(KeptQuantities, ValuesDifferByTheirDistanceOrAsTheirMotionsDo) {
   const CaseSpec plane{"plane", {"time.duration=3"}, "jakobsen"},
       bare{"plane", {"time.duration=3", "collider=[]"}, "jakobsen"};
   // Level cloth at these heights: the metric sees the last second alone.
   const auto level = [](double before, double at_end) {
     return [=](const Vec3& x, double t) { return Vec3(x.x(), t < 2.5 ? before : at_end, x.z()); };
   };
-  const KeptAnswer depth{"penetration.max"};
+  const KeptQuantity depth{"penetration.max"};
   const std::vector<double> times{0, 1, 1.5, 2.5, 3};
   Observation full = moving(plane, times, level(-0.5, -0.125)),
               without = moving(bare, times, level(-0.75, -0.375));
@@ -190,7 +190,7 @@ TEST(KeptAnswers, ValuesDifferByTheirDistanceOrAsTheirMotionsDo) {
       << "a metric of the scene does not take another grid";
 }
 
-TEST(KeptAnswers, WorkAndMemoryAreSumsOverThePasses) {
+TEST(KeptQuantities, WorkAndMemoryAreSumsOverThePasses) {
   const std::vector<PassCost> passes{{"verlet", 10, 2, 300, false}, {"links", 7, 6, 50, true}};
   EXPECT_EQ(work_of(passes), 62u);
   EXPECT_EQ(bytes_of(passes), 350u);

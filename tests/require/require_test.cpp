@@ -113,7 +113,7 @@ TEST(Effects, OneOfSeveralCollidersGoes) {
 
 TEST(Answers, ShapesOfOtherGridsAreComparedAtTheSameCloth) {
   const Observation fine = observation("hang", {"cloth.grid=[33, 33]"}, bent);
-  const KeptAnswer shape{"shape", 0.01};
+  const KeptQuantity shape{"shape", 0.01};
   const auto from = [&](const std::string& grid, const Vec3& off) {
     return distance(shape, fine, observation("hang", {"cloth.grid=" + grid}, [&](const Vec3& x) {
                       return Vec3(bent(x) + off);
@@ -153,7 +153,7 @@ TEST(Answers, ALostValueIsMeasuredOnTheMotion) {
   full.record.values["penetration.max"] = 0;
   Observation without = observation("plane", {"collider=[]"},
                                     [](const Vec3& x) { return Vec3(x.x(), -0.25, x.z()); });
-  const KeptAnswer depth{"penetration.max", 0.001};
+  const KeptQuantity depth{"penetration.max", 0.001};
   EXPECT_NEAR(distance(depth, full, without), 0.25, 1e-12);
   without.record.status = {Status::Kind::exploded, "energy", 3, 0};
   EXPECT_EQ(distance(depth, full, without), std::numeric_limits<double>::infinity());

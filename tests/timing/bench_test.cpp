@@ -79,14 +79,14 @@ TEST(Bench, OnlyStepIsInsideTheClock) {
   EXPECT_NEAR(CheckpointedRun(scene, solver, 10).whole().cpu, 0.002, 0.0005);
 }
 
-TEST(Bench, AProcessStaysOnTheCoresThatItIsPinnedTo) {
+TEST(Bench, AProcessStaysOnTheCoresThatItIsBoundTo) {
   std::thread([] {  // a thread's own set of cores
     cpu_set_t before, after;
     ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
-    pin(CPU_COUNT(&before) + 1);
+    bind_to_cores(CPU_COUNT(&before) + 1);
     ASSERT_EQ(sched_getaffinity(0, sizeof after, &after), 0);
     EXPECT_TRUE(CPU_EQUAL(&before, &after)) << "it has fewer";
-    pin(1);
+    bind_to_cores(1);
     ASSERT_EQ(sched_getaffinity(0, sizeof after, &after), 0);
     EXPECT_EQ(CPU_COUNT(&after), 1);
     CPU_AND(&before, &before, &after);

@@ -26,7 +26,7 @@ struct TouchingVertex {
   std::size_t vertex = 0, collider = 0;
   Vec3 normal = Vec3::UnitY();
   double offset = 0;         ///< m, of the collider and the scene's thickness
-  Vec3 from = Vec3::Zero();  ///< m, where it would be if it had not slipped in this substep
+  Vec3 from = Vec3::Zero();  ///< m, position if it had moved with the collider in this substep
   double friction = 0;
 
   double gap(const Vec3& x) const { return normal.dot(x) - offset; }
@@ -77,8 +77,8 @@ Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce
     const double push = now.push;
     now.push = std::max(0.0, -at.gap(free + compliance * now.rub) / along);
     Vec3 rub = now.rub - at.slip(free + compliance * at.total(now)) / across;
-    const double length = rub.norm(), most = at.friction * now.push;
-    if (length > most) rub *= most / length;
+    const double length = rub.norm(), bound = at.friction * now.push;
+    if (length > bound) rub *= bound / length;
     const double moved = std::abs(now.push - push) + (rub - now.rub).norm();
     now.rub = rub;
     if (moved <= 1e-12 * now.push) break;
@@ -113,22 +113,22 @@ class Contacts {
   ContactForce& force(std::size_t vertex, std::size_t collider) {
     return forces_[vertex * surfaces_.size() + collider];
   }
-  /// All that touch, of vertices that move.
+  /// All contacts of vertices that are not pinned.
   template <class Real>
   void find(const Particles<Real>& p, std::vector<TouchingVertex>&);
 
-  /// Where sweeps start: what touches at p.x moves out of the collider and against its slip as if
-  /// it had no link, which is all there is to a sheet that lands flat. Forces that hold it already
+  /// The initial guess of sweeps: each touching vertex leaves the collider and undoes its slip as
+  /// if it had no links. A sheet that lands flat needs no more. Forces that already hold a vertex
   /// stay as they are where there is no gap and no slip.
   template <class Real>
   void predict(Particles<Real>& p, double h);
-  /// The forces of what newly touches as if it had no link; p.x is y, and stays.
+  /// Sets the forces of new contacts as if there were no links. Does not change p.x, which holds y.
   template <class Real>
   void predict_new(const Particles<Real>& p, double h);
 
-  /// Whether any collider holds the vertex, or it is inside of one at x.
+  /// Whether any collider holds the vertex, or x is inside one.
   bool reaches(std::size_t vertex, const Vec3& x, const Vec3& previous);
-  /// Of a vertex at x [N], linearised there.
+  /// The sum of the forces [N] on a vertex at x, linearised there.
   Vec3 force_at(std::size_t vertex, const Vec3& x, const Vec3& previous);
   /// Settles the contacts of a vertex that has been moved to x, with this Hessian [N/m].
   void settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian, const Vec3& previous,
@@ -141,7 +141,7 @@ class Contacts {
   std::vector<ContactForce> forces_;  ///< [vertex][collider]
 };
 
-/// Null where there is no collider or the response is another one than to put out in every sweep.
+/// Null if there is no collider, or if `contact` is neither continuous nor discrete.
 std::unique_ptr<Contacts> make_contacts(const Scene&, const Params&);
 
 }  // namespace taut

@@ -44,7 +44,7 @@ class Layout {
   [[gnu::always_inline]] std::size_t slot(std::size_t i) const {
     return slots_.empty() ? 4 * i : slots_[i];
   }
-  /// Where slots are looked up; null: 4 i.
+  /// The slot of each particle; null: 4 i.
   const std::uint32_t* slots() const { return slots_.empty() ? nullptr : slots_.data(); }
   /// Which coordinate the number at `place` is: 0 x, 1 y, 2 z, 3 none. Repeats every kGrain.
   int axis(std::size_t place) const {
@@ -52,12 +52,12 @@ class Layout {
   }
   std::size_t bytes() const { return slots_.size() * sizeof slots_[0]; }
 
-  /// Of particles beside each other, which threads share; at least one.
+  /// Number of blocks, at least 1. A block is a run of neighbouring particles for one thread.
   std::size_t blocks() const {
     const std::size_t used = stride_ == 1 ? 4 * size_ : to_index(sheet_.rows) * sheet_.stride;
     return std::max<std::size_t>(1, (used + block_length() - 1) / block_length());
   }
-  /// Where a block begins in the array; of blocks(): its end.
+  /// Where a block begins in the array; place_of_block(blocks()) is the end of the array.
   std::size_t place_of_block(std::size_t block) const {
     return block < blocks() ? block * block_length() : length_;
   }
@@ -90,8 +90,8 @@ struct CacheLineAllocator {
   bool operator==(const CacheLineAllocator&) const { return true; }
 };
 
-/// One point or vector per particle. What the innermost loops call is inlined by order: in a large
-/// translation unit g++ gives up, and contact then costs twice as much.
+/// One point or vector per particle. What the innermost loops call is force-inlined; otherwise g++
+/// stops inlining in a large translation unit, and contact costs twice as much.
 template <class Real>
 class Points {
  public:
@@ -116,8 +116,8 @@ class Points {
   }
   [[gnu::always_inline]] void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
 
-  /// Calls f(at), where at(points, i) is particle i of any points with this layout, which has
-  /// been looked up: for loops over all.
+  /// Calls f(at): at(points, i) loads particle i of any points with this layout. The slots are
+  /// looked up once, outside f's loop.
   template <class F>
   void read(const F& f) const {
     const std::uint32_t* const slots = layout_->slots();
@@ -158,7 +158,7 @@ struct Particles {
   std::size_t size() const { return layout->size(); }
 };
 
-/// Items, each of a vertex, block after block of the particles.
+/// Items that belong to a vertex each, sorted by the block of that vertex.
 template <class Item>
 class ByBlock {
  public:
@@ -174,7 +174,7 @@ class ByBlock {
   bool empty() const { return items_.empty(); }
   std::size_t size() const { return items_.size(); }
   std::size_t bytes() const { return size() * sizeof(Item) + first_.size() * sizeof first_[0]; }
-  /// Those of blocks [begin, end).
+  /// The items of blocks [begin, end).
   std::span<Item> of(std::size_t begin, std::size_t end) {
     if (empty()) return {};
     return std::span(items_).subspan(first_[begin], first_[end] - first_[begin]);
@@ -182,7 +182,7 @@ class ByBlock {
 
  private:
   std::vector<Item> items_;
-  std::vector<std::size_t> first_;  ///< of each block, and the end
+  std::vector<std::size_t> first_;  ///< index of each block's first item, and the end
 };
 
 struct TouchingPieces;  // contact/augmented_contacts.hpp
@@ -198,24 +198,24 @@ class Pass {
   /// Pins have let go: `before`, a pass of the same class, did this one's work until here. What is
   /// kept from step to step and not taken over here is forgotten.
   virtual void take_over(const Pass& /*before*/) {}
-  /// Once for the step [t, t + dt], before integration; called of a pass that asks for it alone.
+  /// Once for the step [t, t + dt], before integration; called only if the pass asks for it.
   virtual void accelerate(Particles<Real>&, double /*t*/, double /*dt*/) {}
   /// Once for the step [t, t + dt], after integration and before the first sweep.
   virtual void begin(Particles<Real>&, double /*t*/, double /*dt*/) {}
   /// For the step [t, t + dt].
   virtual void apply(Particles<Real>&, double t, double dt) = 0;
-  /// Once for the step, after the last sweep and contact: called of those that solve links.
+  /// Once for the step, after the last sweep and contact; called only of passes that solve links.
   virtual void end(Particles<Real>&, double /*t*/, double /*dt*/) {}
-  /// Whether all of these touch particles only in what they queue (ThreadPool::queue): before those
-  /// of any other pass, what is queued has to be finished.
+  /// Whether this pass accesses particles only in queued work (ThreadPool::queue). Finish the queue
+  /// before any other pass.
   virtual bool queues() const { return false; }
-  /// Where the particles would go without links and contact [m], of a pass that solves towards it;
-  /// null: of any other. Contact that is projected after the pass moves it by what it moves
-  /// particles by, so that the links feel that force from the next iteration on.
+  /// The goal y [m] of a pass that solves towards y, the positions without links and contact; null
+  /// for any other. Contact that is projected after the pass moves y as it moves the particles, so
+  /// that the links feel that force from the next iteration on.
   virtual Points<Real>* target() { return nullptr; }
-  /// Of faces and edges, for a pass that takes their contact into its solve; null: any other.
+  /// The contact of faces and edges, of a pass that has it in its solve; null for any other.
   virtual TouchingPieces* touching_pieces() { return nullptr; }
-  /// Of one application, a line for each thing it does; the solver sets `repeats`.
+  /// The costs of one application, one for each thing it does; the solver sets `repeats`.
   virtual std::vector<PassCost> cost() const = 0;
 };
 

@@ -10,11 +10,17 @@
 
     taut_solver.serve(Mine)
 
-Optional: protocol = "taut-solver/2", if the solver reads the scene's stiffness and bending and knows capsules: it is
-then given scenes with elastic links, bending stiffness and capsules, too; "taut-solver/3", if it knows bodies of
-triangles as well, "taut-solver/4", if bodies that deform; summary, source; unmeasurable = "it computes on a GPU" (then no cost is published);
-cannot(scene, params), a static method that gives the reasons why the scene would be misread; plan(), a
-list of {"pass", "items", "repeats", "bytes", "projections"}; settings(), a dict of texts.
+Optional:
+    protocol                 version, by what the solver must handle; it gets no scenes with anything else:
+        "taut-solver/1"      rigid links; planes, balls and boxes (the default)
+        "taut-solver/2"      also elastic links (stiffness), bending stiffness (bending), capsules, seams, pins that let go
+        "taut-solver/3"      also bodies of triangles
+        "taut-solver/4"      also bodies that deform
+    summary, source          texts
+    unmeasurable             why its CPU time says nothing, "it computes on a GPU"; then no cost is published
+    cannot(scene, params)    static method: a list of reasons why the scene would be misread
+    plan()                   list of {"pass", "items", "repeats", "bytes", "projections"}
+    settings()               dict of texts
 Standard output belongs to the protocol: print() goes to standard error here. MIT licence, as taut.
 """
 
@@ -29,7 +35,7 @@ PROTOCOL = "taut-solver/1"
 
 def serve(solver):
     requests, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what anybody prints is no answer
+    os.dup2(2, 1)  # print() must not reach the protocol
     state = {"live": None, "vertices": 0}
 
     def hello(request):
@@ -70,7 +76,7 @@ def serve(solver):
             if request["op"] not in known:
                 raise ValueError(f"unknown op {request['op']!r}")
             answer = known[request["op"]](request)
-        except Exception as error:  # MemoryError too: its name is the answer
+        except Exception as error:  # includes MemoryError: the answer begins with its name
             answer = {"error": f"{type(error).__name__}: {error}"}
         answers.write(json.dumps(answer).encode() + b"\n" + state["bytes"])
         answers.flush()

@@ -42,7 +42,7 @@ MediaOptions options_of(const Film& film, std::size_t runs) {
   return options;
 }
 
-/// As the model of a report has it.
+/// The field `bar` of a film (MODEL.md, Films).
 Json bar_of(const ColourScale& scale) {
   constexpr int kStops = 17;
   Json bar{{"title", scale.title()}};
@@ -71,7 +71,7 @@ report::Clip clip_of(const RunSet& set, const Media& media) {
   return clip;
 }
 
-/// Of all that its pictures depend on: cases, size, speed, the length of the beginning that is
+/// The digest of all that its pictures depend on: cases, size, speed, how much of the beginning is
 /// shown, this program.
 std::string key_of(const Film& film) {
   const MediaOptions options = options_of(film, film.request.solvers.size());
@@ -105,8 +105,7 @@ FilmResult make_film(const Film& film) {
   return result;
 }
 
-/// The film that is kept, else a new one, which is kept; with the names by which this report calls
-/// what is in it.
+/// Returns the kept film, or makes one and keeps it; then sets the labels of this report.
 FilmResult kept_or_made(const Film& film, const std::filesystem::path& folder, bool& made) {
   const std::filesystem::path file = folder / (key_of(film) + ".json");
   std::optional<FilmResult> kept = kept_film(file);
@@ -117,6 +116,7 @@ FilmResult kept_or_made(const Film& film, const std::filesystem::path& folder, b
   media.summary = film.summary;
   media.refused = film.refused;
   media.clip.panels = film.panels;
+  media.clip.columns = PageLayout::columns_of(static_cast<int>(film.panels.size()));
   return std::move(*kept);
 }
 

@@ -38,13 +38,11 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
   return all;
 }
 
-/// What a setting adds to a label: "mesh" speaks for itself, "4" and "on" do not.
+/// What a setting adds to the label of a curve.
 std::string in_label(const std::string& key, const std::string& value) {
   if (key == kSweeps) return value + " sweeps";
   if (key == kSubsteps) return value + " substeps";
-  const bool word = value != "on" && value != "off" &&
-                    value.find_first_not_of("0123456789.+-e/") != std::string::npos;
-  return word ? value : key + "=" + value;
+  return named_setting(key, value);
 }
 
 bool is_setting(const std::string& name) {

@@ -337,6 +337,12 @@ std::vector<std::string> names_in_labels(const std::string& solver) {
 
 }  // namespace
 
+std::string named_setting(const std::string& name, const std::string& value) {
+  const bool word = value != "on" && value != "off" &&
+                    value.find_first_not_of("0123456789.+-e/") != std::string::npos;
+  return word ? value : name + "=" + value;
+}
+
 SettingLabels::SettingLabels(const Records& all) {
   for (const Record* r : all)
     for (const std::string& name : names_in_labels(r->solver))
@@ -360,13 +366,8 @@ std::vector<std::string> SettingLabels::parts(const Record& record,
     any = true;
     if (name == kSubsteps || name == kSweeps)
       work = true;
-    else if (*value == default_of(record.solver, name))
-      continue;
-    else if (*value == "on")
-      all.push_back(name);
-    else
-      all.push_back(std::isfinite(number(*value)) || *value == "off" ? name + "=" + *value
-                                                                     : *value);
+    else if (*value != default_of(record.solver, name))
+      all.push_back(named_setting(name, *value));
   }
   if (work || (any && all.empty())) all.insert(all.begin(), work_of(record).text());
   return all;

@@ -111,6 +111,9 @@ std::string brief_settings(const std::string& solver);
 /// sweeps), if they have none in common; "" if they have.
 std::string unequal_work(const Records&);
 
+/// "mesh", which speaks for itself; "levels=4" and "tethers=on", whose values do not.
+std::string named_setting(const std::string& name, const std::string& value);
+
 /// Labels of records by those accuracy parameters that take several values among their solver's.
 class SettingLabels {
  public:

@@ -257,6 +257,7 @@ Json json_of(const SceneMedia& media, const ReportInput& input, CaseList& refs,
     add_if(one, "case", refs.key(panel.key));
     film["panels"].push_back(std::move(one));
   }
+  if (!clip.panels.empty()) film["columns"] = clip.columns;
   add_if(film, "bar", media.bar);
   add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
   return film;

@@ -320,7 +320,10 @@ function drawChart(svg, spec, {kind, height, frame, failed, floored, clip}, widt
   let right = 12, xs = drawX(right);
   const end = (node) => node.getBoundingClientRect().right;
   const over = d3.max(axisX.selectAll('text').nodes(), end) - end(svg.node());
-  if (over > 0) xs = drawX(right += Math.ceil(over));
+  if (over > 0) {
+    right += Math.ceil(over);
+    xs = drawX(right);
+  }
   axisY.selectAll('.tick line').attr('x2', width - left - right);
   axisX.select('.domain').attr('d', `M${left},0H${width - right}`);
   thin(axisX.selectAll('text').nodes());

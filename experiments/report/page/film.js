@@ -9,7 +9,7 @@ function blobUrl(uri) {
   return URL.createObjectURL(new Blob([bytes], {type: head.slice(5).split(';')[0]}));
 }
 
-/** Solvers that the answer has a column of. */
+/** Ids of the answer's columns. */
 const compared =
     Object.values(model.answer?.tables ?? {})[0]?.columns.slice(1).map(({name}) => name) ?? [];
 
@@ -132,23 +132,20 @@ function colourBar(bar) {
          bar.ticks.map((t) => el('span', {style: `left:${100 * t.at}%`}, t.text))));
 }
 
-/** As the film has its panels: four in two rows, else up to three side by side. */
-const columnsOf = (n) => n === 4 ? 2 : Math.min(n, 3);
-
 function panels(film) {
   const failure = (status) =>
       status && status !== 'ok' && [' ', glyphBox(status), ' ', statusOf(status).title];
   const panel = ({solver, settings, case: key}) =>
       el('div', {}, named(solver),
          el('small', {}, caseLink(key, short(settings, 60)), failure(cases.get(key)?.status)));
-  const columns = `repeat(${columnsOf(film.panels.length)},minmax(0,1fr))`;
+  const columns = `repeat(${film.columns},minmax(0,1fr))`;
   return el(
       'div', {className: 'panels', style: `grid-template-columns:${columns}`},
       film.panels.map(panel));
 }
 
-/** Who of the solvers compared is not in a film. */
-function filmed(film) {
+/** The compared solvers that the film does not show. */
+function notFilmed(film) {
   const seen = film.panels.map(({solver}) => solver),
         others = compared.filter((id) => !seen.includes(id));
   if (!others.length) return null;
@@ -191,7 +188,7 @@ function player(scene, film) {
     video.addEventListener('loadedmetadata', place);
     video.src = blobUrl(film.src);
   };
-  /** A frame is sought a little after its beginning: rounding must not show the one before. */
+  /** Seeks a little past the beginning of a frame, or rounding could show the frame before. */
   const place = () => {
     const into = (time + (time > 0 ? film.frame / 8 : 0)) / film.speed;
     if (video.readyState) video.currentTime = Math.min(video.duration, into);
@@ -245,7 +242,7 @@ function player(scene, film) {
                    button('▸', 'One frame forward', () => step(1)), slider, clock,
                    el('span', {className: 'hint'},
                       film.speed < 1 && `${number(film.speed, 2)} of real time · `, 'space, ← →'))),
-         el('div', {className: 'beside'}, filmed(film), tracks.map((track) => track.node)));
+         el('div', {className: 'beside'}, notFilmed(film), tracks.map((track) => track.node)));
   if (video) {
     slider.max = film.duration;
     slider.step = film.frame;

@@ -27,7 +27,7 @@ function mark(id) {
 const named = (id, title) =>
     el('span', {className: 'solver'}, mark(id), short(title ?? solverOf(id).title, 40));
 
-/** A link that opens a case and says at the pointer how it ended. */
+/** A link that opens a case and shows its status as a tooltip. */
 function caseLink(key, ...text) {
   if (!cases.has(key)) return el('span', {}, ...text);
   const link = choice({case: key}, {className: 'to-case'}, ...text);
@@ -42,13 +42,13 @@ const bySolver = (counts) =>
 const middle = (value) => Array.isArray(value) ? value[1] : typeof value === 'number' ? value : NaN;
 const unitOf = (column) => ({unit: column.shown ?? '', scale: column.scale ?? 1});
 
-/** What a cell says, the interval of a cost apart. */
+/** The text of a cell; of an interval its middle. */
 function cellText({value}, column) {
   if (Number.isFinite(middle(value))) return shown(middle(value), unitOf(column), column.digits);
   return value === null ? '' : typeof value === 'boolean' ? value ? 'yes' : 'no' : value;
 }
 
-/** An interval beside its middle: "±0.3 %", the interval itself at the pointer. */
+/** The half width of an interval, "±0.3 %", with the interval itself as a tooltip. */
 function spreadOf([low, mid, high], column) {
   return el(
       'small', {title: interval(low, high, unitOf(column))},
@@ -82,7 +82,7 @@ function cellContent(cell, column, most) {
   ];
 }
 
-/** A row: its head, then a cell for each column; those of solvers vanish with them. */
+/** A row: its head, then a cell for each column; cells of a solver are hidden with it. */
 function tableRow(table, cells, props, head, bars) {
   const most = bars ? d3.max(cells, (cell) => middle(cell.value)) : 0;
   return el(
@@ -94,7 +94,7 @@ function tableRow(table, cells, props, head, bars) {
             cellContent(cell, column, most));
       }));
 }
-/** The heads of the columns, with units unless `first` stands in the place of the first. */
+/** The heads of the columns with their units; `first` replaces the first head and omits units. */
 function tableHeads(table, first) {
   const solverHead = ({name, heading}) => {
     const {arithmetic} = solverOf(name);
@@ -131,10 +131,7 @@ const tableNode = (table, heading = 'h4') =>
 const foldedTable = (table) =>
     folded(table.title, copyButton(() => tableCsv(table)), tableBody(table));
 
-/**
- * Questions whose scenes are shown; where there is room, those of the first one, unless the reader
- * chose.
- */
+/** Names of unfolded questions. Default on a wide window: the first. */
 function unfolded() {
   const chosen = state.params().getAll('open').filter((name) => name !== 'none');
   return state.get('open') || innerWidth < 1000 ? chosen : [...questions.keys()].slice(0, 1);
@@ -177,8 +174,9 @@ function questionRows(table) {
     for (const fold of folds) fold.classList.toggle('folded', !open);
     if (cells === shown) return;
     head?.remove();
+    shown = cells;
     head = tableRow(
-        table, shown = cells, {className: scene ? 'question of-scene' : 'question'},
+        table, cells, {className: scene ? 'question of-scene' : 'question'},
         [
           button,
           el('small', {title: cells[0].note ?? ''}, cells[0].value,

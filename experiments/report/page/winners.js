@@ -12,11 +12,11 @@ function explain(text) {
       .map(({term, meaning}) => `${term}: ${meaning}`)
       .join('\n');
 }
-/** A setting that no line breaks within "2 × 8". */
+/** The setting with "2 × 8" kept on one line. */
 const kept = (text) => text.replaceAll(' × ', '\u00A0×\u00A0');
 const explained = (text, props = {}) => el('small', {...props, title: explain(text)}, kept(text));
 
-/** All abbreviations, below what has them. */
+/** The list of all abbreviations. */
 function termList() {
   if (!model.terms?.length) return null;
   const entry =
@@ -25,7 +25,7 @@ function termList() {
   return el('p', {className: 'note terms'}, model.terms.map(entry), '.');
 }
 
-/** A number of a sentence leads to its case, or to the map that it counts cells of. */
+/** A part of a sentence: a number links to its case, or to the map whose cells it counts. */
 function saidPart({text, case: key, map}) {
   if (key) return caseLink(key, text);
   return map ? choice({at: 'winners'}, {}, text) : text;
@@ -96,11 +96,12 @@ function winnersCard() {
     missed: 'way by what steps miss',
     nothing: 'way not judged'
   };
-  const byMissed = `On ${missed} only what its own steps miss of exact ones tells that: ` +
+  const byMissed = `On ${missed} motion is judged by what the cloth\u2019s own steps miss ` +
+      'of exact ones: ' +
       'solvers that declare no step (Bullet\u2019s) and contact that does not settle ' +
       'are not judged there. ';
-  const notJudged = `On ${unjudged} nothing tells it, or nothing moves: ` +
-      'cloth that lags keeps its links there. ';
+  const notJudged =
+      `On ${unjudged} motion is not judged; cloth that lags may show little stretch. `;
   const line = (row) => {
     const node =
         el('tr', {},
@@ -125,14 +126,16 @@ function winnersCard() {
               'the CPU time of a frame of 1/60\u00A0s, the setting, the arithmetic, ' +
               'and the stiffness of links that are not rigid. ',
           'A setting does not count if it fails, passes through a body or sinks into it ' +
-              'by more than 0.1\u00A0% of the cloth\u2019s diagonal, or goes less than half of its way: ' +
-              'that of the scene\u2019s reference in motion, off which it may be by a quarter; ' +
-              'where there is none, and no contact, that of exact steps of implicit Euler. ',
+              'by more than 0.1\u00A0% of the cloth\u2019s diagonal, ' +
+              'or if the cloth travels less than half of its way. ',
+          'The way is that of the scene\u2019s reference in motion, ' +
+              'from which the cloth may be off by a quarter of it. ',
+          'Without a reference and without contact, the way is that of exact steps of implicit Euler. ',
           missed && byMissed, unjudged && notJudged,
           'The error is that of the last second; ' +
               'a setting that exceeds it at some moment of the run says by how much. ',
           'Only settings that were timed compete: ' +
-              'a rival whose next setting just misses the error is out. ',
+              'a solver is absent if no timed setting reaches the error. ',
           certainty));
 }
 

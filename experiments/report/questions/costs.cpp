@@ -64,7 +64,7 @@ bool is_upper_bound(const SceneBench& bench, const std::vector<Candidate>& candi
 
 namespace {
 
-/// One scene of a bench with its errors and costs: an interval is a bootstrap, made once.
+/// One scene of a bench. The candidates are cached, since each of their intervals is a bootstrap.
 struct Timed {
   SceneBench bench;
   std::vector<Candidate> candidates;
@@ -76,7 +76,7 @@ struct Timed {
     return std::ranges::find(candidates, solver, &Candidate::solver) != candidates.end();
   }
   bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
-  /// These words of a solver no setting of which reaches the error, and why: "at best 0.12 %".
+  /// The cell of a solver that misses the error: `words`, and how near it came ("at best 0.12 %").
   Cell not_reached(const std::string& words, const std::string& solver) const {
     if (!has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
     if (const auto uncounted = only_uncounted(candidates, solver, kPricedError, words))
@@ -97,8 +97,8 @@ struct Timed {
 
 using Chosen = std::vector<std::optional<std::size_t>>;  ///< case of each solver
 
-/// Marks the cheapest if it is cheaper than each other by a difference that can be told. `bounds`:
-/// whose costs are upper bounds; than these nothing is known to be cheaper.
+/// Marks the cheapest if it is distinguishable from all others. Nothing is marked against an upper
+/// bound; `bounds`: which costs are one.
 void mark_cheapest(std::vector<Cell>& row, const std::vector<std::vector<Interval>>& over,
                    const std::vector<bool>& bounds, const Interval& control) {
   for (std::size_t i = 0; i < over.size(); ++i) {
@@ -153,7 +153,7 @@ class Costs {
 
   void add_equal_cost(Answer& answer) {
     const Quantity q = quantity(kErrorMetric);
-    const double budget = common_budget(), nothing = find_value(kErrorMetric).second->negligible;
+    const double budget = common_budget(), floor = find_value(kErrorMetric).second->negligible;
     Table table{"equal_cost",
                 capitalised(q.title) + " at equal cost",
                 columns_of(solvers_, q.unit),
@@ -171,17 +171,17 @@ class Costs {
                           ? Cell::lacking(Cell::State::none, "nothing that cheap")
                           : Cell::lacking(Cell::State::not_run, "not timed"));
       }
-      mark_least(row, nothing);
+      mark_least(row, floor);
       table.rows.push_back(std::move(row));
     }
-    const Common common = common_of(table, nothing);
+    const Common common = common_of(table, floor);
     std::vector<Cell> last = last_row(table, common, "mean of", [&](std::size_t c) {
       double logs = 0;
       for (const std::size_t r : common.rows)
-        logs += std::log(std::max(table.rows[r][c].number(), nothing));
+        logs += std::log(std::max(table.rows[r][c].number(), floor));
       return Cell(std::exp(logs / static_cast<double>(common.rows.size())));
     });
-    mark_least(last, nothing);
+    mark_least(last, floor);
     table.rows.push_back(std::move(last));
     answer.add(std::move(table));
   }
@@ -233,7 +233,7 @@ class Costs {
     answer.add(std::move(table));
   }
 
-  /// What is not the same for all.
+  /// The order of links of each solver; "": none has one.
   std::string orders() const {
     std::vector<SceneBench> scenes;
     for (const Timed& scene : shared_) scenes.push_back(scene.bench);
@@ -281,8 +281,8 @@ class Costs {
     return q.text(kPricedError, 1) + " " + q.title;
   }
 
-  /// What to take: of a solver's settings the one that reaches the error on most scenes, of equals
-  /// the cheapest, with all that the solver has.
+  /// The recommended setting of each solver: it reaches the error on most scenes; ties go to the
+  /// cheapest; accelerators included.
   void add_setting(Answer& answer) {
     Table table{"setting",
                 "Recommended setting",
@@ -324,7 +324,8 @@ class Costs {
       return logs / static_cast<double>(cases.size());
     }
   };
-  /// That of a solver on most scenes, of equals the cheapest; without cases: none reaches it.
+  /// The solver's setting that reaches the error on most scenes; ties go to the cheapest. Without
+  /// cases: none reaches it.
   Reached most_reaching(const std::string& solver) const {
     std::map<std::string, Reached> settings;
     for (std::size_t k = 0; k < all_.size(); ++k)

@@ -15,12 +15,13 @@ namespace taut::report {
 
 namespace {
 
+constexpr const char* kSweepsDiffer = "sweeps differ; each cell names its own";
 /// A micrometre: a depth below it is rounding.
 constexpr double kNoDepth = 1e-6;
 
 bool is_depth(Role role) { return role == Role::vertex_depth || role == Role::face_depth; }
 
-/// What the last row has of all scenes.
+/// How the last row sums up the scenes.
 enum class Over { mean, largest, sum };
 Over over_of(Role role) {
   return is_depth(role) ? Over::largest : role == Role::passages ? Over::sum : Over::mean;
@@ -54,7 +55,7 @@ class Questions {
   }
 
  private:
-  /// What all of it rests on, one line.
+  /// The caption of all tables, one line.
   std::string caption() const {
     std::set<double> steps;
     for (const QuotedScene& quoted : compared_.scenes)
@@ -64,15 +65,15 @@ class Questions {
            (input_.bench ? "CPU times are per simulated second; only what rests on them is marked, "
                            "the cheapest or the most accurate at one cost. "
                          : "Nothing was timed, so no solver is marked as best. ") +
-           "All else: " + (work.empty() ? "sweeps differ, in each cell" : work) +
-           (steps.empty() ? "" : ", time step " + range_text(steps, quantity("dt"))) +
-           ". Means are geometric where all values are positive; no stretch of cloth that goes "
-           "less than " +
-           shown(kShare, kLeastMotion, 1) + " of the way, as far as that is judged, is in one.";
+           (work.empty() ? capitalised(kSweepsDiffer) : "All else is at " + work) +
+           (steps.empty() ? "" : "; time step " + range_text(steps, quantity("dt"))) +
+           ". Means are geometric where all values are positive; those of stretch leave out cloth "
+           "that travels less than " +
+           shown(kShare, kLeastMotion, 1) + " of its way, where that is known.";
   }
 
-  /// The cases at the same substeps and sweeps, scene by scene. They cost unequally, so nobody is
-  /// best; an error that falls with sweeps is one of solvers that sweep.
+  /// The cases at the same substeps and sweeps, scene by scene. They cost unequally, so no cell is
+  /// best; an error that falls with sweeps has no value for solvers that do not sweep.
   void add_value(const ValueSpec& spec) {
     const std::string metric(spec.name), work = compared_.common_work();
     const Quantity& q = list_.use(metric);
@@ -93,22 +94,22 @@ class Questions {
     }
     if (table.rows.empty()) return;
     const Over over = over_of(spec.role);
-    const double nothing = is_depth(spec.role) ? kNoDepth : spec.negligible;
-    table.rows.push_back(sum_up(table, over, over == Over::mean ? nothing : 0));
+    const double floor = is_depth(spec.role) ? kNoDepth : spec.negligible;
+    table.rows.push_back(sum_up(table, over, over == Over::mean ? floor : 0));
     table.caption = std::string(to_string(q.window)) + (q.window == Window::none ? "" : "; ") +
-                    (work.empty() ? "sweeps differ, in each cell" : work) + "; time step " +
+                    (work.empty() ? std::string(kSweepsDiffer) : work) + "; time step " +
                     range_text(steps, quantity("dt")) +
                     (of_sweeps ? "; sweeps cost unequally, and solvers that solve all links at "
                                  "once have none"
                                : "") +
-                    (over == Over::mean && nothing > 0
-                         ? "; less than " + q.text(nothing, 1) + " counts as " + q.text(nothing, 1)
+                    (over == Over::mean && floor > 0
+                         ? "; less than " + q.text(floor, 1) + " counts as " + q.text(floor, 1)
                          : "") +
                     (is_depth(spec.role) ? contact_text() : "");
     answer_.add(std::move(table));
   }
 
-  /// When depths are measured, and who leaves some of them by intent.
+  /// When depths are measured, and which solvers correct only part of one.
   std::string contact_text() const {
     std::string text =
         "; measured at the end of a step: solvers that project contact last end on the surface, "
@@ -127,7 +128,7 @@ class Questions {
     return text;
   }
 
-  /// Of an error of strain a note says whether the cloth moves at all.
+  /// The note of an error of strain says whether the cloth hardly moves.
   Cell value_cell(const Record* r, const std::string& metric, bool of_strain) {
     const double value = r && completed(r->status) ? value_of(*r, metric) : std::nan("");
     Cell cell = std::isfinite(value) ? Cell(value) : why_none(r);
@@ -140,12 +141,12 @@ class Questions {
     return cell;
   }
 
-  /// `nothing` of a mean: what is less counts as that, and scenes where all are less do not count.
-  static std::vector<Cell> sum_up(const Table& table, Over over, double nothing) {
-    const Common common = common_of(table, nothing);
+  /// `floor` of a mean: smaller values count as it; scenes in which all are smaller do not count.
+  static std::vector<Cell> sum_up(const Table& table, Over over, double floor) {
+    const Common common = common_of(table, floor);
     const auto value = [&](std::size_t r, std::size_t c) {
       const double own = table.rows[r][c].number();
-      return nothing > 0 ? std::max(own, nothing) : own;
+      return floor > 0 ? std::max(own, floor) : own;
     };
     bool positive = true;  // only then is there a geometric mean
     for (const std::size_t r : common.rows)

@@ -33,9 +33,9 @@ bool is_compared(const Cell& cell) {
   return !std::isnan(cell.number()) && cell.state == Cell::State::value;
 }
 
-void mark_least(std::vector<Cell>& row, double nothing) {
+void mark_least(std::vector<Cell>& row, double floor) {
   Cell *least = nullptr, *second = nullptr;
-  const auto value = [&](const Cell& cell) { return std::max(cell.number(), nothing); };
+  const auto value = [&](const Cell& cell) { return std::max(cell.number(), floor); };
   for (Cell& cell : row) {
     if (!is_compared(cell)) continue;
     if (!least || value(cell) < value(*least))
@@ -46,7 +46,7 @@ void mark_least(std::vector<Cell>& row, double nothing) {
   if (second) least->best = value(*second) > (1 + kTolerance) * value(*least);
 }
 
-Common common_of(const Table& table, double nothing) {
+Common common_of(const Table& table, double floor) {
   Common common;
   for (std::size_t c = 1; c < table.columns.size(); ++c)
     if (std::ranges::any_of(table.rows, [&](const auto& row) { return is_compared(row[c]); }))
@@ -54,8 +54,8 @@ Common common_of(const Table& table, double nothing) {
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const auto& row = table.rows[r];
     if (std::ranges::all_of(common.columns, [&](std::size_t c) { return is_compared(row[c]); }) &&
-        (nothing <= 0 || std::ranges::any_of(common.columns, [&](std::size_t c) {
-           return row[c].number() >= nothing;
+        (floor <= 0 || std::ranges::any_of(common.columns, [&](std::size_t c) {
+           return row[c].number() >= floor;
          })))
       common.rows.push_back(r);
   }

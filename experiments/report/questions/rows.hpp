@@ -14,12 +14,12 @@ namespace taut::report {
 /// Its columns: "scene", then the solvers with this unit.
 std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit&, int digits = 2);
 
-/// Whether the cell has a number that is compared with others of its row: not if the cloth hardly
-/// moves.
+/// Whether the cell has a number that is compared with others of its row; cloth that hardly moves
+/// has none.
 bool is_compared(const Cell&);
-/// Marks the least number compared of the row if the second is more by kTolerance; numbers below
-/// `nothing` count as that.
-void mark_least(std::vector<Cell>& row, double nothing);
+/// Marks the least compared number of the row if the second exceeds it by kTolerance; numbers below
+/// `floor` count as it.
+void mark_least(std::vector<Cell>& row, double floor);
 
 /// Scenes whose values make up the last row, and who has values at all.
 struct Common {
@@ -28,8 +28,8 @@ struct Common {
   Cell label(const Table&, const std::string& what) const;
 };
 /// The columns that have a compared number somewhere, and the rows that have one in each of these;
-/// without rows whose numbers are all below `nothing`.
-Common common_of(const Table&, double nothing);
+/// without rows whose numbers are all below `floor`.
+Common common_of(const Table&, double floor);
 
 /// The last cell of a column without a compared number: what all its rows say, else "no value".
 Cell why_empty(const Table&, std::size_t column);
@@ -39,7 +39,7 @@ Cell why_empty(const Table&, std::size_t column);
 std::vector<Cell> last_row(const Table&, const Common&, const std::string& what,
                            const std::function<Cell(std::size_t column)>& sum);
 
-/// Stands in place of a value that the case has not; nullptr: it was not run.
+/// The cell of a case without a value; nullptr: the case was not run.
 Cell why_none(const Record*);
 
 /// Geometric mean of independent ratios: their errors add as squares of logarithms.

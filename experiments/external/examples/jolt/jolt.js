@@ -129,7 +129,8 @@ function start(Jolt) {
     load(x, v) {
       for (let i = 0, at = this.at(); i < this.n; ++i, at += kStride)
         for (let k = 0; k < 3; ++k) {
-          Jolt.HEAPF32[at + kPosition + k] = Jolt.HEAPF32[at + k] = x[3 * i + k];  // and the position before
+          Jolt.HEAPF32[at + kPosition + k] = x[3 * i + k];
+          Jolt.HEAPF32[at + k] = x[3 * i + k];  // the position before
           Jolt.HEAPF32[at + kVelocity + k] = v[3 * i + k];
         }
     }
