@@ -6,9 +6,9 @@
 //       static constexpr const char* kAbout =
 //           R"("name": "mine", "version": "1.0", "params": {"iterations":
 //              {"type": "integer", "min": 1, "max": 1000, "default": 8, "doc": "Sweeps"}})";
-//       // Optional: scenes with elastic links, bending and capsules are given to it, too; with
-//       // "taut-solver/3" also those with bodies of triangles, with "taut-solver/4" also those
-//       // whose bodies deform.
+//       // Optional; it gets no scenes with anything else. "taut-solver/1": rigid links; planes,
+//       // balls and boxes. /2: also elastic links, bending, capsules, seams, pins that let go.
+//       // /3: also bodies of triangles. /4: also bodies that deform.
 //       static constexpr const char* kProtocol = "taut-solver/2";
 //       // Why the scene would be misread; empty: it is not.
 //       static std::vector<std::string> cannot(const Json& scene, const Json& params);
