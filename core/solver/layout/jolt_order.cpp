@@ -18,16 +18,16 @@ namespace {
 constexpr std::size_t kBatch = 256;  ///< vertices
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-using Point = std::array<float, 3>;  ///< m
+using FloatPoint = std::array<float, 3>;  ///< m
 
-float distance2(const Point& a, const Point& b) {
+float distance2(const FloatPoint& a, const FloatPoint& b) {
   const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
   return x * x + y * y + z * z;
 }
 
 class Batches {
  public:
-  Batches(const std::vector<Point>& x, const Adjacency& neighbours)
+  Batches(const std::vector<FloatPoint>& x, const Adjacency& neighbours)
       : x_(x), neighbours_(neighbours), batch_(x.size(), kNoVertex) {
     std::vector<int> own;
     for (int start; (start = farthest_out()) != kNoVertex;) {
@@ -54,7 +54,7 @@ class Batches {
 
   /// Of the vertices without a batch the lowest along their longest axis, then along the others.
   int farthest_out() const {
-    Point low{kInfinity, kInfinity, kInfinity}, size{};
+    FloatPoint low{kInfinity, kInfinity, kInfinity}, size{};
     for (std::size_t k = 0; k < 3; ++k) {
       float high = -kInfinity;
       for (std::size_t v = 0; v < x_.size(); ++v)
@@ -100,14 +100,14 @@ class Batches {
     return best;
   }
 
-  const std::vector<Point>& x_;
+  const std::vector<FloatPoint>& x_;
   const Adjacency& neighbours_;
   std::vector<int> batch_;
   int count_ = 0;
 };
 
 /// m, along links from the nearest vertex that is pinned; infinite without one.
-std::vector<float> ways_to_pins(const Scene& scene, const std::vector<Point>& x,
+std::vector<float> ways_to_pins(const Scene& scene, const std::vector<FloatPoint>& x,
                                 const Adjacency& neighbours) {
   std::vector<int> pinned;
   const std::vector<double> w = inverse_masses(scene);
@@ -123,7 +123,7 @@ std::vector<float> ways_to_pins(const Scene& scene, const std::vector<Point>& x,
 }  // namespace
 
 std::vector<Link> jolt_order(const Scene& scene) {
-  std::vector<Point> x;
+  std::vector<FloatPoint> x;
   for (const Vec3& p : scene.start.x)
     x.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
   const Adjacency neighbours(scene.links, scene.mesh.size());
