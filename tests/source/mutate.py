@@ -184,7 +184,9 @@ class Build:
     def link(self, program, objects, out):
         words = list(self.link_line(program))
         words[words.index("-o") + 1] = str(out)
-        own = [str(object_) for target, object_ in objects.items() if {target, self.library.get(target)} & set(words)]
+        # Those of the layers first: an inline function of a header is that of the first object that has it.
+        mine = [target for target in objects if {target, self.library.get(target)} & set(words)]
+        own = [str(objects[target]) for target in sorted(mine, key=lambda target: target not in self.library)]
         # BUILD's libraries then have nothing left to give.
         words = [words[0], "-Wl,--strip-debug", *own, str(self.folder / "chosen.o"), *(w for w in words[1:] if w not in objects)]
         subprocess.run(words, cwd=self.build, check=True)
