@@ -13,7 +13,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
 #include "experiments/history/history.hpp"
-#include "experiments/render/film/film.hpp"
+#include "experiments/render/film/film_plan.hpp"
 #include "experiments/report/findings.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/report/stored.hpp"
@@ -117,20 +117,6 @@ void add_findings(report::ReportInput& input, const Store& store, const std::str
   add("taut frontier --all", input.frontiers, report::stored_frontiers);
 }
 
-void add_films(report::ReportInput& input, const std::vector<OtherScene>& others,
-               const std::filesystem::path& folder) {
-  const std::vector<Film> films = films_of(report::compared_solvers_of(input), others);
-  std::size_t filmed = 0;
-  const Countdown countdown("pictured scene");
-  for (FilmResult& film : make_films(films, folder, [&](const std::string& news) {
-         progress() << news << '\n';
-         countdown(++filmed, films.size());
-       })) {
-    input.media.push_back(std::move(film.media));
-    std::ranges::move(film.series, std::back_inserter(input.series));
-  }
-}
-
 report::ReportInput input_of(PageRequest options) {
   if (!options.studies.empty() && Store::is_at(options.studies[0]))
     return compared_folders(options);
@@ -178,8 +164,14 @@ report::ReportInput input_of(PageRequest options) {
                       {"preset", options.preset}};
   if (options.preset.empty()) input.provenance.pop_back();
   add_findings(input, store, program);
-  if (!options.model && options.media)
-    add_films(input, shown, std::filesystem::path(options.results) / "films");
+  if (!options.model && options.media) {
+    const auto tell = [countdown = Countdown("pictured scene")](const std::string& news,
+                                                                std::size_t done, std::size_t all) {
+      progress() << news << '\n';
+      countdown(done, all);
+    };
+    add_films(input, shown, std::filesystem::path(options.results) / "films", tell);
+  }
   return input;
 }
 

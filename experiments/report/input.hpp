@@ -9,6 +9,7 @@
 #include "experiments/answer/answer.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/history/history.hpp"
+#include "experiments/report/footage.hpp"
 #include "experiments/steps/one_step.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
@@ -54,34 +55,19 @@ struct SceneInfo {
   std::string name, summary;
 };
 
-/// A picture or video of a scene, held as bytes so that the report stays one file.
-struct Clip {
-  std::string type;    ///< "video/mp4" or "image/png"
-  std::string bytes;   ///< the file
-  std::string poster;  ///< picture shown before a video plays and in print; may be empty
-  std::string poster_type = "image/png";  ///< or "image/jpeg"
-  std::string alt;                        ///< description for readers who cannot see it
+/// What was rendered of a scene.
+struct SceneMedia {
   /// Who is in it, from left to right.
   struct Panel {
     std::string solver, settings;
     std::string key = {};  ///< of the case; "": no study ran it
   };
-  std::vector<Panel> panels;
-  int columns = 1;  ///< panels side by side
-};
-
-/// What was rendered of a scene.
-struct SceneMedia {
   std::string scene;
-  Clip clip{};              ///< without bytes: none
-  double duration = 0;      ///< s of simulated time that a video covers
-  double speed = 1;         ///< simulated seconds per second of video
-  Json bar{};               ///< of the colours, as the model has it; null: none
-  std::string summary{};    ///< of a scene that no study ran
-  double frame = 1.0 / 30;  ///< s of simulated time between two frames
-  double poster = 0;        ///< s of simulated time that the poster shows
+  Footage footage = {};
+  std::vector<Panel> panels = {};
+  std::string summary = {};  ///< of a scene that no study ran
   /// Solvers of the comparison that refuse the scene, and why.
-  std::vector<std::pair<std::string, std::string>> refused{};
+  std::vector<std::pair<std::string, std::string>> refused = {};
 };
 
 /// What `taut verify` found.

@@ -306,7 +306,7 @@ class Builder {
   }
 
   void add_media(Json& scene, const SceneMedia& media) {
-    if (media.clip.bytes.empty()) return;
+    if (media.footage.bytes.empty()) return;
     Json film = json_of(media, input_, refs_, budget_);
     scene["film"] = film["id"];
     for (const Json& panel : film["panels"])

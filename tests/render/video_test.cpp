@@ -13,7 +13,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
-#include "experiments/render/film/film.hpp"
+#include "experiments/render/film/film_plan.hpp"
 #include "experiments/render/picture/media.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/system/files.hpp"
@@ -270,14 +270,12 @@ Record ran(const std::string& scene, const std::string& solver, const Status& st
   return r;
 }
 
-/// Adds the films of a report to it.
-void add_films(report::ReportInput& input, const std::vector<OtherScene>& others,
-               const fs::path& folder, const std::function<void(const std::string&)>& say) {
-  const std::vector<Film> films = films_of(report::compared_solvers_of(input), others);
-  for (FilmResult& film : make_films(films, folder, say)) {
-    input.media.push_back(std::move(film.media));
-    std::ranges::move(film.series, std::back_inserter(input.series));
-  }
+/// Who is called with the line of each film, and with no more than that.
+auto teller(const std::function<void(const std::string&)>& hear) {
+  return [=](const std::string& news, std::size_t done, std::size_t all) {
+    EXPECT_LE(done, all);
+    hear(news);
+  };
 }
 
 TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
@@ -303,20 +301,21 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
       ran(small, "mass-spring:substeps=1", {Status::Kind::unsupported, "no reason", -1, -1}));
   std::multiset<std::string> news;
   add_films(input, others, scratch.path() / "films",
-            [&](const std::string& said) { news.insert(said); });
+            teller([&](const std::string& said) { news.insert(said); }));
   EXPECT_EQ(news, (std::multiset<std::string>{"small filmed", "thrown2 filmed", "thrown4 filmed",
                                               "thrown4.01 filmed", "thrown8.01 filmed"}));
   ASSERT_EQ(input.media.size(), 5u);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(input.media[k + 1].speed, thrown[k].second) << k;
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_EQ(input.media[k + 1].footage.speed, thrown[k].second) << k;
   const report::SceneMedia &first = input.media[0], &other = input.media[1];
   EXPECT_EQ(first.scene, "small");
-  const report::Clip& clip = first.clip;
-  ASSERT_EQ(clip.panels.size(), 2u);
+  const report::Footage& clip = first.footage;
+  ASSERT_EQ(first.panels.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k)
-    EXPECT_EQ(clip.panels[k].key, input.studies[0].records[k].key);
-  EXPECT_EQ(clip.panels[0].solver + clip.panels[1].solver, "xpbdjakobsen");
-  EXPECT_EQ(clip.panels[0].settings, "1 × 2");
-  EXPECT_EQ(clip.panels[1].settings, "1 × 2, order=mesh");
+    EXPECT_EQ(first.panels[k].key, input.studies[0].records[k].key);
+  EXPECT_EQ(first.panels[0].solver + first.panels[1].solver, "xpbdjakobsen");
+  EXPECT_EQ(first.panels[0].settings, "1 × 2");
+  EXPECT_EQ(first.panels[1].settings, "1 × 2, order=mesh");
   EXPECT_TRUE(clip.alt.starts_with(
       "small: XPBD (1 × 2) and Jakobsen (1 × 2, order=mesh) side by side from the left, coloured "
       "by mean edge strain ε at each vertex, full red at +"))
@@ -327,28 +326,28 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
       << "two of three thirds of 960";
   using Refused = std::vector<std::pair<std::string, std::string>>;
   EXPECT_EQ(first.refused, (Refused{{"mass-spring", "no reason"}}));
-  EXPECT_EQ(first.duration, 16 / 64.0);
-  EXPECT_EQ(first.frame, 4 / 64.0);
-  EXPECT_EQ(first.speed, 1);
-  ASSERT_EQ(first.bar["stops"].size(), 17u);
+  EXPECT_EQ(clip.duration, 16 / 64.0);
+  EXPECT_EQ(clip.frame, 4 / 64.0);
+  EXPECT_EQ(clip.speed, 1);
+  ASSERT_EQ(clip.bar.stops.size(), 17u);
   for (const auto& [stop, at] : {std::pair{0, 0.0}, {4, 0.25}, {8, 0.5}, {16, 1.0}}) {
     const Rgb8 c = ColourMap::diverging().at(at);
     char text[8];
     std::snprintf(text, sizeof text, "#%02X%02X%02X", c.r, c.g, c.b);
-    EXPECT_EQ(first.bar["stops"][static_cast<std::size_t>(stop)], text);
+    EXPECT_EQ(clip.bar.stops[static_cast<std::size_t>(stop)], text);
   }
-  const Json &left = first.bar["ticks"].front(), &right = first.bar["ticks"].back();
-  EXPECT_EQ(left["at"], 0);
-  EXPECT_EQ(right["at"], 1);
-  EXPECT_TRUE(left["text"].get<std::string>().starts_with("\u2212"));
-  EXPECT_TRUE(right["text"].get<std::string>().starts_with("+"));
+  const auto &left = clip.bar.ticks.front(), &right = clip.bar.ticks.back();
+  EXPECT_EQ(left.first, 0);
+  EXPECT_EQ(right.first, 1);
+  EXPECT_TRUE(left.second.starts_with("\u2212"));
+  EXPECT_TRUE(right.second.starts_with("+"));
   EXPECT_EQ(other.scene, "thrown4");
   EXPECT_TRUE(other.refused.empty());
-  EXPECT_EQ(other.clip.panels.size(), 3u) << "whoever can";
-  EXPECT_EQ(other.clip.columns, 3);
-  EXPECT_EQ(other.clip.panels[0].key, "") << "no study ran it";
-  EXPECT_EQ(other.duration, 1.5) << "three seconds of film";
-  const Image wide = decoded(other.clip.bytes);
+  EXPECT_EQ(other.panels.size(), 3u) << "whoever can";
+  EXPECT_EQ(other.footage.columns, 3);
+  EXPECT_EQ(other.panels[0].key, "") << "no study ran it";
+  EXPECT_EQ(other.footage.duration, 1.5) << "three seconds of film";
+  const Image wide = decoded(other.footage.bytes);
   EXPECT_EQ(std::pair(wide.width(), wide.height()), std::pair(702, 320));
   ASSERT_FALSE(input.series.empty());
   for (const report::TimeSeries& series : input.series)
@@ -357,16 +356,17 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   report::ReportInput again;
   again.studies = input.studies;
   add_films(again, others, scratch.path() / "films",
-            [](const std::string& said) { ADD_FAILURE() << said; });
+            teller([](const std::string& said) { ADD_FAILURE() << said; }));
   ASSERT_EQ(again.media.size(), input.media.size());
   for (std::size_t k = 0; k < again.media.size(); ++k) {
     const report::SceneMedia &a = input.media[k], &b = again.media[k];
-    EXPECT_EQ(
-        std::tie(a.scene, a.summary, a.duration, a.speed, a.frame, a.poster, a.bar, a.refused),
-        std::tie(b.scene, b.summary, b.duration, b.speed, b.frame, b.poster, b.bar, b.refused));
-    EXPECT_EQ(a.clip.bytes, b.clip.bytes);
-    EXPECT_EQ(a.clip.alt, b.clip.alt);
-    EXPECT_EQ(a.clip.panels.size(), b.clip.panels.size());
+    EXPECT_EQ(std::tie(a.scene, a.summary, a.footage.duration, a.footage.speed, a.footage.frame,
+                       a.footage.poster_t, a.footage.bar.stops, a.footage.bar.ticks, a.refused),
+              std::tie(b.scene, b.summary, b.footage.duration, b.footage.speed, b.footage.frame,
+                       b.footage.poster_t, b.footage.bar.stops, b.footage.bar.ticks, b.refused));
+    EXPECT_EQ(a.footage.bytes, b.footage.bytes);
+    EXPECT_EQ(a.footage.alt, b.footage.alt);
+    EXPECT_EQ(a.panels.size(), b.panels.size());
   }
   ASSERT_EQ(again.series.size(), input.series.size());
   for (std::size_t k = 0; k < again.series.size(); ++k)
@@ -382,15 +382,15 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   again.media.clear();
   again.series.clear();
   add_films(again, others, scratch.path() / "films",
-            [&](const std::string& said) { mended.push_back(said); });
+            teller([&](const std::string& said) { mended.push_back(said); }));
   EXPECT_EQ(mended.size(), 1u);
   ASSERT_EQ(again.media.size(), input.media.size());
-  EXPECT_EQ(again.media[0].clip.poster, input.media[0].clip.poster);
+  EXPECT_EQ(again.media[0].footage.poster, input.media[0].footage.poster);
   // Another case is another film.
   again.studies[0].records[0] = ran(small, "xpbd:substeps=1,iterations=3");
   std::vector<std::string> made;
   add_films(again, {}, scratch.path() / "films",
-            [&](const std::string& said) { made.push_back(said); });
+            teller([&](const std::string& said) { made.push_back(said); }));
   EXPECT_EQ(made, (std::vector<std::string>{"small filmed"}));
 }
 

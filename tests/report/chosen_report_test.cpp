@@ -140,16 +140,20 @@ TEST(Chosen, AChartHasItsPointsItsTicksItsFitAndItsTheory) {
 
 TEST(Chosen, AFilmHasItsPanelsItsBarAndItsEvents) {
   ReportInput input = chosen();
-  input.media = {{.scene = "hang", .duration = 1, .speed = 0.5, .frame = 0.125, .poster = 0.75}};
-  input.media[0].clip = {
-      "video/mp4",
-      "film",
-      "still",
-      "image/jpeg",
-      "to be seen",
-      {{"jakobsen", "1 × 16", input.studies[0].records[4].key}, {"bullet", "elsewhere", ""}},
-      2};
-  input.media[0].bar = {{"title", "strain"}, {"stops", {"#000000", "#FFFFFF"}}};
+  input.media = {{.scene = "hang"}};
+  input.media[0].panels = {{"jakobsen", "1 × 16", input.studies[0].records[4].key},
+                           {"bullet", "elsewhere", ""}};
+  input.media[0].footage = {.type = "video/mp4",
+                            .bytes = "film",
+                            .poster = "still",
+                            .poster_type = "image/jpeg",
+                            .alt = "to be seen",
+                            .columns = 2,
+                            .duration = 1,
+                            .speed = 0.5,
+                            .frame = 0.125,
+                            .poster_t = 0.75,
+                            .bar = {"strain", {"#000000", "#FFFFFF"}, {{0.5, "0 %"}}}};
   input.series = {
       {"hang", "jakobsen", "J", "stretch.rms", {0, 0.5, 1, 1.5}, {0, 0.1, std::nan(""), 9}},
       {"hang", "bullet", "B", "stretch.rms", {1, 2}, {1, 1}}};
@@ -165,7 +169,9 @@ TEST(Chosen, AFilmHasItsPanelsItsBarAndItsEvents) {
                                    {"case", short_key("hang", "jakobsen", 16)}},
                                   {{"solver", "bullet"}, {"settings", "elsewhere"}}}));
   EXPECT_EQ(film["columns"], 2);
-  EXPECT_EQ(film["bar"], input.media[0].bar);
+  EXPECT_EQ(film["bar"], (Json{{"title", "strain"},
+                               {"stops", {"#000000", "#FFFFFF"}},
+                               {"ticks", {{{"at", 0.5}, {"text", "0 %"}}}}}));
   const Json range{{"axis", "linear"}, {"low", 0}, {"high", 10 + 0.06 * 10}};  // of 0.1
   const Json line{{"solver", "jakobsen"},
                   {"label", "J"},

@@ -363,8 +363,10 @@ TEST(Model, SolversStandInTheOrderOfTheStudy) {
 
 TEST(Model, AFilmShowsTheScenesOwnQuantityFirst) {
   ReportInput input = example();
-  input.media = {{.scene = "ball", .clip = {.type = "image/png", .bytes = "x", .panels = {}}}};
-  input.media[0].duration = 2.5;
+  input.media = {{.scene = "ball"}};
+  input.media[0].footage.type = "image/png";
+  input.media[0].footage.bytes = "x";
+  input.media[0].footage.duration = 2.5;
   for (const auto& [value, y] : {std::pair{"penetration.max", 1e-10}, {"slip.distance", 0.1}})
     input.series.push_back({"ball", "bullet", "Bullet", value, {0, 1, 2}, {0, y, y}});
   const Json model = model_of(input);
@@ -375,8 +377,10 @@ TEST(Model, AFilmShowsTheScenesOwnQuantityFirst) {
 
 TEST(Model, PicturesThatWouldBurstThePageAreLeftOut) {
   ReportInput input = example();
-  const Clip clip{.type = "video/mp4", .bytes = std::string(4'000'000, 'x'), .panels = {}};
-  input.media = {{.scene = "ball", .clip = clip}, {.scene = "hang", .clip = clip}};
+  Footage footage;
+  footage.type = "video/mp4";
+  footage.bytes = std::string(4'000'000, 'x');
+  input.media = {{.scene = "ball", .footage = footage}, {.scene = "hang", .footage = footage}};
   const Json films = model_of(input)["films"];
   ASSERT_EQ(films.size(), 2U);
   EXPECT_TRUE(films[0].contains("src"));

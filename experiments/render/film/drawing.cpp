@@ -1,9 +1,7 @@
 #include "experiments/render/film/drawing.hpp"
 
-#include <algorithm>
-
-#include "experiments/render/image/video.hpp"
 #include "experiments/render/picture/figure.hpp"
+#include "experiments/render/picture/media.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut {
@@ -70,13 +68,8 @@ Drawn draw_video(const RunSet& set, const Drawing& drawing, const fs::path& out,
       look_of(drawing, RenderQuality::video(), layout.panel_width, layout.panel_height);
   look.frame = FitRegion::beside_inset();
   const SceneRenderer renderer(set.scene, set.runs, look);
-  const double dt = set.scene.dt;
-  const int stride = std::max(1, static_cast<int>(1 / (30 * dt) + 0.5));
-  const int frames = set.scene.steps / stride + 1;
-  VideoWriter video(out, {width, height, frame_rate(stride * dt), 22});
-  for (int k = 0; k < frames && video.write(compose(renderer, layout, {k * stride * dt})); ++k)
-    progress(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(frames));
-  const std::string why = video.finish();
+  const auto times = frame_times(set.scene, set.runs, 1.0 / 30, set.scene.duration());
+  const std::string why = write_video(out, renderer, layout, times, 1, 22, progress);
   if (why.empty()) return {{out.string()}, ""};
   fs::path poster = out;
   write_png(poster.replace_extension(".png"), compose(renderer, layout, {set.scene.duration()}));

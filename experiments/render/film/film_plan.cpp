@@ -1,4 +1,8 @@
+#include "experiments/render/film/film_plan.hpp"
+
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/solver.hpp"
@@ -6,6 +10,8 @@
 #include "experiments/render/film/film.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/questions/compared_solvers.hpp"
+#include "experiments/report/stored.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut {
@@ -14,21 +20,38 @@ namespace {
 
 constexpr std::size_t kMostOthers = 3;  ///< who is filmed on a scene that no study ran
 
+/// A film, and what the page says beside it.
+struct PlannedFilm {
+  Film film;
+  report::SceneMedia media;
+  std::vector<std::string> labels;  ///< of the runs: "Bullet float"
+  bool studied = true;
+
+  /// One more who runs it; `key` of its case, "" of a scene that no study ran.
+  void add(const std::string& solver, const std::string& label, const std::string& key) {
+    film.request.solvers.push_back(solver);
+    media.panels.push_back({solver_name(solver), report::brief_settings(solver), key});
+    labels.push_back(label);
+  }
+};
+
 /// The cases at equal work: pictures show what the answer's tables have.
-Film studied_film(const report::ComparedSolvers& compared, const report::QuotedScene& quoted) {
-  Film film{.scene = quoted.task.scene};
+PlannedFilm of_studied(const report::ComparedSolvers& compared, const report::QuotedScene& quoted) {
+  PlannedFilm planned;
+  RunRequest& request = planned.film.request;
+  planned.media.scene = quoted.task.scene;
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {
     const Record* one = quoted.cases[i];
-    if (!one || film.request.solvers.size() == std::size_t{kMostPanels}) continue;
+    if (!one || request.solvers.size() == std::size_t{kMostPanels}) continue;
     if (one->status.kind == Status::Kind::unsupported) {
-      film.refused.emplace_back(one->solver, one->status.reason);
+      planned.media.refused.emplace_back(one->solver, one->status.reason);
       continue;
     }
-    film.request.scene = one->spec.scene;
-    film.request.overrides = one->spec.overrides;
-    film.add(one->spec.solver, compared.all[i].label, one->key);
+    request.scene = one->spec.scene;
+    request.overrides = one->spec.overrides;
+    planned.add(one->spec.solver, compared.all[i].label, one->key);
   }
-  return film;
+  return planned;
 }
 
 /// A thrown sheet is gone before anybody has seen it: it takes half a second to cross its own size,
@@ -41,9 +64,12 @@ double watchable_speed(const Scene& scene) {
   return 0.125;
 }
 
-Film other_film(const report::ComparedSolvers& compared, const OtherScene& other) {
+PlannedFilm of_other(const report::ComparedSolvers& compared, const OtherScene& other) {
   const Scene scene = load_scene(find_scene(other.name));
-  Film film{.scene = scene.name, .summary = scene.summary, .studied = false, .still = other.still};
+  PlannedFilm planned{.media = {.scene = scene.name, .summary = scene.summary}, .studied = false};
+  Film& film = planned.film;
+  film.still = other.still;
+  film.small = true;
   film.speed = watchable_speed(scene);
   film.request.scene = other.name;
   if (scene.duration() > kFilmSeconds)
@@ -55,33 +81,59 @@ Film other_film(const report::ComparedSolvers& compared, const OtherScene& other
     const SolverChoice choice = parse_solver((*quoted)->spec.solver);
     const std::string why = join(choice.entry->unsupported(scene, choice.params), "; ");
     if (why.empty())
-      film.add((*quoted)->spec.solver, solver.label, "");
+      planned.add((*quoted)->spec.solver, solver.label, "");
     else
-      film.refused.emplace_back(solver.name, why);
+      planned.media.refused.emplace_back(solver.name, why);
   }
-  return film;
+  return planned;
+}
+
+std::vector<PlannedFilm> plan(const report::ReportInput& input,
+                              const std::vector<OtherScene>& others) {
+  const report::ComparedSolvers compared = report::compared_solvers_of(input);
+  std::vector<PlannedFilm> all;
+  for (const report::QuotedScene& quoted : compared.scenes)
+    all.push_back(of_studied(compared, quoted));
+  for (const OtherScene& other : others) {
+    PlannedFilm planned = of_other(compared, other);
+    const auto same = [&](const PlannedFilm& one) {
+      return one.media.scene == planned.media.scene;
+    };
+    if (std::ranges::none_of(all, same)) all.push_back(std::move(planned));
+  }
+  std::erase_if(all, [](const PlannedFilm& one) { return one.film.request.solvers.empty(); });
+  for (PlannedFilm& one : all)
+    one.film.panels = static_cast<int>(one.media.panels.size() + one.media.refused.size());
+  return all;
 }
 
 }  // namespace
 
-void Film::add(const std::string& solver, const std::string& label, const std::string& key) {
-  request.solvers.push_back(solver);
-  panels.push_back({solver_name(solver), report::brief_settings(solver), key});
-  labels.push_back(label);
-}
-
-std::vector<Film> films_of(const report::ComparedSolvers& compared,
-                           const std::vector<OtherScene>& others) {
+void add_films(report::ReportInput& input, const std::vector<OtherScene>& others,
+               const std::filesystem::path& folder,
+               const std::function<void(const std::string&, std::size_t, std::size_t)>& tell) {
+  std::vector<PlannedFilm> planned = plan(input, others);
   std::vector<Film> films;
-  for (const report::QuotedScene& quoted : compared.scenes)
-    films.push_back(studied_film(compared, quoted));
-  for (const OtherScene& other : others) {
-    Film film = other_film(compared, other);
-    if (std::ranges::find(films, film.scene, &Film::scene) == films.end())
-      films.push_back(std::move(film));
+  for (const PlannedFilm& one : planned) films.push_back(one.film);
+  std::size_t done = 0;
+  const auto made = [&](std::size_t k, const std::string& why) {
+    const std::string news = films[k].still ? " drawn" : " filmed";
+    tell(planned[k].media.scene + (why.empty() ? news : " not filmed: " + why), ++done,
+         films.size());
+  };
+  std::vector<std::optional<FilmResult>> results = make_films(films, folder, made);
+  for (std::size_t k = 0; k < planned.size(); ++k) {
+    if (!results[k]) continue;
+    report::SceneMedia& media = planned[k].media;
+    for (std::size_t run = 0; !planned[k].studied && run < media.panels.size(); ++run)
+      std::ranges::move(
+          report::shown_series(
+              results[k]->series[run],
+              {media.scene, media.panels[run].solver, planned[k].labels[run], "", {}, {}}),
+          std::back_inserter(input.series));
+    media.footage = std::move(results[k]->footage);
+    input.media.push_back(std::move(media));
   }
-  std::erase_if(films, [](const Film& film) { return film.request.solvers.empty(); });
-  return films;
 }
 
 }  // namespace taut

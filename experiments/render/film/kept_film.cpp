@@ -1,9 +1,8 @@
 #include "experiments/render/film/kept_film.hpp"
 
-#include <cmath>
-
 #include "core/model/input_error.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -11,7 +10,7 @@ namespace taut {
 
 namespace {
 
-constexpr const char* kSchema = "taut-film-4";
+constexpr const char* kSchema = "taut-film-5";
 
 /// Beside the file of its numbers: KEY.mp4, KEY-poster.jpg.
 std::filesystem::path picture_of(const std::filesystem::path& file, const char* what,
@@ -44,57 +43,54 @@ std::string digest_of(Json numbers) {
 
 FilmResult film_of(const JsonReader& json, const std::filesystem::path& file) {
   json.require_schema(kSchema);
-  const auto number = [&](const char* name) { return json.at(name).number(); };
   FilmResult film;
-  report::SceneMedia& media = film.media;
-  media.duration = number("duration");
-  media.speed = number("speed");
-  media.frame = number("frame");
-  media.poster = number("poster_t");
-  report::Clip& clip = media.clip;
-  clip.type = json.at("type").text();
-  clip.poster_type = json.at("poster_type").text();
-  clip.bytes = picture(picture_of(file, "", clip.type), json.at("bytes"));
-  clip.poster = picture(picture_of(file, "-poster", clip.poster_type), json.at("poster_bytes"));
-  clip.alt = json.at("alt").text();
-  media.bar = parse_json(json.at("bar").text());
-  for (const JsonReader& one : json.at("series").items()) {
-    report::TimeSeries& series = film.series.emplace_back();
-    series.scene = one.at("scene").text();
-    series.solver = one.at("solver").text();
-    series.label = one.at("label").text();
-    series.value = one.at("value").text();
-    series.t = one.at("t").numbers();
-    for (const JsonReader& y : one.at("y").items()) series.y.push_back(y.number_or_null());
-  }
+  report::Footage& footage = film.footage;
+  footage.duration = json.at("duration").number();
+  footage.speed = json.at("speed").number();
+  footage.frame = json.at("frame").number();
+  footage.poster_t = json.at("poster_t").number();
+  footage.columns = json.at("columns").integer();
+  footage.type = json.at("type").text();
+  footage.poster_type = json.at("poster_type").text();
+  footage.bytes = picture(picture_of(file, "", footage.type), json.at("bytes"));
+  footage.poster =
+      picture(picture_of(file, "-poster", footage.poster_type), json.at("poster_bytes"));
+  footage.alt = json.at("alt").text();
+  const JsonReader bar = json.at("bar");
+  footage.bar.title = bar.at("title").text();
+  for (const JsonReader& stop : bar.at("stops").items()) footage.bar.stops.push_back(stop.text());
+  for (const JsonReader& tick : bar.at("ticks").items())
+    footage.bar.ticks.emplace_back(tick.at("at").number(), tick.at("text").text());
+  for (const JsonReader& table : json.at("series").items())
+    film.series.push_back(series_from_json(table.text(), file.string()));
   return film;
 }
 
 }  // namespace
 
 void keep_film(const std::filesystem::path& file, const FilmResult& film) {
-  const report::SceneMedia& media = film.media;
-  const report::Clip& clip = media.clip;
+  const report::Footage& footage = film.footage;
+  const report::ColourBar& bar = footage.bar;
   Json json{{"schema", kSchema},
-            {"duration", media.duration},
-            {"speed", media.speed},
-            {"frame", media.frame},
-            {"poster_t", media.poster},
-            {"type", clip.type},
-            {"bytes", sha256(clip.bytes)},
-            {"poster_bytes", sha256(clip.poster)},
-            {"poster_type", clip.poster_type},
-            {"alt", clip.alt},
-            {"bar", to_text(media.bar)}};
-  json["series"] = json_array(film.series, [](const report::TimeSeries& series) {
-    return Json{{"scene", series.scene}, {"solver", series.solver},
-                {"label", series.label}, {"value", series.value},
-                {"t", series.t},         {"y", json_array(series.y, json_number)}};
+            {"duration", footage.duration},
+            {"speed", footage.speed},
+            {"frame", footage.frame},
+            {"poster_t", footage.poster_t},
+            {"columns", footage.columns},
+            {"type", footage.type},
+            {"bytes", sha256(footage.bytes)},
+            {"poster_bytes", sha256(footage.poster)},
+            {"poster_type", footage.poster_type},
+            {"alt", footage.alt}};
+  json["bar"] = {{"title", bar.title}, {"stops", bar.stops}};
+  json["bar"]["ticks"] = json_array(bar.ticks, [](const auto& tick) {
+    return Json{{"at", tick.first}, {"text", tick.second}};
   });
+  json["series"] = json_array(film.series, [](const Series& table) { return to_json(table); });
   make_folder(file.parent_path());
   json["digest"] = digest_of(json);
-  write_regular(picture_of(file, "", clip.type), clip.bytes);
-  write_regular(picture_of(file, "-poster", clip.poster_type), clip.poster);
+  write_regular(picture_of(file, "", footage.type), footage.bytes);
+  write_regular(picture_of(file, "-poster", footage.poster_type), footage.poster);
   write_regular(file, to_text(json));  // the last: without it there is no film
 }
 

@@ -11,19 +11,6 @@ namespace taut {
 
 namespace {
 
-/// Times of the frames: whole steps of the coarsest run.
-std::vector<double> frame_times(const Scene& scene, const std::vector<RecordedRun>& runs,
-                                const MediaOptions& options) {
-  double step = scene.dt;
-  for (const RecordedRun& run : runs) step = std::max(step, run.trajectory.frame_dt);
-  const double stride = std::max(1.0, std::round(options.speed / (options.fps * step)));
-  const double end = std::min(options.duration, scene.duration());
-  std::vector<double> times;
-  for (int k = 0; k * stride * step <= end + 1e-9; ++k) times.push_back(k * stride * step);
-  if (times.size() == 1) times.push_back(stride * step);
-  return times;
-}
-
 /// The index of the largest value from an eighth of the video on, if it exceeds `least`.
 std::optional<std::size_t> peak(const std::vector<double>& values, double least) {
   const auto from = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 8);
@@ -63,11 +50,35 @@ std::size_t most_different(const Media& media, const Scene& scene,
 
 }  // namespace
 
+std::vector<double> frame_times(const Scene& scene, const std::vector<RecordedRun>& runs,
+                                double wanted, double duration) {
+  double step = scene.dt;
+  for (const RecordedRun& run : runs) step = std::max(step, run.trajectory.frame_dt);
+  const double stride = std::max(1.0, std::round(wanted / step));
+  const double end = std::min(duration, scene.duration());
+  std::vector<double> times;
+  for (int k = 0; k * stride * step <= end + 1e-9; ++k) times.push_back(k * stride * step);
+  if (times.size() == 1) times.push_back(stride * step);
+  return times;
+}
+
+std::string write_video(const std::filesystem::path& mp4, const SceneRenderer& renderer,
+                        const PageLayout& layout, const std::vector<double>& times, double speed,
+                        int crf, const std::function<void(std::size_t, std::size_t)>& progress) {
+  VideoWriter video(mp4,
+                    {layout.width, layout.height, frame_rate((times[1] - times[0]) / speed), crf});
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (!video.write(compose(renderer, layout, {times[k]}))) break;
+    progress(k + 1, times.size());
+  }
+  return video.finish();
+}
+
 Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
                    const MediaOptions& options) {
   assert(!runs.empty() && runs.size() <= std::size_t{kMostPanels});
   Media media;
-  media.t = frame_times(scene, runs, options);
+  media.t = frame_times(scene, runs, options.speed / options.fps, options.duration);
   for (const RecordedRun& run : runs) {
     auto& series = media.rms_strain.emplace_back();
     for (const double t : media.t)
@@ -84,8 +95,7 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   look.to = media.t.back();
   const SceneRenderer renderer(scene, runs, look);
   media.scale = renderer.scale();
-  const std::size_t poster = most_different(media, scene, runs);
-  media.poster_t = media.t[poster];
+  media.poster_t = media.t[most_different(media, scene, runs)];
   const Image poster_image = compose(renderer, layout, {media.poster_t});
   media.poster = jpeg_bytes(poster_image);
   media.poster_type = "image/jpeg";
@@ -97,11 +107,9 @@ Media render_media(const Scene& scene, const std::vector<RecordedRun>& runs,
   if (options.still) return media;
   const Scratch scratch;
   const std::filesystem::path file = scratch.path() / "film.mp4";
-  VideoWriter video(file, {options.width, options.height,
-                           frame_rate((media.t[1] - media.t[0]) / options.speed), options.crf});
-  for (std::size_t k = 0; k < media.t.size(); ++k)
-    if (!video.write(k == poster ? poster_image : compose(renderer, layout, {media.t[k]}))) break;
-  if (video.finish().empty()) media.mp4 = read_text(file);
+  const auto silent = [](std::size_t, std::size_t) {};
+  if (write_video(file, renderer, layout, media.t, options.speed, options.crf, silent).empty())
+    media.mp4 = read_text(file);
   return media;
 }
 

@@ -1,9 +1,27 @@
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "experiments/render/image/video.hpp"
+#include "experiments/render/picture/figure.hpp"
 #include "experiments/render/picture/scene_renderer.hpp"
 
 namespace taut {
+
+/// Times of the frames of a video [s]: from the start on, whole steps of the coarsest run, as near
+/// to `wanted` [s] apart as these allow; two at least.
+std::vector<double> frame_times(const Scene&, const std::vector<RecordedRun>&, double wanted,
+                                double duration);
+
+/// Draws and encodes a frame for each of these times; `speed` and `crf` as in MediaOptions. "": the
+/// file is there; otherwise why not (VideoWriter::finish).
+std::string write_video(const std::filesystem::path& mp4, const SceneRenderer&, const PageLayout&,
+                        const std::vector<double>& times, double speed, int crf,
+                        const std::function<void(std::size_t done, std::size_t all)>& progress);
 
 /// What a report wants of a scene: panels alone (PageLayout::bare) on the dark background; the page
 /// writes captions and the colour bar itself, in its own fonts and themes.

@@ -113,6 +113,12 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
   return tracks;
 }
 
+Json json_of(const ColourBar& bar) {
+  Json one{{"title", bar.title}, {"stops", bar.stops}};
+  for (const auto& [at, text] : bar.ticks) one["ticks"].push_back({{"at", at}, {"text", text}});
+  return one;
+}
+
 }  // namespace
 
 Json json_interval(const Interval& i, std::size_t n) {
@@ -236,30 +242,30 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
 
 Json json_of(const SceneMedia& media, const ReportInput& input, CaseList& refs,
              std::size_t& budget) {
-  const Clip& clip = media.clip;
-  Json film{{"id", "film-" + media.scene}, {"scene", media.scene}, {"type", clip.type}};
-  const std::size_t weight = (clip.bytes.size() + clip.poster.size()) * 4 / 3;
+  const Footage& footage = media.footage;
+  Json film{{"id", "film-" + media.scene}, {"scene", media.scene}, {"type", footage.type}};
+  const std::size_t weight = (footage.bytes.size() + footage.poster.size()) * 4 / 3;
   if (weight > budget) {
     film["left_out"] = "The page would become too large: taut render " + media.scene;
   } else {
     budget -= weight;
-    film["src"] = "data:" + clip.type + ";base64," + base64(clip.bytes);
-    if (!clip.poster.empty())
-      film["poster"] = "data:" + clip.poster_type + ";base64," + base64(clip.poster);
+    film["src"] = "data:" + footage.type + ";base64," + base64(footage.bytes);
+    if (!footage.poster.empty())
+      film["poster"] = "data:" + footage.poster_type + ";base64," + base64(footage.poster);
   }
-  film["poster_t"] = media.poster;
-  film["duration"] = media.duration;
-  film["frame"] = media.frame;
-  film["speed"] = media.speed;
-  film["alt"] = clip.alt;
-  for (const Clip::Panel& panel : clip.panels) {
+  film["poster_t"] = footage.poster_t;
+  film["duration"] = footage.duration;
+  film["frame"] = footage.frame;
+  film["speed"] = footage.speed;
+  film["alt"] = footage.alt;
+  for (const SceneMedia::Panel& panel : media.panels) {
     Json one{{"solver", panel.solver}, {"settings", panel.settings}};
     add_if(one, "case", refs.key(panel.key));
     film["panels"].push_back(std::move(one));
   }
-  if (!clip.panels.empty()) film["columns"] = clip.columns;
-  add_if(film, "bar", media.bar);
-  add_if(film, "tracks", json_of_tracks(media.scene, media.duration, input, refs));
+  if (!media.panels.empty()) film["columns"] = footage.columns;
+  if (!footage.bar.stops.empty()) film["bar"] = json_of(footage.bar);
+  add_if(film, "tracks", json_of_tracks(media.scene, footage.duration, input, refs));
   return film;
 }
 
