@@ -33,11 +33,11 @@ std::vector<std::string> refuse_static(const Scene&);
 /// 2. Otherwise the convex relaxation |x_b - x_a| <= rest is solved: augmented Lagrangian (Powell,
 ///    Hestenes, Rockafellar) with positive-definite Newton steps and a sparse LDLT, then Newton on
 ///    the KKT system of the links that pull, regularised to be quasi-definite, with iterative
-///    refinement. By convexity a stationary point with tensions >= 0 is a global minimum; it is also
-///    the cloth's if every link, pulling or not, has its full length there. It is the only minimum:
-///    halfway to another one a pulling link that differs between them would be slack, and pulling
-///    links join every vertex, which has weight, to a pin. Otherwise, with a sheet whose shear links
-///    lock or links that would have to push, there is no unique truth.
+///    refinement. By convexity a stationary point with tensions >= 0 is a global minimum; it is
+///    also the cloth's if every link, pulling or not, has its full length there. It is the only
+///    minimum: halfway to another one a pulling link that differs between them would be slack, and
+///    pulling links join every vertex, which has weight, to a pin. Otherwise, with a sheet whose
+///    shear links lock or links that would have to push, there is no unique truth.
 /// Never throws; a numerical failure is a reason.
 Equilibrium static_equilibrium(const Scene&);
 
