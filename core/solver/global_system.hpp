@@ -35,7 +35,6 @@ namespace taut {
 /// In contact, x is the minimum outside the colliders, with friction. The displacements per force
 /// at a vertex are a column of the inverse, which is solved for when the vertex first touches
 /// anything. The contact forces are those of CoupledContacts, warm-started from the last iteration.
-/// and the forces are those of CoupledContacts, from those of the last iteration on.
 template <class Real>
 class GlobalSystem {
  public:

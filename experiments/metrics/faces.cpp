@@ -178,7 +178,7 @@ class Faces final : public Metric {
       depths.box = std::max(depths.box, deepest_in(box, corners(face, state), depths.box).depth);
   }
 
-  /// Points of a solid that have to pierce a face before the face is on both sides of them.
+  /// Points of a solid that a face cannot pass without being pierced by them.
   static std::vector<Vec3> places_of(const Shape& shape) {
     if (const Ball* ball = std::get_if<Ball>(&shape)) return {ball->center};
     std::vector<Vec3> places;

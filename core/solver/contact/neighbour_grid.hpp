@@ -16,7 +16,6 @@ namespace taut {
 /// by counting. Cell (i, j, k) is bucket i + row j + layer k, modulo the number of buckets: the
 /// grid wraps around, without bounds and without a hash. Cells that are adjacent in x are adjacent
 /// buckets, so a cell and its neighbours are five runs of particles,
-/// each other, so that a cell and its neighbours are five runs of particles,
 ///
 ///     z + 1:  o o o     o: three cells of a row in x, C: the cell itself and the next,
 ///     z:      . C o     .: the pair is found from there

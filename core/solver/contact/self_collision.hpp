@@ -17,8 +17,8 @@ namespace taut {
 /// things:
 ///
 /// - Pairs are found wherever they are, not only within one cell.
-/// - Two particles keep at most their distance at rest, so that neighbours do not push each other if
-///   the radius is larger than the spacing (M. Mueller, Ten Minute Physics 15). Linked particles
+/// - Two particles keep at most their distance at rest, so that neighbours do not push each other
+///   if the radius is larger than the spacing (M. Mueller, Ten Minute Physics 15). Linked particles
 ///   within 3/2 diameters are left to their link.
 /// - Two particles that have changed sides since the step began go back, so that a layer that
 ///   arrives fast, by up to four diameters a step, does not pass between.
@@ -29,7 +29,6 @@ namespace taut {
 /// the skin relative to the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at
 /// all. Pairs within 3/2 diameters at rest are known from the start and never searched for; a sheet
 /// that does not touch itself has few others.
-/// touch itself has few others.
 ///
 /// With a solver that has a target y, a pair keeps the push c [m] from a to b that parts it, from
 /// sweep to sweep and from substep to substep. Its length is what would be needed if a and b were

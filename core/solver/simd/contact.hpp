@@ -79,7 +79,7 @@ struct Contact {
     if (friction != 0) {
       const Vec3T<T> slip = across(out - from, normal);
       const T length = norm(slip), most = T(friction) * depth;
-      const auto sticks = length <= most || !deep;  // lanes that are not deep are not used
+      const auto sticks = length <= most || !deep;  // where it is not deep, nothing is used
       out = out - select(sticks, T(1), most / select(sticks, T(1), length)) * slip;
     }
     x = select(deep, out, x);
