@@ -61,8 +61,8 @@ enum class Lumping {
   equal  ///< the same for every vertex
 };
 
-/// A rectangular sheet of nu x nv vertices, flat at rest: vertex (i, j) is at origin + i/(nu-1) *
-/// width * u + j/(nv-1) * height * v. One column (nu = 1) is a chain.
+/// A rectangular sheet of nu x nv vertices, flat at rest: vertex (i, j) is at origin +
+/// i/(nu-1) * width * u + j/(nv-1) * height * v. One column (nu = 1) is a chain.
 struct SheetShape {
   int nu = 0, nv = 0;            ///< >= 1 each, at least two vertices in all
   double width = 0, height = 0;  ///< m along u and v

@@ -75,8 +75,8 @@ struct Catenary {
 
 /// The catenary with tan(theta_i) = (P/H)(i - (N+1)/2) and sum of l_i cos(theta_i) = span. H is a
 /// root of a monotone function, found by bisection to the last bit. Links lengthen by T/stiffness;
-/// infinite stiffness [N/m] = rods. Preconditions: links >= 2, load [N] > 0, 0 < span, and span <
-/// links * link for rods.
+/// infinite stiffness [N/m] = rods. Preconditions: links >= 2, load [N] > 0, 0 < span, and
+/// span < links * link for rods.
 Catenary discrete_catenary(int links, double span, double link, double load,
                            double stiffness = std::numeric_limits<double>::infinity());
 
@@ -94,8 +94,8 @@ Eigen::MatrixXd chain_sweep(int n, Sweep, double omega = 1);
 /// [m] and then applies k sweeps G: e = (I - G^k)^-1 G^k a delta_1.
 Eigen::VectorXd steady_strain(const Eigen::MatrixXd& sweep, int k, double a);
 
-/// Largest of these strains in the limit of many links, Gauss-Seidel: (2a/n) sum over odd j of 1 /
-/// (exp(j^2 pi^2 k / (4 n^2)) - 1).
+/// Largest of these strains in the limit of many links, Gauss-Seidel: (2a/n) sum over odd j of
+/// 1 / (exp(j^2 pi^2 k / (4 n^2)) - 1).
 double collapsed_strain(int n, int k, double a);
 
 /// Spectral radius of a sweep over a chain of n links, the printed limits: cos^2(pi/2n) for

@@ -8,8 +8,8 @@
 
 namespace taut {
 
-/// Projects the scene's bending elements one after another. Each is a constraint g = sum c_i x_i =
-/// 0 of three components with compliance 1/k (XPBD, as in core/solver/xpbd.cpp):
+/// Projects the scene's bending elements one after another. Each is a constraint
+/// g = sum c_i x_i = 0 of three components with compliance 1/k (XPBD, as in core/solver/xpbd.cpp):
 ///
 ///     dlambda = (-g - a lambda)/(sum w_i c_i^2 + a),   x_i += w_i c_i dlambda,   a = 1/(k h^2)
 ///

@@ -21,8 +21,8 @@ inline constexpr ParamSpec kChebyshev =
 ///     x_k+1 = omega_k (f(x_k) - x_k-1) + x_k-1,
 ///     omega_k = 2/(2 - rho^2), then 4/(4 - rho^2 omega_k-1), from the third iteration of a substep
 ///
-/// If the eigenvalues of f are real and rho is the largest, the error shrinks by rho/(1 + sqrt(1 -
-/// rho^2)) per iteration.
+/// If the eigenvalues of f are real and rho is the largest, the error shrinks by
+/// rho/(1 + sqrt(1 - rho^2)) per iteration.
 template <class Real>
 class ChebyshevPass final : public Pass<Real> {
  public:
@@ -72,8 +72,8 @@ class ChebyshevPass final : public Pass<Real> {
   std::vector<typename Points<Real>::Point> from_, before_;  ///< m, x_k and x_k-1
 };
 
-/// Wraps the pass in ChebyshevPass, or returns it unchanged if rho is 0. Precondition: rho in [0,
-/// 1).
+/// Wraps the pass in ChebyshevPass, or returns it unchanged if rho is 0. Precondition: rho in
+/// [0, 1).
 template <class Real>
 std::unique_ptr<Pass<Real>> with_chebyshev(std::unique_ptr<Pass<Real>> pass, double rho,
                                            std::size_t particles, ThreadPool& pool) {

@@ -49,9 +49,9 @@
 ///
 /// Rules for a pass: p.w[i] = 0 [1/kg] marks a pin, whose p.x must not be written. A pass stores
 /// everything else that it needs from earlier steps. Loops over particles read p.x[i] and write
-/// p.x.set(i, ..), in any layout; with Layout::packed(n), x y z 0 of particle i are at p.x.data() +
-/// 4 i. cost() is the cost of one apply(); set `projections` in an entry that solves links one by
-/// one.
+/// p.x.set(i, ..), in any layout; with Layout::packed(n), x y z 0 of particle i are at
+/// p.x.data() + 4 i. cost() is the cost of one apply(); set `projections` in an entry that solves
+/// links one by one.
 namespace taut::loop {
 
 /// What a solver makes its passes from.

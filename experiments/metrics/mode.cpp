@@ -20,8 +20,8 @@ struct LowestMode {
   double frequency = 0;  ///< rad/s
 };
 
-/// Computes the mode by inverse iteration: a sideways force tilts every link above it by force /
-/// tension, so K^-1 M only needs sums.
+/// Computes the mode by inverse iteration: a sideways force tilts every link above it by
+/// force / tension, so K^-1 M only needs sums.
 LowestMode lowest_mode(const Rows& rows, double g) {
   const std::size_t n = rows.mass.size();
   LowestMode mode{std::vector<double>(n, 1.0), 0};

@@ -11,7 +11,7 @@ namespace taut {
 
 namespace {
 
-constexpr int kTileSide = 32;                         ///< vertices of a grid
+constexpr int kTileSide = 32;                         ///< vertices on each side of a tile of a grid
 constexpr int kTileVertices = kTileSide * kTileSide;  ///< 16 KiB of packed float positions
 
 /// Cuts the vertices into halves across their longest side at rest until each part fits a tile.

@@ -35,8 +35,8 @@ template <Projection kind, class T>
   }
 }
 
-/// XPBD's excess (Macklin, Mueller, Chentanez 2016, equations 17 and 18), as a length. With a =
-/// compliance/h^2 and m = a lambda,
+/// XPBD's excess (Macklin, Mueller, Chentanez 2016, equations 17 and 18), as a length. With
+/// a = compliance/h^2 and m = a lambda,
 ///
 ///     m -= a/(w1 + w2 + a) (|delta| - r + m),    f = (|delta| - r + m before) / |delta|,
 ///
