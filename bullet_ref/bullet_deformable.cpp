@@ -1,6 +1,6 @@
-// Bullet's newer cloth: btSoftBody in a btDeformableMultiBodyDynamicsWorld, with Hooke springs for
+// Bullet's newer cloth: btSoftBody in a btDeformableMultiBodyDynamicsWorld, with Hooke springs as
 // links and an implicit Euler step (one Newton step with conjugate gradients unless told
-// otherwise). Statements that look odd answer traps that bullet_ref/README.md describes.
+// otherwise). bullet_ref/README.md explains statements that look odd.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableGravityForce.h>
@@ -41,7 +41,7 @@ constexpr ParamSpec kParams[] = {
     kMaterial,
 };
 
-/// Of every link [N/m]; nothing if the scene's links differ: Bullet has one for all.
+/// Stiffness of every link [N/m]; empty if the scene's links differ, since Bullet has one for all.
 std::optional<double> stiffness(const Scene& scene, const Params& params) {
   if (!takes_stiffness(scene, params)) return params.real("stiffness");
   std::optional<double> one;
@@ -53,12 +53,12 @@ std::optional<double> stiffness(const Scene& scene, const Params& params) {
   return one;
 }
 
-/// Bullet has no setter for its number of Newton steps.
+/// Bullet's solver with a given number of Newton steps, for which it has no setter.
 struct DeformableSolver : btDeformableBodySolver {
   explicit DeformableSolver(int newton_steps) { m_maxNewtonIterations = newton_steps; }
 };
 
-/// A world with nothing in it; the order of members is the order in which Bullet wants them built.
+/// An empty world. Its members are in the order in which Bullet wants them built.
 struct World {
   explicit World(int newton_steps) : deformables(newton_steps) {
     constraints.setDeformableSolver(&deformables);
@@ -138,7 +138,8 @@ class BulletDeformable final : World, public BulletSolver {
     return 3 * to_index(body_->m_nodes.size()) * sizeof(Vec3);
   }
 
-  /// The implicit scheme starts from m_vn, the explicit one from m_v.
+  /// Sets both velocities of a node: the implicit scheme starts from m_vn, the explicit one from
+  /// m_v.
   static void set_velocity(btSoftBody::Node& n, const btVector3& v) { n.m_v = n.m_vn = v; }
 
   void substep(double from, double to) override {
@@ -150,13 +151,13 @@ class BulletDeformable final : World, public BulletSolver {
     world.stepSimulation(h_, 0);
   }
 
-  /// Bullet's drag is lost in the implicit scheme, so velocities are damped here.
+  /// Damps velocities here, because Bullet's drag is lost in the implicit scheme.
   void damp() {
     for (int i = 0; i < body_->m_nodes.size(); ++i)
       set_velocity(body_->m_nodes[i], body_->m_nodes[i].m_v * (1 - loss_));
   }
 
-  /// The wind's impulse on every node, from the velocities that store() would give.
+  /// Computes the wind's force on every node, from the velocities that store() would give.
   void find_wind() {
     wind_.assign(scene_.start.x.size(), Vec3::Zero());
     store(now_);
@@ -169,7 +170,8 @@ class BulletDeformable final : World, public BulletSolver {
     }
   }
 
-  /// This world ignores addForce, so the impulse goes into the velocity that the step starts from.
+  /// Adds the wind's impulse to the velocity from which the step starts, because this world ignores
+  /// addForce.
   void blow() {
     for (std::size_t i = 0; i < wind_.size(); ++i) {
       btSoftBody::Node& n = node(i);
@@ -188,7 +190,7 @@ class BulletDeformable final : World, public BulletSolver {
   }
 
   int newton_;
-  btScalar loss_;  ///< share of a velocity that damping takes in one substep
+  btScalar loss_;  ///< share of a velocity that damping removes in one substep
   btDeformableMassSpringForce springs_;
   btDeformableGravityForce gravity_;
   std::vector<btVector3> pin_velocity_;  ///< [pins] m/s, for wind and store()
@@ -197,8 +199,8 @@ class BulletDeformable final : World, public BulletSolver {
 };
 
 std::vector<PassCost> BulletDeformable::solve_cost() const {
-  // Conjugate gradients visit every spring once per iteration, up to 300 times; Bullet keeps no
-  // count.
+  // Conjugate gradients visit every spring once per iteration, up to 300 times; Bullet does not
+  // count them.
   const auto& links = body_->m_links;
   return {{.pass = "springs (Newton steps)",
            .items = static_cast<std::size_t>(links.size()),

@@ -1,5 +1,5 @@
 // Bullet's btSoftBody with its Positions solver, which is Jakobsen's algorithm under another name.
-// Statements that look odd answer traps that bullet_ref/README.md describes.
+// bullet_ref/README.md explains statements that look odd.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletSoftBody/btSoftBody.h>
@@ -43,7 +43,7 @@ constexpr ParamSpec kParams[] = {
         "on: links in the order of Bullet's ReoptimizeLinkOrder, the same at every vertex"),
 };
 
-/// A world with nothing in it; the order of members is the order in which Bullet wants them built.
+/// An empty world. Its members are in the order in which Bullet wants them built.
 struct World {
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
@@ -91,7 +91,7 @@ class BulletSoftBody final : World, public BulletSolver {
   ~BulletSoftBody() override { world.removeSoftBody(body_.get()); }
 
   void load(const State& state) override {
-    // Bullet damps a velocity when it makes one, we when we use it; store() undoes this.
+    // Bullet damps a velocity when it makes one, taut when it uses it; store() undoes this.
     const btScalar keep = 1 - body_->m_cfg.kDP;
     for (std::size_t i = 0; i < state.x.size(); ++i) {
       btSoftBody::Node& n = node(i);
@@ -141,7 +141,7 @@ class BulletSoftBody final : World, public BulletSolver {
       node(static_cast<std::size_t>(scene_.pins[p])).m_q = before[p];
   }
 
-  /// Bullet's own wind gives no force on a cloth at rest, so each node gets its share of ours.
+  /// Applies the wind to each node, because Bullet's own wind gives no force on a cloth at rest.
   void blow() {
     for (const auto& [a, b, c] : scene_.mesh.triangles) {
       const btSoftBody::Node &na = body_->m_nodes[a], &nb = body_->m_nodes[b],
@@ -184,8 +184,8 @@ std::vector<PassCost> BulletSoftBody::solve_cost() const {
   return costs;
 }
 
-/// The order, and of Bullet's own how many links wait for the one before them, in the order that it
-/// was given and in the one that it solves.
+/// The order of the links. For Bullet's own order also the number of links that wait for the one
+/// before them, in the given order and in the order in which Bullet solves them.
 ResolvedSettings link_order(const Scene& scene, const Params& params) {
   if (!params.is("reorder", "on")) return {{kLinkOrder, "the scene's", "mesh order"}};
   btSoftBodyWorldInfo info;
@@ -258,7 +258,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-/// As Jakobsen's omega, order and what keeps cloth outside.
+/// Alternatives like Jakobsen's omega and order, and ways of keeping cloth outside.
 constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
                                                         {"reorder", "off|on"},
                                                         {"faces", "on|off"},
@@ -270,7 +270,7 @@ constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", "on|off", tr
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   if (scene.damping != 0 || params.is("reorder", "on"))
-    return {};  // theory is of the scene's order
+    return {};  // linear theory assumes the scene's order
   return LinearSweeps{.omega = params.real("stiffness"),
                       .sweeps = params.integer("iterations"),
                       .substeps = params.integer("substeps")};

@@ -14,17 +14,18 @@ namespace taut {
 
 namespace {
 
-/// Gravity, still air, no limit on displacements, and distance fields with this grid spacing [m].
+/// Sets gravity, still air, no limit on displacements, and distance fields with this grid spacing
+/// [m].
 void configure_world_info(btSoftBodyWorldInfo& info, const Scene& scene, double voxel) {
   info.m_gravity = to_bullet(scene.gravity);
   info.air_density = 0;
   info.m_maxDisplacement = btScalar(1e9);
   info.m_sparsesdf.setDefaultVoxelsz(static_cast<btScalar>(voxel));
-  info.m_sparsesdf.Reset();  // takes the voxel size over
+  info.m_sparsesdf.Reset();  // applies the voxel size
 }
 
-/// Mesh (without its grid), pins, links and gravity of the scene, as the body holds them: the links
-/// in the order in which they are solved.
+/// Reads mesh (without its grid), pins, links and gravity of the scene from the body. Links are in
+/// the order in which they are solved.
 void read_back_cloth(const btSoftBody& body, RestLength rest_length, Scene& scene) {
   for (int i = 0; i < body.m_nodes.size(); ++i) {
     scene.mesh.rest.push_back(from_bullet(body.m_X[i]));
@@ -50,7 +51,7 @@ void read_back_cloth(const btSoftBody& body, RestLength rest_length, Scene& scen
   scene.gravity = from_bullet(body.m_worldInfo->m_gravity);
 }
 
-/// Of the nodes and of the tree over them.
+/// Bytes of the nodes and of the tree over them.
 std::size_t node_bytes(const btSoftBody& body) {
   const auto n = static_cast<std::size_t>(body.m_nodes.size());
   return static_cast<std::size_t>(body.m_nodes.capacity()) * sizeof(btSoftBody::Node) +
@@ -58,7 +59,7 @@ std::size_t node_bytes(const btSoftBody& body) {
          (2 * n - 1) * sizeof(btDbvtNode);
 }
 
-/// Of the colliders' distance fields, as far as they are built.
+/// Bytes of the colliders' distance fields, as far as they are built.
 std::size_t distance_field_bytes(const btSoftBody& body) {
   const btSparseSdf<3>& sdf = body.m_worldInfo->m_sparsesdf;
   return static_cast<std::size_t>(sdf.cells.capacity()) * sizeof(sdf.cells[0]) +
@@ -91,8 +92,9 @@ std::unique_ptr<btSoftBody> build_cloth(btSoftBodyWorldInfo& info, const Scene& 
     link.m_rl = static_cast<btScalar>(scene.links[static_cast<std::size_t>(i)].rest);
     link.m_c1 = link.m_rl * link.m_rl;
   }
-  body->m_bUpdateRtCst = false;                     // or the first step does it again
-  if (options.reorder && body->m_links.size() > 1)  // it reads the first link and the second node
+  body->m_bUpdateRtCst = false;  // otherwise the first step does it again
+  // ReoptimizeLinkOrder reads the first link and the second node.
+  if (options.reorder && body->m_links.size() > 1)
     btSoftBodyHelpers::ReoptimizeLinkOrder(body.get());
 
   body->getCollisionShape()->setMargin(static_cast<btScalar>(scene.thickness + options.margin));
@@ -116,7 +118,7 @@ BulletSolver::BulletSolver(const Scene& scene, const Params& params, btDiscreteD
       substeps_(params.integer("substeps")),
       h_(static_cast<btScalar>(bullet_ref::substep_length(scene, params))),
       colliders_(scene, world) {
-  world.setGravity(to_bullet(scene.gravity));  // does not reach soft bodies
+  world.setGravity(to_bullet(scene.gravity));  // has no effect on soft bodies
   configure_world_info(info, scene, params.real("voxel"));
   body_ = build_cloth(info, scene, options);
   if (colliders_.deform())  // called between the search for contacts and their solution
@@ -128,9 +130,9 @@ BulletSolver::BulletSolver(const Scene& scene, const Params& params, btDiscreteD
         this);
 }
 
-/// A body that deforms drops the hulls of its triangles, and for each of them Bullet walks over all
-/// cells of the distance fields: they are dropped before, all of them, which are made anew on use.
-/// That walk was two thirds of a step of `skirt`.
+/// Moves the colliders. A body that deforms drops the hulls of its triangles, and for each hull
+/// Bullet walks over all cells of the distance fields. So all cells are dropped first; they are
+/// made anew on use. That walk took two thirds of a step of `skirt`.
 void BulletSolver::move_colliders(double from, double to) {
   if (colliders_.deform()) body_->getWorldInfo()->m_sparsesdf.Reset();
   colliders_.move(from, to);
@@ -195,7 +197,7 @@ Scene BulletSolver::held_scene(RestLength rest_length) const {
 namespace bullet_ref {
 
 void require_cells(const btAlignedObjectArray<btSoftBody*>& bodies) {
-  constexpr btScalar kFarthest = 1e6;  // m: with the least voxel 3e8 cells of three voxels
+  constexpr btScalar kFarthest = 1e6;  // m: 3e8 cells of three voxels, with the smallest voxel
   const auto near = [&](const btVector3& x) {
     return std::abs(x.x()) <= kFarthest && std::abs(x.y()) <= kFarthest &&
            std::abs(x.z()) <= kFarthest;

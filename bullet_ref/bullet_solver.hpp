@@ -25,27 +25,28 @@ inline Vec3 from_bullet(const btVector3& v) {
   return Eigen::Matrix<btScalar, 3, 1>(v.x(), v.y(), v.z()).cast<double>();
 }
 
-/// What a scene leaves open about its cloth.
+/// What a scene does not say about its cloth.
 struct ClothOptions {
   double stiffness = 1;  ///< kLST of every link
   double margin = 0;     ///< m, on top of the scene's thickness
-  bool faces = true;     ///< the mesh's, in its order; without them Bullet computes no normals
-  bool reorder = false;  ///< links by ReoptimizeLinkOrder; else in the scene's order
+  bool faces = true;     ///< the mesh's, in its order; without faces Bullet computes no normals
+  /// Order links by ReoptimizeLinkOrder; otherwise they are in the scene's order.
+  bool reorder = false;
 };
 
-/// The scene's cloth, node by node and link by link, at rest in its rest shape; material i is that
-/// of family i; deactivation is off.
+/// Builds the scene's cloth, node by node and link by link, at rest in its rest shape. Material i
+/// belongs to family i; deactivation is off.
 std::unique_ptr<btSoftBody> build_cloth(btSoftBodyWorldInfo&, const Scene&, const ClothOptions&);
 
-/// Which of a link's two fields its solver reads for the rest length.
+/// The field of a link from which its solver reads the rest length.
 enum class RestLength { m_rl, m_c1 };
 
-/// Links that share a vertex with the link before them in the order in which they are solved: each
-/// waits for what the one before it writes.
+/// Number of links that share a vertex with the link before them in the order of solution. Each of
+/// them waits for what the one before it writes.
 int waiting_links(const btSoftBody&);
 
-/// What both of Bullet's cloths are: the scene's cloth and colliders in a world of Bullet's, which
-/// the derived class owns, advanced by substeps. Only the .cpp files of this folder include this.
+/// Base of both of Bullet's cloths: the scene's cloth and colliders in a Bullet world that the
+/// derived class owns, advanced by substeps. Only the .cpp files of this folder include this.
 class BulletSolver : public Solver, public HoldsScene {
  public:
   void step(double t, double dt) final;
@@ -57,17 +58,19 @@ class BulletSolver : public Solver, public HoldsScene {
   BulletSolver(const Scene&, const Params&, btDiscreteDynamicsWorld&, btSoftBodyWorldInfo&,
                const ClothOptions&);
 
-  /// To where they are at the end of a substep.
+  /// Moves the colliders to their positions at the end of a substep.
   void move_colliders(double from, double to);
-  /// Advances [from, to] by stepSimulation(h_, 0): with its default arguments it steps by 1/60 s.
+  /// Advances from `from` to `to` by stepSimulation(h_, 0): with its default arguments it steps by
+  /// 1/60 s.
   virtual void substep(double from, double to) = 0;
-  /// What solves the links and contacts in one step.
+  /// Costs of solving links and contacts in one step.
   virtual std::vector<PassCost> solve_cost() const = 0;
-  /// Bytes that exist for the wind besides the scene's triangles.
+  /// Bytes of the wind's data besides the scene's triangles.
   virtual std::size_t wind_bytes() const { return 0; }
 
-  /// What the body and the colliders hold, and what Bullet has no place for, so that the adapter
-  /// applies it at each substep: motions of pins and wind. Damping is the derived class's.
+  /// The scene as held: by the body and the colliders, and by the adapter, which applies motions of
+  /// pins and wind at each substep because Bullet has no place for them. Damping is left to the
+  /// derived class.
   Scene held_scene(RestLength) const;
 
   btSoftBody::Node& node(std::size_t i) { return body_->m_nodes[static_cast<int>(i)]; }
@@ -76,20 +79,19 @@ class BulletSolver : public Solver, public HoldsScene {
   Scene scene_;
   double margin_;
   int substeps_;
-  btScalar h_;  ///< s, of a substep
+  btScalar h_;  ///< s, length of a substep
   RigidColliders colliders_;
   std::unique_ptr<btSoftBody> body_;
 };
 
-/// What the entries of both solvers share.
+/// Functions that the entries of both solvers share.
 namespace bullet_ref {
 
-/// Throws SolverFailure "exploded (box)" if a vertex is so far out that the number of its cell in
-/// the colliders' distance fields overflows an int: Bullet would then read memory that is not its
-/// own.
+/// Throws SolverFailure "exploded (box)" if a vertex is so far out that its cell number in the
+/// colliders' distance fields overflows an int: Bullet would then read foreign memory.
 void require_cells(const btAlignedObjectArray<btSoftBody*>&);
 
-/// A world of Bullet's that checks where it moves vertices before it looks for their contacts
+/// A Bullet world that checks the predicted positions of vertices before it searches for contacts
 /// there.
 template <class World>
 class BoundedWorld final : public World {
@@ -115,16 +117,16 @@ inline constexpr ParamSpec kVoxel =
                     "grid spacing of the colliders' distance fields (Bullet's default: 0.25, in "
                     "the deformable world 0.005)");
 
-/// One substep [s]: dt / substeps rounded to binary32, for btSoftRigidDynamicsWorld casts its time
-/// step to float even in the double build.
+/// Length of a substep [s]: dt / substeps rounded to binary32, because btSoftRigidDynamicsWorld
+/// casts its time step to float even in the double build.
 float substep_length(const Scene&, const Params&);
 
-/// The program that runs the parameter "precision".
+/// The program that runs the precision of parameter "precision".
 std::string_view program(const Params&);
-/// Throws InputError if that is not this one.
+/// Throws InputError if this is not that program.
 void require_program(const std::string& solver, const Params&);
 
-/// Reasons and lines of the resolved settings that hold for both.
+/// Reasons and resolved settings that both solvers share.
 std::vector<std::string> unsupported(const Scene&, const Params&);
 ResolvedSettings library_settings(const Scene&, const Params&);
 ResolvedSettings contact_settings(const Scene&, const Params&, const std::string& default_voxel);

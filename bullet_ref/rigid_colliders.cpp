@@ -36,17 +36,17 @@ btTransform transform_of(const Eigen::Quaterniond& rotation, const Vec3& origin)
   return btTransform(basis, to_bullet(origin));
 }
 
-/// What stands in for planes: its solid side is -y. It follows a cloth that leaves its middle, and
-/// is so thick that no cloth gets to its far side within a time step. Larger slabs gain nothing and
-/// cost GJK digits in float.
+/// Slab that stands in for a plane; its solid side is -y. It follows a cloth that leaves its
+/// middle, and is too thick for cloth to reach its far side within a time step. Larger slabs gain
+/// nothing and cost GJK digits in float.
 struct Slab {
   double half_width = 50, half_depth = 5;  ///< m
-  /// How far the cloth's middle may be from the slab's, along it [m].
+  /// Largest distance of the cloth's middle from the slab's, along the slab [m].
   double follows() const { return 0.4 * half_width; }
 };
 
-/// At least the way of a vertex against a plane in a time step [m]: after a free fall of the whole
-/// duration.
+/// Upper bound of a vertex' displacement relative to a plane in a time step [m]: after a free fall
+/// for the whole duration.
 double longest_way(const Scene& scene) {
   double fastest = 0;
   for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());
@@ -65,7 +65,7 @@ Slab slab_for(const Scene& scene) {
   return slab;
 }
 
-/// The shortest rotation of y onto a unit vector; half a turn about x onto -y.
+/// The shortest rotation of y onto a unit vector; onto -y, half a turn about x.
 Eigen::Quaterniond tilt(const Vec3& normal) {
   if (normal.y() < -1 + 1e-12) return {0, 1, 0, 0};
   const double s = std::sqrt(2 * (1 + normal.y()));
@@ -92,7 +92,7 @@ RigidPose pose_at_start(const Shape& shape, const Vec3& above, const Slab& slab)
 
 }  // namespace
 
-/// A body's triangles as Bullet has them, and the shape, which refers to them.
+/// A body's triangles in Bullet's form, and the shape that refers to them.
 class TriangleShape {
  public:
   explicit TriangleShape(const TriangleMesh& mesh) {
@@ -106,14 +106,14 @@ class TriangleShape {
     part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices_.data());
     part.m_vertexStride = 3 * sizeof(btScalar);
     array_.addIndexedMesh(part, PHY_INTEGER);
-    constexpr bool kCompressed = true;  // boxes of the tree, as is Bullet's habit
+    constexpr bool kCompressed = true;  // boxes of the tree, Bullet's default
     shape_.emplace(&array_, kCompressed);
     shape_->setMargin(0);
   }
   btBvhTriangleMeshShape& shape() { return *shape_; }
 
-  /// Moves the vertices, and refits the tree. Bullet's tree has whole numbers for its boxes, of
-  /// those bounds with which it is made or refitted.
+  /// Moves the vertices and refits the tree. Boxes of Bullet's tree are integers within the bounds
+  /// with which it is made or refitted.
   void refit(const std::vector<Vec3>& x) {
     place(x);
     btVector3 least, most;
@@ -138,7 +138,7 @@ class TriangleShape {
 
 namespace {
 
-/// From the arrays that the shape itself refers to.
+/// Reads the triangles from the arrays to which the shape itself refers.
 std::shared_ptr<const TriangleMesh> triangles_of(const btBvhTriangleMeshShape& shape) {
   const unsigned char *vertices = nullptr, *indices = nullptr;
   int vertex_count = 0, vertex_stride = 0, triangle_count = 0, triangle_stride = 0;
@@ -160,7 +160,7 @@ std::shared_ptr<const TriangleMesh> triangles_of(const btBvhTriangleMeshShape& s
   return std::make_shared<const TriangleMesh>(std::move(x), std::move(triangles));
 }
 
-/// Solid, in one piece and bent inward along no edge.
+/// Whether the body is solid, in one piece, and bent inward along no edge.
 bool is_convex(const MeshBody& body) {
   const TriangleMesh& mesh = *body.mesh;
   if (body.sides != MeshBody::Sides::out || !mesh.closed()) return false;
@@ -185,7 +185,7 @@ bool is_convex(const MeshBody& body) {
   return reached == seen.size();
 }
 
-/// All of its corners, in their order.
+/// Convex hull shape with all corners of the mesh, in their order.
 std::unique_ptr<btConvexHullShape> hull_of(const TriangleMesh& mesh) {
   auto made = std::make_unique<btConvexHullShape>();
   for (const Vec3& x : mesh.vertices()) made->addPoint(to_bullet(x), false);
@@ -264,14 +264,14 @@ struct RigidColliders::Body {
     return transform_of(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
   }
 
-  /// Shifts a slab along itself to below the cloth's middle at time t [s] if that has got far away.
+  /// Shifts a slab along itself to below the cloth's middle at time t [s] if that is far away.
   void follow(double t, const Vec3& cloth) {
     if (!is_plane) return;
     const Eigen::Quaterniond turned = motion.rotation(t);
     const Vec3 normal = turned * start.rotation * Vec3::UnitY();
     Vec3 way = cloth - motion.moved(start.origin, t);
     way -= normal.dot(way) * normal;
-    if (!(way.norm() > follows)) return;  // or no number
+    if (!(way.norm() > follows)) return;  // also if it is NaN
     start.origin += turned.conjugate() * way;
     rigid.setWorldTransform(at(t));
     rigid.setInterpolationWorldTransform(at(t));
@@ -280,12 +280,13 @@ struct RigidColliders::Body {
   RigidPose start;
   Motion motion;
   bool is_plane;
-  double follows;                            ///< m, of a slab
-  std::unique_ptr<TriangleShape> body;       ///< null: another shape
-  std::shared_ptr<const BodyFrames> frames;  ///< of a body that deforms
-  std::unique_ptr<DeformingBody> surface;    ///< of such a one, in this substep
-  MeshBody::Sides sides;                     ///< of a body, which Bullet does not know
-  std::shared_ptr<const TriangleMesh> hull;  ///< whose corners the shape has; null: another shape
+  double follows;                            ///< m, for a slab
+  std::unique_ptr<TriangleShape> body;       ///< null: not a mesh
+  std::shared_ptr<const BodyFrames> frames;  ///< for a body that deforms
+  std::unique_ptr<DeformingBody> surface;    ///< for a body that deforms, in this substep
+  MeshBody::Sides sides;                     ///< of a mesh; Bullet does not know it
+  /// Mesh whose corners the shape has; null: another shape.
+  std::shared_ptr<const TriangleMesh> hull;
   std::unique_ptr<btCollisionShape> shape;
   btRigidBody rigid;
 };
@@ -314,8 +315,8 @@ void RigidColliders::move(double from, double to) {
   }
 }
 
-/// Bullet's soft bodies keep a hull of every triangle that they have met, as it was then, for as
-/// long as the pair of bodies lasts: it begins anew.
+/// Moves a deforming body. Bullet's soft bodies keep a hull of every triangle that they have met,
+/// as it was then, while the pair of bodies lasts; so the pair is removed.
 void RigidColliders::deform(Body& body, double from, double to) {
   body.surface->move(from, to);
   body.body->refit(body.surface->after().vertices());
@@ -360,7 +361,7 @@ void RigidColliders::carry(btSoftBody& cloth, double h) {
     const btScalar friction = cloth.m_cfg.kDF * c.m_cti.m_colObj->getFriction();
     const auto way = carry(c.m_cti, c.m_node->m_x);
     if (!way) continue;
-    // What Bullet has decided from the velocity of the body (btSoftColliders::CollideSDF_RS).
+    // Repeat what Bullet decided from the body's velocity (btSoftColliders::CollideSDF_RS).
     const btVector3 slip = c.m_node->m_x - c.m_node->m_q - *way;
     const btScalar into = slip.dot(c.m_cti.m_normal), holds = into * friction;
     const btVector3 along = slip - c.m_cti.m_normal * into;

@@ -12,7 +12,7 @@ namespace taut {
 
 namespace {
 
-/// Nothing, and what is wrong at file and line, if it cannot be read.
+/// The surface in the file, or nothing if it cannot be read; errors are reported at file and line.
 std::optional<BodySurface> read_file(Section& section, const std::filesystem::path& path) {
   try {
     return read_body_obj(path);
@@ -26,14 +26,14 @@ std::optional<BodySurface> read_file(Section& section, const std::filesystem::pa
   }
 }
 
-/// How many lines of the file were skipped, and which.
+/// A sentence about skipped lines of the file: how many, and which.
 std::string remark_on(const std::string& file, const BodySurface& surface) {
   return file + ": lines that say nothing of a body are skipped: " +
          join(surface.skipped, ", ",
               [](const auto& one) { return one.first + " " + std::to_string(one.second); });
 }
 
-/// Scales the vertices; false, and reported, if they reach too far.
+/// Scales the vertices. Returns false, with a report, if they reach too far.
 bool scaled(std::vector<Vec3>& vertices, double scale, Section& section, const std::string& key) {
   for (Vec3& x : vertices) {
     x *= scale;
@@ -44,8 +44,8 @@ bool scaled(std::vector<Vec3>& vertices, double scale, Section& section, const s
   return true;
 }
 
-/// With its triangles turned outward if they look inward. Null, and reported, if it encloses
-/// nothing.
+/// The mesh of a solid body; triangles that face inward are turned outward. Null, with a report, if
+/// it encloses no volume.
 std::shared_ptr<const TriangleMesh> solid(const std::filesystem::path& path, BodySurface surface,
                                           Section& section) {
   auto mesh = std::make_shared<const TriangleMesh>(surface.vertices, surface.triangles);
@@ -84,7 +84,7 @@ std::shared_ptr<const TriangleMesh> read_mesh(Section& section, const std::files
                                               std::move(surface->triangles));
 }
 
-/// What is wrong with a frame of a body; "" if nothing is. `mesh` has its triangles.
+/// The error in a frame of a body, or "". `mesh` has the body's triangles.
 std::string problem_of(const std::vector<Vec3>& x, TriangleMesh& mesh, MeshBody::Sides sides) {
   const auto bad = std::ranges::find_if(x, [](const Vec3& p) { return !p.allFinite(); });
   if (bad != x.end()) return "vertex " + std::to_string(bad - x.begin()) + " is not finite";
@@ -101,7 +101,7 @@ std::string problem_of(const std::vector<Vec3>& x, TriangleMesh& mesh, MeshBody:
   return "it encloses no volume, or is turned inside out: set sides = \"both\"";
 }
 
-/// Null, and reported, if they are no frames of the mesh.
+/// The body's frames. Null, with a report, if they do not fit the mesh.
 std::shared_ptr<const BodyFrames> read_frames(Section& section, const std::filesystem::path& folder,
                                               double scale, MeshBody::Sides sides,
                                               const TriangleMesh* mesh) {

@@ -39,7 +39,7 @@ std::optional<Grid> read_grid(Section& cloth) {
   return std::nullopt;
 }
 
-/// Sides of the sheet [m]; a side along which there is only one vertex may be zero.
+/// Sides of the sheet [m]; a side with a single vertex along it may be zero.
 bool read_size(Section& cloth, SheetShape& shape) {
   cloth.need({"size"});
   const auto size = cloth.numbers("size", 2, Range::non_negative(kFar));
@@ -56,7 +56,7 @@ bool read_size(Section& cloth, SheetShape& shape) {
   return false;
 }
 
-/// Total mass [kg], from the fabric, `mass` or `area_density`; `area` [m^2].
+/// Total mass [kg] of a cloth of this area [m^2], from the fabric, `mass` or `area_density`.
 std::optional<double> read_mass(Section& cloth, const Fabric* fabric, const FileKeys& said,
                                 double area) {
   const bool both = cloth.find("mass") && cloth.find("area_density");
@@ -70,8 +70,8 @@ std::optional<double> read_mass(Section& cloth, const Fabric* fabric, const File
   return std::nullopt;
 }
 
-/// A row of count vertices whose ends are `span` apart, as a circular arc: every link keeps its
-/// rest length. Offsets along u and square to it of each vertex [m].
+/// A row of `count` vertices along a circular arc, whose ends are `span` apart and whose links keep
+/// their rest length. Returns the offsets of each vertex along u and perpendicular to it [m].
 std::vector<std::pair<double, double>> arc(int count, double width, double span) {
   const int links = count - 1;
   const double chord = width / links;
@@ -89,12 +89,12 @@ std::vector<std::pair<double, double>> arc(int count, double width, double span)
     const auto [u, v] = row.back();
     row.emplace_back(u + chord * std::cos(slope), v + chord * std::sin(slope));
   }
-  row.back() = {span, 0};  // without the bisection's rounding
+  row.back() = {span, 0};  // without the rounding of bisection
   return row;
 }
 
-/// Where the sheet starts: its rest shape, or hung between sides that are closer than its width,
-/// then turned about its top edge.
+/// Sets the start of the sheet: its rest shape, or hung between sides that are closer than its
+/// width, then turned about its top edge.
 void start_sheet(Section& cloth, const SheetShape& shape, const FileKeys& said, Scene& scene) {
   const bool hung = said.span > 0;
   if (hung && shape.nu < 3) {
@@ -104,7 +104,7 @@ void start_sheet(Section& cloth, const SheetShape& shape, const FileKeys& said, 
                              as_typed(said.span));
   } else if (hung && said.span < shape.width) {
     const auto row = arc(shape.nu, shape.width, said.span);
-    // square to u even in a parallelogram, or links would not keep their lengths
+    // perpendicular to u even in a parallelogram, so that links keep their lengths
     const Vec3 sag = (shape.v - shape.v.dot(shape.u) * shape.u).normalized();
     const Grid& g = *scene.mesh.grid;
     for (int j = 0; j < g.nv; ++j)
@@ -142,7 +142,7 @@ bool read_sheet(Section& cloth, const Fabric* fabric, const FileKeys& said, Scen
   return true;
 }
 
-/// "sheet.obj: 14 lines skipped, for no cloth has what they say: adje 1, vv 4".
+/// A sentence: "sheet.obj: 14 lines skipped, for no cloth has what they say: adje 1, vv 4".
 std::string remark_on(const Polygons& surface) {
   int lines = 0;
   for (const auto& [word, count] : surface.skipped) lines += count;
@@ -152,8 +152,8 @@ std::string remark_on(const Polygons& surface) {
               [](const auto& one) { return one.first + " " + std::to_string(one.second); });
 }
 
-/// The surface in an OBJ file, scaled, turned and moved. False if the file has errors, which are
-/// reported.
+/// Reads the surface in an OBJ file, scaled, turned and moved. Returns false if the file has
+/// errors, which are reported.
 bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fabric* fabric,
                   const FileKeys& said, Scene& scene) {
   const Eigen::Quaterniond rotation = read_rotation(cloth);
@@ -184,17 +184,17 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fab
   return true;
 }
 
-/// Scales the rest shape to the shape at the start, so that every link has the same strain.
+/// Scales the rest shape to the start, so that every link has the same strain.
 void stretch_start(double factor, Scene& scene) {
   if (factor == 1 || scene.start.x.empty()) return;
   const Vec3 fixed = scene.start.x.front();
   for (Vec3& x : scene.start.x) x = fixed + factor * (x - fixed);
 }
 
-/// The rows and columns of a grid that a name selects.
+/// A named part of a grid: a range of columns and one of rows.
 struct Part {
   std::string name;
-  int i0, i1, j0, j1;  ///< inclusive; -1: the last one
+  int i0, i1, j0, j1;  ///< inclusive; -1: the last
 };
 const std::vector<Part> kParts{{"top", 0, -1, 0, 0},          {"bottom", 0, -1, -1, -1},
                                {"left", 0, 0, 0, -1},         {"right", -1, -1, 0, -1},
@@ -239,8 +239,7 @@ class VertexReader {
     for (const int vertex : part_of(value)) all_.push_back(vertex);
   }
 
-  /// The vertices of an edge or corner in their order; none, and a report, if there is no such
-  /// edge.
+  /// The vertices of an edge or corner, in order; empty, with a report, if there is no such part.
   std::vector<int> part_of(const Value& value) {
     std::vector<std::string> names;
     for (const Part& part : kParts) names.push_back(part.name);
@@ -261,7 +260,7 @@ class VertexReader {
     return vertices;
   }
 
-  /// The vertex nearest to a fraction of the edge, the first of two.
+  /// Adds the vertex nearest to a fraction of the edge, the first of two equally near ones.
   void add_along(const Value& value) {
     Section place(section_.diagnostics(), value, "a place of '" + key_ + "' in " + section_.name());
     place.need({"edge", "at"});
@@ -328,14 +327,14 @@ class VertexReader {
     if (all_.size() == before) report(value, "has a " + what + " that holds no vertex");
   }
 
-  static constexpr double kSlack = 1e-9;  ///< m, so that a vertex on the surface is inside
+  static constexpr double kSlack = 1e-9;  ///< m, so that a vertex on the surface counts as inside
   Section& section_;
   std::string key_;
   const Mesh& mesh_;
   std::vector<int> all_;
 };
 
-/// The vertices that a value names by itself; an array is a pair [i, j].
+/// The vertices that a value names on its own; an array is a pair [i, j].
 std::vector<int> vertices_of(const Value& value, Section& section, const std::string& key,
                              const Mesh& mesh) {
   VertexReader reader(section, key, mesh);
@@ -343,7 +342,7 @@ std::vector<int> vertices_of(const Value& value, Section& section, const std::st
   return reader.take();
 }
 
-/// Vertices that are heavier or lighter than the lumping says.
+/// Applies factors to the mass that the lumping gives to vertices.
 void read_weights(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("weights")) {
     Section weight(cloth.diagnostics(), *entry, "'weights' in [cloth]");
@@ -355,7 +354,7 @@ void read_weights(Section& cloth, Scene& scene) {
   }
 }
 
-/// Vertices that start elsewhere than the shape says.
+/// Moves vertices whose start differs from the shape.
 void read_placed(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("placed")) {
     Section placed(cloth.diagnostics(), *entry, "'placed' in [cloth]");
@@ -370,8 +369,7 @@ void read_placed(Section& cloth, Scene& scene) {
   }
 }
 
-/// Keys that mean nothing for this kind of cloth; they are named here so that the message can say
-/// why.
+/// Reports keys that do not apply to this kind of cloth, so that the message can say why.
 void refuse(Section& cloth, const std::vector<std::string>& keys, const std::string& why) {
   for (const std::string& key : keys)
     if (cloth.find(key)) cloth.report(key, why);
@@ -401,7 +399,7 @@ bool read_cloth(Section& cloth, const std::filesystem::path& folder, const Fabri
 
 namespace {
 
-/// The vertices that the items of a list name, one item after the other.
+/// The vertices that the items of a list name, one item after another.
 std::vector<int> in_order(Section& section, const std::string& key, const Mesh& mesh) {
   std::vector<int> all;
   const Value* value = section.find(key);
@@ -414,7 +412,7 @@ std::vector<int> in_order(Section& section, const std::string& key, const Mesh& 
 
 using VertexPair = std::pair<int, int>;
 
-/// Pairs of vertices of one face, or linked already, the lesser first.
+/// Pairs of vertices that share a face or are already linked, lesser vertex first.
 std::set<VertexPair> together(const Scene& scene) {
   std::set<VertexPair> all;
   const auto add = [&](int a, int b) { all.insert(std::minmax(a, b)); };

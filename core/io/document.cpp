@@ -24,17 +24,17 @@ SourceLocation place_of(const toml::source_region& region, int override) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), override};
 }
 
-/// The TOML library goes down a level for each part of a dotted key, and has no bound of its own.
+/// Most parts of a dotted key. The TOML library recurses for each part and has no limit of its own.
 constexpr int kMostKeyParts = 16;
-/// Levels of a document: what is deeper means nothing here.
+/// Most levels of a document; no key is deeper.
 constexpr int kMostLevels = 64;
 
-/// Where the first dotted key with more parts than that stands, 0-based; npos: there is none.
+/// Offset of the first dotted key with more parts than kMostKeyParts; npos if there is none.
 std::size_t too_long_key(std::string_view text) {
   const auto bare = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
   };
-  const auto after_part = [&](std::size_t at) {  // `at` itself: no part of a key stands here
+  const auto after_part = [&](std::size_t at) {  // returns `at` if no part of a key begins there
     if (at < text.size() && (text[at] == '"' || text[at] == '\'')) {
       const std::size_t end = text.find_first_of(std::string{text[at], '\n'}, at + 1);
       return end != text.npos && text[end] == text[at] ? end + 1 : at;
@@ -101,14 +101,14 @@ Value convert(const toml::node& node, int override, int level = 0) {
   return value;
 }
 
-/// The element of an array that a dotted key names by its number; nullptr: none such.
+/// The element of an array that a dotted key names by its index; nullptr if there is none.
 Value* element(Value& array, const std::string& key) {
   const auto index = whole<std::size_t>(key);
   return index && *index < array.items.size() ? &array.items[*index] : nullptr;
 }
 
-/// Puts what the override says over what is there. Tables that were written with dotted keys merge;
-/// everything else is replaced.
+/// Applies the values of an override. Tables written with dotted keys merge; everything else is
+/// replaced.
 void assign(Value& target, const toml::table& from, int override,
             std::vector<std::string>& problems) {
   for (const auto& [key, child] : from) {
@@ -122,7 +122,7 @@ void assign(Value& target, const toml::table& from, int override,
         continue;
       }
     } else {
-      if (!target.is_table()) target = Value{};  // judged later: the schema wants another type
+      if (!target.is_table()) target = Value{};  // reported later: the schema wants another type
       slot = const_cast<Value*>(target.find(name));
       if (!slot) {
         target.keys.push_back({name, place_of(key.source(), override)});
@@ -139,7 +139,7 @@ void assign(Value& target, const toml::table& from, int override,
   }
 }
 
-/// The syntax error as ours; its line is kept inside the text even if the end is what is missing.
+/// The syntax error as a diagnostic. Its line is kept inside the text even if the end is missing.
 Diagnostic syntax_error(const toml::parse_error& error, const Document& document,
                         const std::string& text, int override) {
   SourceLocation place = place_of(error.source(), override);
@@ -150,7 +150,7 @@ Diagnostic syntax_error(const toml::parse_error& error, const Document& document
   return document.diagnostic(place, std::string(error.description()));
 }
 
-/// Where a value of the library's goes: into an array, or into a table under a key.
+/// Destination of a value in the library's tree: an array, or a key of a table.
 struct Place {
   toml::array* array = nullptr;
   toml::table* table = nullptr;
@@ -195,7 +195,7 @@ toml::table table_of(const Value& value) {
   return table;
 }
 
-/// What a value that does not parse is to be, for the end of a message.
+/// Hint at the end of a message about a value that does not parse: what the value should be.
 std::string as_written(const std::string& assignment) {
   const std::string path = assignment.substr(0, assignment.find_first_of(" ="));
   const SceneKey* key = find_scene_key(path);
@@ -253,7 +253,7 @@ Document parse_document(const std::string& file, const std::string& text,
         found.push_back(document.diagnostic({1, 1, i}, problem));
     } catch (const toml::parse_error& error) {
       found.push_back(syntax_error(error, document, assignment, i));
-      if (found.back().message.starts_with("Error while parsing"))  // the library's words
+      if (found.back().message.starts_with("Error while parsing"))  // the library's wording
         found.back().message += as_written(assignment);
     }
   }
@@ -274,7 +274,7 @@ std::string to_toml(const Value& root) {
 
 void Diagnostics::throw_if_any() {
   if (found_.empty()) return;
-  // Overrides have no line and come last, as on the command line.
+  // Overrides have no line and come last, in the order of the command line.
   std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tuple(a.line == 0, a.file, a.line, a.column) <
            std::tuple(b.line == 0, b.file, b.line, b.column);
@@ -482,7 +482,7 @@ std::vector<const Value*> Section::tables(const std::string& key) {
 void Section::finish(const std::vector<std::string>& elsewhere) {
   for (const Key& key : table_.keys) {
     if (std::find(known_.begin(), known_.end(), key.text) != known_.end()) continue;
-    std::string meant;  // the same word elsewhere is nearer than another one here
+    std::string meant;  // the same key elsewhere is a better guess than another key here
     for (const std::string& path : elsewhere)
       if (meant.empty() && path.ends_with("." + key.text)) meant = "; did you mean '" + path + "'?";
     if (meant.empty()) meant = suggestion(key.text, known_);

@@ -13,7 +13,7 @@
 
 namespace taut {
 
-/// Where a value was written.
+/// Where a value is written.
 struct SourceLocation {
   int line = 0;       ///< 1-based; 0: unknown
   int column = 0;     ///< 1-based; 0: unknown
@@ -26,30 +26,31 @@ struct Key {
   SourceLocation place;
 };
 
-/// A value of a TOML document that remembers where it stands.
+/// A value of a TOML document, with its place in the document.
 struct Value {
   enum class Kind { boolean, integer, real, string, array, table, date };
   Kind kind = Kind::table;
   SourceLocation place;
   bool boolean = false;
-  double number = 0;         ///< integers too
+  double number = 0;         ///< of integers, too
   std::string string;        ///< strings only
-  std::vector<Value> items;  ///< of an array, or of a table: items[i] belongs to keys[i]
-  std::vector<Key> keys;     ///< tables only, in the order of the document
+  std::vector<Value> items;  ///< of an array, or of a table, where items[i] belongs to keys[i]
+  std::vector<Key> keys;     ///< of a table, in the order of the document
 
   bool is_table() const { return kind == Kind::table; }
   bool is_array() const { return kind == Kind::array; }
   bool is_string() const { return kind == Kind::string; }
   bool is_number() const { return kind == Kind::integer || kind == Kind::real; }
-  const Value* find(const std::string& key) const;  ///< nullptr: a table without it, or no table
-  /// The last override that a part of it comes from; -1: all is from the file.
+  /// Nullptr if this is not a table or does not have the key.
+  const Value* find(const std::string& key) const;
+  /// Index of the last override that set a part of the value; -1: all of it is from the file.
   int latest_override() const;
 };
 
 /// "a table", "a whole number", ...
 std::string describe(const Value&);
 
-/// A TOML file whose values were replaced by the overrides.
+/// A TOML file with its overrides applied.
 struct Document {
   std::string file;  ///< as the user named it
   std::vector<std::string> overrides;
@@ -58,21 +59,21 @@ struct Document {
   Diagnostic diagnostic(const SourceLocation&, const std::string& message) const;
 };
 
-/// Reads a TOML file. An override is a TOML assignment with a dotted key ("time.dt=\"1/120\""); it
-/// replaces the value or adds it; a number selects an element of an array
+/// Reads a TOML file. An override is a TOML assignment with a dotted key ("time.dt=\"1/120\""),
+/// which replaces or adds a value; a number selects an element of an array
 /// ("collider.0.radius=0.4"). Throws InputError with every malformed part: the file's first syntax
-/// error (duplicate keys are one) and each malformed override.
+/// error (including duplicate keys) and each malformed override.
 Document read_document(const std::filesystem::path&, const std::vector<std::string>& overrides);
 
-/// The same for text that is already in memory.
+/// read_document() for text in memory.
 Document parse_document(const std::string& file, const std::string& text,
                         const std::vector<std::string>& overrides);
 
-/// The document as TOML, without comments: it reads back as the same values. Throws InputError for
-/// a date or time, which no document of ours has.
+/// Writes the document as TOML, without comments; it reads back as the same values. Throws
+/// InputError for a date or time, which no document of taut has.
 std::string to_toml(const Value& root);
 
-/// Collects everything that is wrong with a document.
+/// Collects all errors of a document.
 class Diagnostics {
  public:
   explicit Diagnostics(const Document& document) : document_(document) {}
@@ -83,10 +84,11 @@ class Diagnostics {
     for (Diagnostic& d : more) found_.push_back(std::move(d));
   }
   bool clean() const { return found_.empty(); }
-  /// What is not wrong, but not used either: a sentence for the user.
+  /// Adds a sentence for the user about something that is not wrong, but not used either.
   void remark(const std::string& sentence) { remarks_.push_back(sentence); }
   const std::vector<std::string>& remarks() const { return remarks_; }
-  /// Throws InputError with all that was reported, in the order of the file; returns if none was.
+  /// Throws InputError with everything that was reported, in the order of the file, if anything
+  /// was.
   void throw_if_any();
 
  private:
@@ -95,12 +97,12 @@ class Diagnostics {
   std::vector<std::string> remarks_;
 };
 
-/// Reads the keys of one table. Every key that is asked for is known; finish() reports the others.
-/// A value that is wrong is reported and then treated as absent, so that reading goes on.
+/// Reads the keys of one table. Every key that is asked for becomes known; finish() reports the
+/// others. A wrong value is reported and then treated as absent, so that reading goes on.
 class Section {
  public:
-  /// `name` as messages print it: "[cloth]". `scene_section`: its section of scene_keys(), "cloth",
-  /// whose units messages name; "": none.
+  /// name: as messages print it, "[cloth]". scene_section: section of scene_keys(), "cloth", whose
+  /// units messages name; "": none.
   Section(Diagnostics& diagnostics, const Value& table, std::string name,
           std::string scene_section = "");
   Section(Section&&) = default;
@@ -108,11 +110,11 @@ class Section {
   const SourceLocation& place() const { return table_.place; }
   const std::string& name() const { return name_; }
   Diagnostics& diagnostics() { return diagnostics_; }
-  /// The raw value; nullptr if it is absent.
+  /// The raw value; nullptr if absent.
   const Value* find(const std::string& key);
-  /// Where the key stands, or the section if it is absent.
+  /// Place of the key, or of the section if the key is absent.
   SourceLocation place(const std::string& key) const;
-  /// Every key of its section of a scene is known.
+  /// Marks every key of its section of a scene as known.
   void know();
   void missing(const std::string& key);
   /// Reports those of the keys that are absent.
@@ -123,35 +125,36 @@ class Section {
   double number(const std::string& key, const Range& range, double fallback) {
     return number(key, range).value_or(fallback);
   }
-  /// The range is that of each component.
+  /// range: of each component.
   std::optional<Vec3> vec3(const std::string& key, const Range&);
   Vec3 vec3(const std::string& key, const Range& range, const Vec3& fallback) {
     return vec3(key, range).value_or(fallback);
   }
-  /// A direction: any length but zero; given back as a unit vector.
+  /// A direction of any length but zero, returned as a unit vector.
   Vec3 direction(const std::string& key, const Vec3& fallback);
-  /// `count` numbers.
+  /// An array of `count` numbers.
   std::optional<std::vector<double>> numbers(const std::string& key, std::size_t count,
                                              const Range&);
   bool boolean(const std::string& key, bool fallback);
   std::optional<std::string> string(const std::string& key);
-  /// A list of strings; nothing if it is absent or no list.
+  /// A list of strings; empty optional if it is absent or not a list.
   std::optional<std::vector<std::string>> strings(const std::string& key);
   std::string choice(const std::string& key, const std::vector<std::string>& choices,
                      const std::string& fallback);
-  /// A table; nullptr if it is absent.
+  /// A table; nullptr if absent.
   const Value* table(const std::string& key);
   /// The elements of an array of tables.
   std::vector<const Value*> tables(const std::string& key);
 
-  /// Reports every key that nobody asked for, with what may have been meant: another key, or one
-  /// of those paths that ends in it.
+  /// Reports every unknown key, with a guess at what was meant: another key, or one of the paths
+  /// `elsewhere` that ends in it.
   void finish(const std::vector<std::string>& elsewhere = {});
 
  private:
   std::optional<double> judged(const Value&, const std::string& key, const Range&);
   void wrong_type(const Value&, const std::string& key, const std::string& wanted);
-  std::string in_unit(const std::string& key) const;  ///< " in s"; "": no unit is known
+  /// " in s"; "" if the unit is not known.
+  std::string in_unit(const std::string& key) const;
 
   Diagnostics& diagnostics_;
   const Value& table_;
@@ -159,8 +162,8 @@ class Section {
   std::vector<std::string> known_;
 };
 
-/// The number that a value stands for: a number or a fraction such as "1/64"; nothing if it is
-/// neither. May be non-finite.
+/// The value of a number or of a fraction such as "1/64"; empty if it is neither. May be
+/// non-finite.
 std::optional<double> as_number(const Value&);
 
 }  // namespace taut

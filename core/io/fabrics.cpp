@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kPetrak = "Petrak et al., Sustainability 17, 1388 (2025), KES-F",
                            kBy = "CC BY 4.0";
 
-// To add one: every number read in the source itself, and what the source lets others do with it.
+// To add a fabric, read every number in the source itself, and check what its licence permits.
 constexpr Fabric kFabrics[] = {
     {"petrak-m1", 0.135, 1950e-9, 610e-9, 0.223, kPetrak, kBy},
     {"petrak-m2", 0.084, 850e-9, 330e-9, 0.228, kPetrak, kBy},

@@ -6,20 +6,20 @@
 
 namespace taut {
 
-/// A fabric as somebody measured it.
+/// A fabric with measured properties.
 struct Fabric {
   std::string_view name;
   double mass = 0;   ///< kg/m^2
   double warp = 0;   ///< N m, bending stiffness along the warp
-  double weft = 0;   ///< N m, across it
-  double drape = 0;  ///< drape coefficient, measured
+  double weft = 0;   ///< N m, bending stiffness across the warp
+  double drape = 0;  ///< measured drape coefficient
   std::string_view source, licence;
 };
 
-/// In the order of their names.
+/// All fabrics, sorted by name.
 std::span<const Fabric> fabrics();
 
-/// Null: none has this name; `problem` then says so, with a suggestion.
+/// The fabric of this name. Null if there is none; `problem` then says so, with a suggestion.
 const Fabric* find_fabric(const std::string& name, std::string& problem);
 
 }  // namespace taut

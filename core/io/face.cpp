@@ -11,7 +11,8 @@ namespace taut {
 
 namespace {
 
-constexpr double kFlat = 1e-12;  ///< of the longest side's square: a turn that is only rounding
+/// As a share of the longest side's square: a turn below it is only rounding.
+constexpr double kFlat = 1e-12;
 
 bool precedes(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
@@ -36,7 +37,7 @@ Face::Face(std::vector<Vec3> corners) : corners_(std::move(corners)) {
   }
 }
 
-/// Twice the area of the triangle; negative: it turns clockwise.
+/// Twice the area of the triangle; negative if it turns clockwise.
 double Face::turn(std::size_t a, std::size_t b, std::size_t c) const {
   const Point &p = seen_[a], &q = seen_[b], &r = seen_[c];
   return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
@@ -56,7 +57,7 @@ bool Face::convex() const {
   return has_normal_ && std::abs(round - 2 * std::numbers::pi) < 1;
 }
 
-/// Whether two sides that share no corner have a point in common.
+/// Whether two sides without a common corner meet.
 bool Face::sides_meet(std::size_t i, std::size_t j) const {
   const std::size_t n = seen_.size(), a = i, b = (i + 1) % n, c = j, d = (j + 1) % n;
   const double abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
@@ -70,7 +71,7 @@ bool Face::crosses_itself() const {
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 2; j < n; ++j)
       if ((j + 1) % n != i && sides_meet(i, j)) return true;
-  return triangles().empty();  // its outline touches itself
+  return triangles().empty();  // true if its outline touches itself
 }
 
 std::vector<std::array<std::size_t, 3>> Face::triangles() const {
@@ -104,7 +105,7 @@ std::vector<std::array<std::size_t, 3>> Face::triangles() const {
     all.push_back({corner(best + n - 1), corner(best), corner(best + 1)});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
     ears.erase(ears.begin() + static_cast<std::ptrdiff_t>(best));
-    // A cut changes what is an ear at its two ends alone.
+    // A cut only changes whether its two ends are ears.
     for (const std::size_t end : {best + n - 2, best}) ears[end % (n - 1)] = is_ear(end % (n - 1));
   }
   all.push_back({left[0], left[1], left[2]});

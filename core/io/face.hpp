@@ -8,21 +8,21 @@
 
 namespace taut {
 
-/// A polygon of a surface, seen along its normal (the direction of its vector area): what its
-/// corners need not lie in one plane for.
+/// A polygon of a surface, seen along its normal (the direction of its vector area), so that its
+/// corners need not lie in one plane.
 class Face {
  public:
-  /// Three corners or more, in order round it [m].
+  /// corners: three or more, in order around the polygon [m].
   explicit Face(std::vector<Vec3> corners);
 
-  /// Every corner turns the same way, and all of them together once round.
+  /// Whether every corner turns the same way, and all of them together once around.
   bool convex() const;
-  /// Two of its sides meet other than in a corner that they share, or it has no normal although
-  /// its corners are apart: a quad that is crossed or folded onto itself.
+  /// Whether two sides meet other than in a common corner, or the face has no normal although its
+  /// corners are apart: a quad that is crossed or folded onto itself.
   bool crosses_itself() const;
-  /// Triangles of corners that cover the face once, none outside of it: the ear with the shortest
-  /// cut goes first, of equal ones that whose tip has the least coordinates, so that the triangles
-  /// are the same whatever the corner with which the face begins. Precondition: not
+  /// Triangles of corners that cover the face once and nothing outside it. The ear with the
+  /// shortest cut goes first; among equal ones, the one whose tip has the least coordinates, so
+  /// that the triangles do not depend on the first corner of the face. Precondition: not
   /// crosses_itself().
   std::vector<std::array<std::size_t, 3>> triangles() const;
 
@@ -34,8 +34,8 @@ class Face {
   bool sides_meet(std::size_t i, std::size_t j) const;
 
   std::vector<Vec3> corners_;
-  std::vector<Point> seen_;  ///< along the normal, counter-clockwise
-  double size2_ = 0;         ///< of the longest side, squared [m^2]
+  std::vector<Point> seen_;  ///< corners as seen along the normal, counter-clockwise
+  double size2_ = 0;         ///< m^2, square of the longest side
   bool has_normal_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Surfaces of polygons: reading their OBJ files, what is wrong with them, meshes and links of them.
+// Surfaces of polygons: reading and checking OBJ files, and making meshes and links of them.
 #include "core/io/mesh_io.hpp"
 
 #include <algorithm>
@@ -24,14 +24,14 @@ namespace taut {
 
 namespace {
 
-/// Collects what is wrong with a surface; a hopeless file does not flood the terminal.
+/// Collects the errors of a surface, without flooding the terminal for a hopeless file.
 class SurfaceErrors {
  public:
   explicit SurfaceErrors(std::string file) : file_(std::move(file)) {}
   void report(int line, const std::string& message, int column = 1) {
     found_.push_back({file_, line, column, message});
   }
-  /// Throws InputError with the first hundred in the order of the file; returns if there are none.
+  /// Throws InputError with the first hundred errors, in the order of the file, if there are any.
   void throw_if_any() {
     if (found_.empty()) return;
     std::ranges::stable_sort(found_, {},
@@ -50,7 +50,7 @@ class SurfaceErrors {
   std::vector<Diagnostic> found_;
 };
 
-/// An edge with the faces that have it; a < b.
+/// An edge and its faces; a < b.
 struct Edge {
   int a = 0, b = 0;
   std::vector<int> faces;
@@ -67,8 +67,9 @@ double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() / 2;
 }
 
-/// What each vertex of a face owns of its area: a third of every triangle that it is a corner of,
-/// in the mean over the fans from each vertex; in its ears if it is not convex.
+/// Share of each vertex in the area of a face: a third of every triangle whose corner it is,
+/// averaged over the fans from each vertex; for a face that is not convex, in the triangles of its
+/// ears.
 std::vector<double> shares(const Polygons& p, const std::vector<int>& face) {
   const std::size_t n = face.size();
   std::vector<double> share(n, 0.0);
@@ -95,11 +96,11 @@ double face_area(const Polygons& p, const std::vector<int>& face) {
   return std::accumulate(share.begin(), share.end(), 0.0);
 }
 
-std::string number(const Polygons& p, int vertex) {  // as OBJ counts
+std::string number(const Polygons& p, int vertex) {  // counted as in OBJ
   return std::to_string(p.numbers[to_index(vertex)] + 1);
 }
 
-/// Whether its corners are not all on one line.
+/// Whether the corners of a face are not all on one line.
 bool is_spread(const Polygons& p, const std::vector<int>& face) {
   double largest = 0, longest2 = 0;
   const Vec3& first = p.vertices[to_index(face[0])];
@@ -151,7 +152,7 @@ void judge_vertices(const Polygons& p, SurfaceErrors& errors) {
   }
 }
 
-/// Sorted by a, then b; faces in their order.
+/// The edges, sorted by a, then b; faces in their order.
 std::vector<Edge> edges_of(const Polygons& p) {
   std::vector<std::array<int, 3>> sides;  // a, b, face
   for (std::size_t f = 0; f < p.faces.size(); ++f)
@@ -169,7 +170,7 @@ std::vector<Edge> edges_of(const Polygons& p) {
 }
 
 /// Reports faces without area, edges of more than two faces, vertices without a face and vertices
-/// that coincide. Precondition: every face names vertices that exist.
+/// that coincide. Precondition: every face refers to vertices that exist.
 void judge_surface(const Polygons& p, SurfaceErrors& errors) {
   if (p.faces.empty()) return errors.report(1, "no face: a cloth needs one at least");
   judge_vertices(p, errors);
@@ -182,7 +183,7 @@ void judge_surface(const Polygons& p, SurfaceErrors& errors) {
                         " faces; a cloth has two at most");
 }
 
-/// The vertex beside `of` in the face, on the side away from `other`, which is its other neighbour.
+/// The neighbour of vertex `of` in the face that is not `other`, its neighbour on the other side.
 int beside(const std::vector<int>& face, int of, int other) {
   const auto n = face.size();
   const auto k = static_cast<std::size_t>(std::find(face.begin(), face.end(), of) - face.begin());
@@ -190,7 +191,7 @@ int beside(const std::vector<int>& face, int of, int other) {
   return before == other ? after : before;
 }
 
-/// For each vertex the first one that is where it is.
+/// For each vertex, the first vertex at the same position.
 std::vector<int> first_at_each_place(const std::vector<Vec3>& vertices) {
   std::vector<int> sorted(vertices.size()), first(vertices.size());
   std::iota(sorted.begin(), sorted.end(), 0);
@@ -206,8 +207,9 @@ std::vector<int> first_at_each_place(const std::vector<Vec3>& vertices) {
   return first;
 }
 
-/// The first vertex that stays within `reach` of each, itself if there is none: cells of that size,
-/// of which a vertex looks at those around its own.
+/// For each vertex, the first vertex within `reach` that stays, or itself if there is none.
+/// Vertices that stay are kept in cells of size `reach`, and each vertex searches the cells around
+/// its own.
 std::vector<int> joined(const std::vector<Vec3>& x, double reach) {
   using Cell = std::array<std::int64_t, 3>;
   const auto cell = [&](const Vec3& at, Eigen::Index axis) {
@@ -232,11 +234,11 @@ std::vector<int> joined(const std::vector<Vec3>& x, double reach) {
   return to;
 }
 
-/// Joins vertices within `reach` of each other; those that stay keep their order.
+/// Joins vertices within `reach` of each other; the remaining ones keep their order.
 void weld(Polygons& p, double reach, SurfaceErrors& errors) {
   const std::vector<int> to = joined(p.vertices, reach);
   for (std::size_t f = 0; f < p.faces.size(); ++f) {
-    std::map<int, int> corners;  // by what they become
+    std::map<int, int> corners;  // by the vertex that they become
     for (const int v : p.faces[f])
       if (const auto [other, added] = corners.emplace(to[to_index(v)], v); !added) {
         const double apart = (p.vertices[to_index(v)] - p.vertices[to_index(other->second)]).norm();
@@ -266,10 +268,11 @@ void weld(Polygons& p, double reach, SurfaceErrors& errors) {
   p = std::move(whole);
 }
 
-/// Keywords that say nothing about the shape.
+/// Keywords that do not affect the shape.
 constexpr std::string_view kOfOthers[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
-/// What other programs add to it and no cloth of ours has: plastic and moving cloth, its edges and
-/// neighbours (ArcSim), seams, lines and points, detail levels. They are skipped, and counted.
+/// Keywords that other programs add for what no cloth of taut has: plastic and moving cloth, its
+/// edges and neighbours (ArcSim), seams, lines and points, detail levels. They are skipped, and
+/// counted.
 constexpr std::string_view kCounted[] = {"vv", "ny", "nv",   "vl",    "e",      "ea",
                                          "ed", "tl", "adje", "adjf",  "stitch", "l",
                                          "p",  "mg", "lod",  "usemap"};
@@ -299,7 +302,8 @@ class ObjReader {
     }
   }
 
-  /// Faces may name vertices that come later in the file, so the count is known only now.
+  /// Returns the surface. Faces may refer to vertices that come later in the file, so their numbers
+  /// are checked only now.
   Polygons take() {
     const auto count = static_cast<long>(polygons_.vertices.size());
     for (std::size_t f = 0; f < polygons_.faces.size(); ++f)
@@ -328,7 +332,7 @@ class ObjReader {
       const auto value = whole<double>(words_[axis + 1].text);
       if (!value || !std::isfinite(*value) || std::abs(*value) > 1e9) {
         report(axis + 1, shown(axis + 1) + " is not a coordinate: a finite number within 1e9");
-        break;  // the vertex stays, so that faces keep their numbers
+        break;  // the vertex is kept, so that faces keep their numbers
       }
       x[static_cast<Eigen::Index>(axis)] = *value;
     }
@@ -444,7 +448,7 @@ Polygons parse_obj(const std::string& file, const std::string& text, double reac
   ObjReader reader(file, errors);
   reader.read(text);
   Polygons polygons = reader.take();
-  errors.throw_if_any();  // what follows presumes that every face names vertices that exist
+  errors.throw_if_any();  // the rest requires faces whose vertices exist
   if (reach > 0) weld(polygons, reach, errors);
   errors.throw_if_any();
   judge_surface(polygons, errors);

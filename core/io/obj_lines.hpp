@@ -7,19 +7,19 @@
 
 namespace taut {
 
-/// A word of an OBJ file and where it stands (1-based).
+/// A word of an OBJ file and its position (1-based).
 struct ObjWord {
   std::string_view text;
   int line = 0, column = 0;
 };
 
-/// The lines of an OBJ file. A `\` at the end of one continues it in the next; a mark of the byte
-/// order before the first word is no part of it.
+/// The lines of an OBJ file. A `\` at the end of a line continues it in the next; a byte order mark
+/// before the first word is skipped.
 class ObjLines {
  public:
   explicit ObjLines(std::string_view text) : rest_(without_mark(text)) {}
 
-  /// The words of the next line, none of an empty one; false at the end of the file.
+  /// Reads the words of the next line, which may be empty. Returns false at the end of the file.
   bool next(std::vector<ObjWord>& words) {
     words.clear();
     if (rest_.empty()) return false;
@@ -34,7 +34,7 @@ class ObjLines {
     return text;
   }
 
-  /// Whether the next line continues this one.
+  /// Adds the words of a line. Returns whether the next line continues it.
   bool add_line(std::vector<ObjWord>& words) {
     const std::string_view line = take_line(rest_);
     ++line_;

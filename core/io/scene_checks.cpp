@@ -1,4 +1,4 @@
-// What a scene's file says as a whole: whether its parts go together.
+// Checks of a scene's file as a whole: whether its parts fit together.
 #include <algorithm>
 #include <cmath>
 
@@ -19,8 +19,8 @@ bool is_pinned(const Scene& scene, std::size_t i) {
   return std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i));
 }
 
-/// Where a point leaves a shape, `thickness` [m] above its surface: the nearest place first and,
-/// of a box, the five other sides.
+/// Points at which p leaves a shape, `thickness` [m] above its surface: the nearest one first, and
+/// of a box also those of its six sides.
 std::vector<Vec3> ways_out(const Shape& shape, const Vec3& p, double thickness) {
   const Surface s = surface(shape, p);
   std::vector<Vec3> out{p + (thickness - s.distance) * s.normal};
@@ -37,14 +37,14 @@ std::vector<Vec3> ways_out(const Shape& shape, const Vec3& p, double thickness) 
   return out;
 }
 
-/// Where a vertex is out of all shapes: rounds until nothing moves it. Out of each by the nearest
-/// way that leads into no other one, if there is such a way.
+/// Moves a vertex out of all shapes, in rounds until none moves it. It leaves each shape by the
+/// nearest point that is in no other shape, if there is one.
 Vec3 resolved(const std::vector<Shape>& shapes, Vec3 x, double thickness) {
   double rounding = 0;  // m
   const auto inside = [&](const Shape& shape, const Vec3& p) {
     return surface(shape, p).distance < thickness - rounding;
   };
-  constexpr int kRounds = 1000;  // a wedge takes as many as it is narrow
+  constexpr int kRounds = 1000;  // a wedge takes the more rounds the narrower it is
   for (int round = 0; round < kRounds; ++round) {
     bool moved = false;
     for (const Shape& shape : shapes) {
@@ -71,10 +71,11 @@ void resolve(Scene& scene) {
       scene.start.x[i] = resolved(shapes, scene.start.x[i], scene.thickness);
 }
 
-/// A pinned vertex may be inside: that is how a cloth is fixed to an obstacle.
+/// Reports free vertices inside a collider. A pinned vertex may be inside: that is how a cloth is
+/// fixed to an obstacle.
 void judge_start(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const Shape shape = shape_at(collider, 0);
-  const double rounding = 1e-9 * extent(scene);  // of what the file says
+  const double rounding = 1e-9 * extent(scene);  // rounding of the file's numbers
   double deepest = 0;
   std::size_t vertex = 0, count = 0;
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
@@ -94,7 +95,8 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
                       " m deep; move one of them, or set start_inside = \"resolve\" in [cloth]");
 }
 
-/// Which side of a thin body the cloth is on is known as long as it keeps off it.
+/// Reports a thin body without thickness: the side of the cloth is only known while the cloth keeps
+/// off the body.
 void judge_thin(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const MeshBody* body = std::get_if<MeshBody>(&collider.shape);
   if (!body || body->sides != MeshBody::Sides::both || scene.thickness > 0) return;
@@ -103,7 +105,8 @@ void judge_thin(const Value& item, Section& root, const Collider& collider, cons
                             "a 'thickness' in [cloth] above 0");
 }
 
-/// What moves for a time step or longer moves as `velocity` would have it, however fast: no jump.
+/// Reports a path that jumps. A motion that takes a time step or longer is like one by `velocity`,
+/// however fast, and is not a jump.
 void judge_path(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const auto& path = collider.motion.path;
   for (std::size_t k = 1; k < path.size(); ++k) {
@@ -117,7 +120,8 @@ void judge_path(const Value& item, Section& root, const Collider& collider, cons
   }
 }
 
-/// A body that goes farther than its own size within a time step is somewhere else, and not moved.
+/// Reports a body that moves farther than its own size within a time step: it is then somewhere
+/// else, and has not moved there.
 void judge_frames(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   if (!collider.frames) return;
   const auto& places = collider.frames->places;
@@ -136,7 +140,7 @@ void judge_frames(const Value& item, Section& root, const Collider& collider, co
     }
 }
 
-/// Length of the shortest link between neighbours [m]; 0 if there is none.
+/// Length of the shortest structural link, seams excluded [m]; 0 if there is none.
 double spacing(const Scene& scene) {
   double least = 0;
   for (const Link& link : scene.links)

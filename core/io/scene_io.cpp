@@ -121,7 +121,7 @@ Collider read_collider(Section& section, const std::filesystem::path& folder) {
   return collider;
 }
 
-/// Velocity at t = 0 of the place that starts at x [m/s].
+/// Velocity at t = 0 of the point that starts at x [m/s].
 Vec3 initial_velocity(const Motion& motion, const Vec3& x) {
   Vec3 v = motion.velocity + motion.spin.cross(x - motion.pivot);
   const auto& path = motion.path;
@@ -140,13 +140,14 @@ void read_colliders(Section& root, const std::filesystem::path& folder, Scene& s
 }
 
 const Range kRelease = Range::positive(1e6);  ///< s
-constexpr std::size_t kMostReleases = 64;     ///< each makes a solver of its own
+/// Most release times: each makes a solver of its own.
+constexpr std::size_t kMostReleases = 64;
 
-/// Release times [s] and the pins released then, as the file has them.
+/// Release times [s] and the pins released then, as in the file.
 using Timed = std::vector<std::pair<double, std::vector<int>>>;
 
-/// Reads every [[pin_motion]]. Without a mesh (`built` false) only the motions are judged. Those
-/// with a `release` of their own go to `timed`.
+/// Reads every [[pin_motion]]; those with a `release` of their own go to `timed`. Without a mesh
+/// (`built` false) only the motions are checked.
 void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
   std::set<int> moved;
   for (const Value* item : root.tables("pin_motion")) {
@@ -176,7 +177,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
   }
 }
 
-/// The release time [s] of pins without their own; nothing: they hold.
+/// Release time [s] of pins without their own; empty: they hold.
 std::optional<double> read_release(Section& cloth) {
   const auto release = cloth.number("release", kRelease);
   if (release && !cloth.find("pins"))
@@ -184,8 +185,8 @@ std::optional<double> read_release(Section& cloth) {
   return release;
 }
 
-/// Puts each release on the first step boundary at or after its time, which forgives the rounding
-/// of dt. One at or after the end has no effect: a remark says so.
+/// Puts each release at the first step boundary at or after its time, with a tolerance for the
+/// rounding of dt. A release at or after the end has no effect, and a remark says so.
 void set_releases(const std::optional<double>& of_others, Timed timed, Section& root,
                   Scene& scene) {
   if (of_others) {
@@ -217,13 +218,13 @@ void set_releases(const std::optional<double>& of_others, Timed timed, Section& 
 
 const Value kAbsent;
 
-/// The table of that name, or an empty one that stands at the document's start.
+/// The table of that name, or an empty one at the start of the document.
 const Value& part(Section& root, const std::string& key) {
   const Value* table = root.table(key);
   return table ? *table : kAbsent;
 }
 
-/// Reads the stiffness [N/m] of each family; families that are not named are rigid.
+/// Reads the stiffness [N/m] of each family; families that are not given are rigid.
 void read_stiffness(Section& links, Scene& scene) {
   const Value* table = links.table("stiffness");
   if (!table) return;
@@ -234,7 +235,7 @@ void read_stiffness(Section& links, Scene& scene) {
   stiffness.finish();
 }
 
-/// Null: the scene names none.
+/// The fabric that the scene names; null if none.
 const Fabric* read_fabric(Section& root) {
   const auto name = root.string("fabric");
   if (!name) return nullptr;
@@ -244,8 +245,9 @@ const Fabric* read_fabric(Section& root) {
   return fabric;
 }
 
-/// A fabric named by a study or the command line replaces the values of the scene's file. A value
-/// set beside the fabric, in the same place or after it, conflicts with it.
+/// Reports values that conflict with the fabric. A fabric from a study or the command line replaces
+/// the values of the scene's file; a value that is set in the same source as the fabric or after it
+/// conflicts.
 void judge_fabric(Section& root) {
   const Value* fabric = root.find("fabric");
   if (!fabric) return;
@@ -261,8 +263,8 @@ void judge_fabric(Section& root) {
     }
 }
 
-/// One stiffness [N m], or those of warp and weft, unless the fabric's; the warp's direction is a
-/// grid's v unless given.
+/// Reads bending: one stiffness [N m], or that of warp and weft, unless the fabric has it. The
+/// direction of the warp is v of a grid unless given.
 Bending read_bending(Section& section, const Fabric* fabric) {
   Bending bending;
   if (!fabric) section.need({"stiffness"});
@@ -287,8 +289,9 @@ Bending read_bending(Section& section, const Fabric* fabric) {
   return bending;
 }
 
-/// dt is rounded to binary32: Bullet keeps it so even in its double build, and every solver gets
-/// the same. The number of steps forgives that rounding.
+/// Sets dt and the number of steps. dt is rounded to binary32, which is how Bullet keeps it even in
+/// its double build, so that every solver gets the same. The number of steps tolerates this
+/// rounding.
 void set_steps(const FileKeys& said, Section& time, Scene& scene) {
   scene.dt = static_cast<double>(static_cast<float>(said.dt));
   const double steps = std::ceil(said.duration / scene.dt * (1 - 1e-7));
@@ -300,7 +303,7 @@ void set_steps(const FileKeys& said, Section& time, Scene& scene) {
   scene.steps = std::max(1, static_cast<int>(steps));
 }
 
-/// Sets the warp's direction where the scene does not: along v of a grid; any direction if warp and
+/// Sets the warp's direction if the scene does not: along v of a grid; any direction if warp and
 /// weft are equally stiff.
 void complete(Bending& bending, const Mesh& mesh) {
   if (!bending.direction.isZero(0)) return;

@@ -10,55 +10,55 @@
 #include "core/model/scene_keys.hpp"
 #include "core/model/triangle_mesh.hpp"
 
-// The parts of load_scene(): what scene_io.cpp, cloth_io.cpp, body_io.cpp and scene_checks.cpp
-// share.
+// Parts of load_scene() that scene_io.cpp, cloth_io.cpp, body_io.cpp and scene_checks.cpp share.
 
 namespace taut {
 
-/// Reads a value of the kind that the key is; one that is absent or wrong stays what it was.
+/// Reads a value of the key's kind. If it is absent or wrong, the value keeps its content.
 void read_value(Section&, const SceneKey&, double&);
 void read_value(Section&, const SceneKey&, Vec3&);
 void read_value(Section&, const SceneKey&, bool&);
-int read_choice(Section&, const SceneKey&, int fallback);  ///< which of them
+/// Returns the index of the choice.
+int read_choice(Section&, const SceneKey&, int fallback);
 template <class Enumeration>
 requires std::is_enum_v<Enumeration>
 void read_value(Section& section, const SceneKey& key, Enumeration& value) {
   value = static_cast<Enumeration>(read_choice(section, key, static_cast<int>(value)));
 }
 
-/// Reads every key of the section `of` that is a member of the part.
+/// Reads every key of section `of` that is a member of the part.
 template <class Part>
 void read_keys(Section& section, std::string_view of, Part& part) {
   each_key(of, part,
            [&](const SceneKey& key, auto& value, const auto&) { read_value(section, key, value); });
 }
 
-/// Reads [cloth]: mesh, links, start, pins and thickness of the scene; a mesh file is relative to
-/// `folder`. A fabric's mass stands in the place of what [cloth] says. Reports what is wrong; false
-/// if there is no mesh to go on with.
+/// Reads [cloth]: mesh, links, start, pins and thickness of the scene. A mesh file is relative to
+/// `folder`. A fabric's mass replaces what [cloth] says. Reports errors; returns false if there is
+/// no mesh to go on with.
 bool read_cloth(Section&, const std::filesystem::path& folder, const Fabric*, const FileKeys&,
                 Scene&);
 
 /// Reads the files of a [[collider]] that is a mesh, relative to `folder`: 'file' with 'scale', and
-/// 'frames' with 'fps', the first of which is then its shape. Its mesh is null, and what is wrong
-/// is reported with file and line, if it is no body.
+/// 'frames' with 'fps', whose first frame is then its shape. If it is not a valid body, its mesh is
+/// null and errors are reported with file and line.
 void read_body(Section&, const std::filesystem::path& folder, Collider&);
 
 /// The vertices that a value names: a vertex number, a pair [i, j], the name of an edge or corner
 /// of a grid ("top", "bottom-left"), a box {min, max} or a ball {center, radius} around rest
-/// positions, or an array of these.
-/// Sorted, unique. Reports what names none; `key` is for the messages.
+/// positions, or an array of these. Sorted, unique. Reports items that name no vertex; `key` is for
+/// messages.
 std::vector<int> read_vertices(Section&, const std::string& key, const Mesh&);
 
-/// Reads every [[seam]] and puts its links behind the cloth's structural ones.
+/// Reads every [[seam]] and puts its links after the cloth's structural ones.
 void read_seams(Section& root, Scene&);
 
-/// Reports what no single key is to blame for, of a scene with a mesh.
+/// Reports errors that concern more than a single key, in a scene with a mesh.
 void check_whole(Section& root, const Scene&);
 
 /// Reports what makes contact meaningless in an otherwise complete scene: a cloth that starts
 /// inside a collider (moved to its surface, at the scene's thickness, if the scene says so) or
-/// through itself, a thickness or a particle larger than the spacing, a collider whose path jumps.
+/// crosses itself, a thickness or a particle larger than the spacing, a collider whose path jumps.
 void check_contact(Section& root, const FileKeys&, Scene&);
 
 /// Reads 'rotation': { axis = [0, 0, 1], angle = 45 } with the angle in degrees, or a quaternion

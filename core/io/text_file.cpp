@@ -17,7 +17,7 @@ void fail_in(const std::filesystem::path& file, const std::string& why, int line
 
 namespace {
 
-/// A descriptor of a regular file; fails at once on anything else.
+/// Opens a regular file and returns its descriptor; fails at once on anything else.
 int open_regular(const std::filesystem::path& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   const auto fail = [&](const std::string& why) {

@@ -13,23 +13,24 @@
 
 namespace taut {
 
-/// Most that a file of each kind may have [bytes].
+/// Largest size of a file of each kind [bytes].
 inline constexpr std::size_t kMostSceneBytes = std::size_t{16} << 20;
 inline constexpr std::size_t kMostMeshBytes = std::size_t{1} << 30;
 inline constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
 
-/// Everything in a regular file. Throws InputError that names it: it cannot be read, is no regular
-/// file (a folder, a pipe, a device; none is waited for) or is larger than `most` bytes.
+/// The contents of a regular file. Throws InputError that names the file if it cannot be read, is
+/// not a regular file (a folder, a pipe, a device; there is no waiting for one) or is larger than
+/// `most` bytes.
 std::string read_text(const std::filesystem::path&, std::size_t most = kMostResultBytes);
 
-/// For those who read a regular file by parts. Throws InputError as read_text().
+/// Opens a regular file for reading in parts. Throws InputError like read_text().
 std::ifstream open_file(const std::filesystem::path&);
 
-/// Throws InputError: what is wrong with a file, and where in it (1-based; 0: nowhere).
+/// Throws InputError with what is wrong with a file, and where in it (1-based; 0: unknown).
 [[noreturn]] void fail_in(const std::filesystem::path&, const std::string& why, int line = 0,
                           int column = 0);
 
-/// The words of a line, apart by blanks; without what follows `comment`.
+/// The words of a line, separated by blanks, without what follows `comment`.
 inline std::vector<std::string_view> words_of(std::string_view line, char comment = '#') {
   constexpr std::string_view kBlank = " \t\r\f\v";
   line = line.substr(0, line.find(comment));
@@ -42,7 +43,7 @@ inline std::vector<std::string_view> words_of(std::string_view line, char commen
   return words;
 }
 
-/// The number that a whole word is, "nan" and "inf" included; nothing if it is not one.
+/// The number that a whole word is, including "nan" and "inf"; empty if it is not a number.
 template <class T>
 std::optional<T> whole(std::string_view word) {
   T value{};
@@ -51,7 +52,7 @@ std::optional<T> whole(std::string_view word) {
   return value;
 }
 
-/// Takes the first line off a text, without its line feed.
+/// Removes the first line from a text and returns it without its line feed.
 inline std::string_view take_line(std::string_view& text) {
   const auto end = std::min(text.find('\n'), text.size());
   const std::string_view line = text.substr(0, end);

@@ -12,7 +12,7 @@
 
 namespace taut {
 
-/// The other ends of each vertex's links, and which links those are.
+/// The links of each vertex, and their other ends.
 class Adjacency {
  public:
   Adjacency(std::span<const Link> links, int vertices)
@@ -33,7 +33,7 @@ class Adjacency {
   struct End {
     int vertex, link;
   };
-  std::size_t size() const { return first_.size() - 1; }  ///< vertices
+  std::size_t size() const { return first_.size() - 1; }  ///< number of vertices
   std::span<const End> of(int v) const {
     return {ends_.data() + first_[to_index(v)], ends_.data() + first_[to_index(v) + 1]};
   }
@@ -47,11 +47,12 @@ class Adjacency {
 template <class Real>
 struct ShortestPaths {
   std::vector<Real> length;  ///< m; infinite: not reachable
-  std::vector<int> start;    ///< where the path begins; -1: not reachable
-  std::vector<int> before;   ///< the last vertex before this one; -1: none
+  std::vector<int> start;    ///< first vertex of the path; -1: not reachable
+  std::vector<int> before;   ///< previous vertex on the path; -1: none
 };
 
-/// From the nearest of `starts` (Dijkstra). length_of(v, end): of the link from v to that end [m].
+/// Shortest paths from the nearest of `starts` (Dijkstra). length_of(v, end): length of the link
+/// from v to that end [m].
 template <class LengthOf>
 auto shortest_ways(const Adjacency& neighbours, std::span<const int> starts,
                    const LengthOf& length_of) {

@@ -4,7 +4,7 @@
 
 namespace taut {
 
-/// Radians in a degree: scenes and truths give angles in degrees, everything else is in radians.
+/// Radians per degree: scenes and truths give angles in degrees, everything else uses radians.
 constexpr double kDegree = std::numbers::pi / 180;
 
 }  // namespace taut

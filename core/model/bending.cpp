@@ -13,14 +13,15 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A triangle in its own plane, the first axis along the warp, and what lies beyond its edges.
+/// A triangle in its own plane, with the first axis along the warp, and the vertices beyond its
+/// edges.
 struct Patch {
-  std::vector<int> vertex;  ///< its three, then those beyond
-  std::vector<Vec2> at;     ///< m, from the first
+  std::vector<int> vertex;  ///< the triangle's three, then those beyond
+  std::vector<Vec2> at;     ///< m, from the first corner
   double area = 0;          ///< m^2
 };
 
-/// The vertices opposite to each edge a < b, one of each of its triangles.
+/// The vertices opposite to each edge a < b, one in each of its triangles.
 using Opposite = std::map<std::pair<int, int>, std::vector<int>>;
 
 Opposite opposites(const std::vector<Triangle>& triangles) {
@@ -35,7 +36,7 @@ Patch patch(const Mesh& mesh, const Triangle& t, const Opposite& opposite, const
   const auto rest = [&](int v) -> const Vec3& { return mesh.rest[to_index(v)]; };
   const Vec3 normal = (rest(t[1]) - rest(t[0])).cross(rest(t[2]) - rest(t[0]));
   Vec3 along = warp - warp.dot(normal) / normal.squaredNorm() * normal;
-  if (along.norm() < 1e-6) along = rest(t[1]) - rest(t[0]);  // the warp stands upright on it
+  if (along.norm() < 1e-6) along = rest(t[1]) - rest(t[0]);  // the warp is normal to the triangle
   along.normalize();
   const Vec3 across = normal.normalized().cross(along);
   Patch p{.area = normal.norm() / 2};
@@ -59,9 +60,9 @@ Patch patch(const Mesh& mesh, const Triangle& t, const Opposite& opposite, const
 }
 
 /// Components [uu, vv, sqrt(2) uv] of the second derivative as combinations of the patch's
-/// vertices. What a vertex beyond an edge is off the plane through the triangle's three, j, is
-/// linear in them: R h = j, solved for the least h; directions of which j says next to nothing
-/// (six vertices near one conic) are left out.
+/// vertices. The offset j of a vertex beyond an edge from the plane of the triangle is linear in
+/// these components h: R h = j, solved for the least h. Directions about which j says next to
+/// nothing (six vertices near one conic) are left out.
 Eigen::MatrixXd second_derivative(const Patch& p) {
   const auto squares = [](const Vec2& x) {
     return Vec3(x.x() * x.x() / 2, x.y() * x.y() / 2, x.x() * x.y() / std::sqrt(2.0));
@@ -86,7 +87,8 @@ Eigen::MatrixXd second_derivative(const Patch& p) {
   return solved.compute(rows).solve(off);
 }
 
-/// Vertices in order, those that take no part left out; nothing if all do.
+/// The element with these weights, its vertices in order and those without weight left out; empty
+/// if all are.
 BendingElement element(const Patch& p, const Eigen::RowVectorXd& weights, double stiffness) {
   std::vector<std::pair<int, double>> parts;
   const double most = weights.cwiseAbs().maxCoeff();
@@ -101,11 +103,11 @@ BendingElement element(const Patch& p, const Eigen::RowVectorXd& weights, double
     e.weight[e.size++] = w;
     sum += w;
   }
-  if (e.size > 0) e.weight[0] -= sum;  // to the last bit: a shift bends nothing
+  if (e.size > 0) e.weight[0] -= sum;  // exact to the last bit: a translation bends nothing
   return e;
 }
 
-/// Whether b is a times a factor; a then takes b's stiffness too.
+/// Merges b into a if b is a times a factor, by adding to a's stiffness. Returns whether it did.
 bool merged(BendingElement& a, const BendingElement& b) {
   if (a.size != b.size || a.vertex != b.vertex) return false;
   const double factor = b.weight[0] / a.weight[0];
@@ -119,7 +121,7 @@ bool merged(BendingElement& a, const BendingElement& b) {
 
 namespace {
 
-/// The elements of one triangulation, which stands for a share of the cloth.
+/// Adds the elements of one triangulation, which stands for this share of the cloth.
 void add_bending(const Scene& scene, const std::vector<Triangle>& triangles, double share,
                  std::map<int, std::vector<std::size_t>>& beginning,
                  std::vector<BendingElement>& all) {
@@ -144,7 +146,7 @@ void add_bending(const Scene& scene, const std::vector<Triangle>& triangles, dou
   }
 }
 
-/// Triangles of a grid with the other diagonal of each of its cells.
+/// The triangles of a grid with the other diagonal in each of its cells.
 std::vector<Triangle> other_diagonals(const std::vector<Triangle>& triangles) {
   std::vector<Triangle> all;
   for (std::size_t k = 0; k + 1 < triangles.size(); k += 2) {
@@ -153,7 +155,7 @@ std::vector<Triangle> other_diagonals(const std::vector<Triangle>& triangles) {
       return std::ranges::find_if(
           of, [&](int v) { return std::ranges::find(other, v) == other.end(); });
     };
-    const auto at = alone(a, b) - a.begin();  // corner of a that b has not
+    const auto at = alone(a, b) - a.begin();  // corner of a that b lacks
     const int first = a[static_cast<std::size_t>(at)], last = *alone(b, a),
               next = a[static_cast<std::size_t>((at + 1) % 3)],
               before = a[static_cast<std::size_t>((at + 2) % 3)];

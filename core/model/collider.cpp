@@ -15,7 +15,7 @@ struct Overload : F... {
   using F::operator()...;
 };
 template <class... F>
-Overload(F...) -> Overload<F...>;  // clang 14 deduces no aggregates
+Overload(F...) -> Overload<F...>;  // clang 14 does not deduce template arguments of aggregates
 
 Surface surface_of(const Plane& plane, const Vec3& p) {
   return {plane.normal.dot(p) - plane.offset, plane.normal};

@@ -29,24 +29,25 @@ struct Box {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< box axes -> world
 };
 
-/// What is within the radius of an axis; one of no length is a ball.
+/// All points within the radius of an axis; with an axis of no length it is a ball.
 struct Capsule {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< m, the ends of the axis
   double radius = 0;                            ///< m, > 0
 
   Vec3 middle() const { return (from + to) / 2; }
   Vec3 nearest_on_axis(const Vec3& p) const;
-  Vec3 beside() const;  ///< a unit vector across the axis; up, if it has no length
+  /// A unit vector across the axis; upward if the axis has no length.
+  Vec3 beside() const;
 };
 
 /// A body of triangles (core/model/triangle_mesh.hpp): solid, or thin with two sides.
 struct MeshBody {
   enum class Sides {
-    out,  ///< solid behind its triangles, which leave no gap and look outward
-    both  ///< thin: the cloth is kept on the side on which it is
+    out,  ///< solid behind its triangles, which are closed and face outward
+    both  ///< thin: the cloth stays on the side where it is
   };
   std::shared_ptr<const TriangleMesh> mesh;  ///< in the body's own frame; never null in a Scene
-  Vec3 center = Vec3::Zero();                ///< m, where the frame's origin is
+  Vec3 center = Vec3::Zero();                ///< m, position of the frame's origin
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< frame -> world
   Sides sides = Sides::out;
 };
@@ -54,13 +55,13 @@ struct MeshBody {
 using Shape = std::variant<Plane, Ball, Box, Capsule, MeshBody>;
 std::string_view type_name(const Shape&);
 
-/// A prescribed rigid motion: known in advance, never influenced by the cloth. Displacement is
-/// velocity * t plus the path, linear between its keys and constant before the first and after the
-/// last; rotation is by spin * t about pivot. All zero and empty: at rest.
+/// A prescribed rigid motion, known in advance and never influenced by the cloth. The displacement
+/// is velocity * t plus the path, which is linear between its keys and constant before the first
+/// and after the last. The rotation is by spin * t about pivot. All zero and empty: at rest.
 struct Motion {
   struct Key {
     double t = 0;                      ///< s, strictly increasing
-    Vec3 displacement = Vec3::Zero();  ///< m from the starting place
+    Vec3 displacement = Vec3::Zero();  ///< m from the start
   };
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s about the world axis through pivot
@@ -71,10 +72,10 @@ struct Motion {
   Vec3 displacement(double t) const;            ///< m at time t [s]
   Eigen::Quaterniond rotation(double t) const;  ///< at time t [s]
   Vec3 moved(const Vec3& start,
-             double t) const;  ///< where the point that starts at `start` is at time t
+             double t) const;  ///< where a point that starts at `start` is at time t
 };
 
-/// An obstacle: rigid, but for a body of triangles with frames, which deforms in its own frame.
+/// An obstacle: rigid, except for a body of triangles with frames, which deforms in its own frame.
 struct Collider {
   Shape shape;  ///< at t = 0
   Motion motion;
@@ -87,14 +88,15 @@ struct Collider {
 /// Shape at time t [s].
 Shape shape_at(const Collider&, double t);
 
-/// Where points that are there at time t would be at t + h if they went with the collider [m, s]:
-/// where it deforms, with the place of its surface that is nearest to them at time t.
+/// Positions [m] at t + h of points that are given at time t and move with the collider from then
+/// on [s]. On a collider that deforms they follow the point of its surface that is nearest at time
+/// t.
 std::vector<Vec3> carried(const Collider&, double t, double h, const std::vector<Vec3>&);
 
-/// Distance from p to the surface, negative inside, and its gradient: both exact, also inside a box
-/// and past its edges and corners. Where the gradient is not unique (a ball's centre, a
-/// capsule's axis, a box's or a body's medial axis) one of the valid ones is given, always the
-/// same. A thin body has no inside: its gradient leads away from it.
+/// Distance from p to the surface, negative inside, and its gradient. Both are exact, also inside a
+/// box and past its edges and corners. Where the gradient is not unique (a ball's centre, a
+/// capsule's axis, the medial axis of a box or a body), it is one of the valid ones, always the
+/// same. A thin body has no inside: its gradient points away from it.
 struct Surface {
   double distance = 0;  ///< m
   Vec3 normal = Vec3::UnitY();

@@ -32,7 +32,8 @@ struct BoxedFace {
   int face = 0;
 };
 
-/// Pairs of faces that share no vertex, whose boxes are nearer than `reach` and which `meet`.
+/// Pairs of faces that share no vertex, whose boxes are nearer than `reach`, and for which `meet`
+/// returns true.
 template <class Meet>
 std::vector<std::array<int, 2>> pairs_of(const std::vector<Triangle>& faces,
                                          const std::vector<Vec3>& x, double reach,

@@ -10,13 +10,13 @@ namespace taut {
 /// Spring constants [N/m] by family; infinite: rigid links, 0: no link.
 using Stiffness = std::array<double, kFamilies.size()>;
 
-/// The step that a solver's iterations approximate, as its entry says: implicit Euler with these
-/// links and contact of vertices, of each substep.
+/// The step that a solver's iterations approximate, as its entry declares: implicit Euler of each
+/// substep, with these links and contact of vertices.
 struct DeclaredStep {
   Stiffness stiffness{};         ///< N/m
-  int substeps = 1;              ///< of a step
-  std::string of = "a substep";  ///< what its h is
-  std::string none = "";         ///< why it is another step, or why none is known; "": it is
+  int substeps = 1;              ///< substeps of a step
+  std::string of = "a substep";  ///< the interval that is h
+  std::string none = "";  ///< why it is another step, or why none is known; "": it is this one
 };
 
 }  // namespace taut

@@ -12,13 +12,13 @@ namespace taut {
 
 namespace {
 
-/// f(s) = c[0] + c[1] s + c[2] s^2 + c[3] s^3.
+/// The cubic f(s) = c[0] + c[1] s + c[2] s^2 + c[3] s^3.
 using Cubic = std::array<double, 4>;
 
 double value(const Cubic& c, double s) { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
 double slope(const Cubic& c, double s) { return c[1] + s * (2 * c[2] + s * 3 * c[3]); }
 
-/// Whether it has one sign all over [0, 1]: its Bernstein coefficients do.
+/// Whether f has one sign all over [0, 1], judged by its Bernstein coefficients.
 bool keeps_its_sign(const Cubic& c) {
   const double b[4] = {c[0], c[0] + c[1] / 3, c[0] + (2 * c[1] + c[2]) / 3,
                        c[0] + c[1] + c[2] + c[3]};
@@ -26,7 +26,7 @@ bool keeps_its_sign(const Cubic& c) {
   return *least > 0 || *most < 0;
 }
 
-/// Where f rises on one side and falls on the other, within (0, 1), in their order.
+/// Where f turns from rising to falling or back, within (0, 1), in ascending order.
 std::vector<double> turning_points(const Cubic& c) {
   const double a = 3 * c[3], b = 2 * c[2], discriminant = b * b - 4 * a * c[1];
   std::vector<double> at;
@@ -38,13 +38,14 @@ std::vector<double> turning_points(const Cubic& c) {
   return at;
 }
 
-/// Where Newton's step from s ends; outside of [0, 1] where f is level.
+/// Where Newton's step from s ends; outside of [0, 1] if f is level there.
 double newton_from(const Cubic& c, double s) {
   const double rise = slope(c, s);
   return rise == 0 ? -1 : s - value(c, s) / rise;
 }
 
-/// The root between two places of different sign: Newton's steps, halves where they leave.
+/// The root between two points of different sign, by Newton's steps, or bisection where these leave
+/// the interval.
 double root_between(const Cubic& c, double low, double high) {
   const bool rises = value(c, low) < 0;
   double s = newton_from(c, low);
@@ -60,7 +61,8 @@ double root_between(const Cubic& c, double low, double high) {
   return s;
 }
 
-/// Calls visit(s, rises) for every change of sign in [0, 1), in their order; a start on it counts.
+/// Calls visit(s, rises) for every change of sign in [0, 1), in ascending order; a zero at 0
+/// counts.
 template <class Visit>
 void roots(const Cubic& c, const Visit& visit) {
   std::vector<double> ends = turning_points(c);
@@ -74,7 +76,8 @@ void roots(const Cubic& c, const Visit& visit) {
   }
 }
 
-/// The orthonormal frame of a triangle: along its first side, in its plane, along its normal.
+/// Orthonormal frame of a triangle: along its first side, across that in its plane, along its
+/// normal.
 Eigen::Matrix3d frame_of(const Corners& t) {
   const Vec3 u = (t[1] - t[0]).normalized();
   const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
@@ -87,7 +90,7 @@ Vec3 place(const Corners& t, const Vec3& weights) {
   return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
 }
 
-/// w . (u x v) of three ways that change evenly in [0, 1].
+/// w . (u x v) of three vectors that change linearly over [0, 1].
 Cubic volume(const Vec3& u, const Vec3& v, const Vec3& w, const Vec3& du, const Vec3& dv,
              const Vec3& dw) {
   const Vec3 n0 = u.cross(v), n1 = u.cross(dv) + du.cross(v), n2 = du.cross(dv);
@@ -102,10 +105,10 @@ Eigen::AlignedBox3d box_of(const Corners& a, const Corners& b) {
 
 }  // namespace
 
-/// With u, v, w the ways from a corner to the two others and to the point, f = w . (u x v) is their
-/// height times twice the triangle's area (Provot, Collision and Self-Collision Handling in Cloth
-/// Model Dedicated to Design Garments, 1997). A point that is within by less than rounding counts
-/// for both triangles at an edge, so that none slips through between them.
+/// With the vectors u, v and w from a corner to the two others and to the point, f = w . (u x v) is
+/// the point's height times twice the triangle's area (Provot, Collision and Self-Collision
+/// Handling in Cloth Model Dedicated to Design Garments, 1997). A point at an edge, to within
+/// rounding, counts for both triangles, so that none slips through between them.
 std::vector<TrianglePass> passes(const Corners& before, const Corners& after, const Vec3& from,
                                  const Vec3& to) {
   constexpr double kEdge = 1e-9;
@@ -176,7 +179,8 @@ Corners DeformingBody::corners(const TriangleMesh& mesh, int triangle) const {
   return {mesh.vertices()[to_index(a)], mesh.vertices()[to_index(b)], mesh.vertices()[to_index(c)]};
 }
 
-/// A triangle is never farther from where it ends than its farthest vertex goes.
+/// Visits the triangles that the path meets. A triangle is never farther from its position at the
+/// end than its farthest vertex moves.
 template <class Visit>
 void DeformingBody::along(const Vec3& from, const Vec3& to, const Visit& visit) const {
   const Vec3 wider = Vec3::Constant(longest_way_ + 1e-12 * after_->reach());

@@ -4,7 +4,7 @@
 
 namespace taut {
 
-/// Vertices and links are numbered with int, as in files and OpenGL; containers are not.
+/// Converts an index of a vertex or link for containers. Indices are int, as in files and OpenGL.
 inline std::size_t to_index(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace taut

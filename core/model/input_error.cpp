@@ -10,7 +10,7 @@ namespace taut {
 
 namespace {
 
-/// Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment
+/// Number of insertions, deletions, substitutions and swaps of neighbours (optimal string alignment
 /// distance).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before, above, row(b.size() + 1);
@@ -35,7 +35,7 @@ std::string Diagnostic::text() const {
   std::string place = file + ":";
   if (line > 0)
     place += std::to_string(line) + (column > 0 ? ":" + std::to_string(column) : "") + ":";
-  else if (column > 0)  // of an argument
+  else if (column > 0)  // column of an argument
     place += " column " + std::to_string(column) + ":";
   return printable(place + " " + message);
 }
@@ -45,7 +45,8 @@ InputError::InputError(std::vector<Diagnostic> diagnostics)
       diagnostics_(std::move(diagnostics)) {}
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kMost = 200;  // no name is longer, and the distance takes the product
+  // Longer than any name; the distance costs the product of the lengths.
+  constexpr std::size_t kMost = 200;
   if (word.size() > kMost) return "";
   const std::string* best = nullptr;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;

@@ -6,18 +6,18 @@
 
 namespace taut {
 
-/// One thing that is wrong with what the user gave. Prints as a compiler would:
+/// One error in what the user gave. Prints as a compiler would:
 /// `scenes/x.toml:10:1: unknown key 'resolutoin' in [cloth]; did you mean 'resolution'?`
 struct Diagnostic {
   std::string file;     ///< as the user named it; empty: the command line
   int line = 0;         ///< 1-based; 0: unknown
   int column = 0;       ///< 1-based; 0: unknown, or the whole line
-  std::string message;  ///< names the key
+  std::string message;  ///< names the key that is wrong
 
   std::string text() const;
 };
 
-/// Bad input: everything that is wrong with it, at once. Nothing was run and nothing was written.
+/// Bad input, with all of its errors at once. Nothing was run and nothing was written.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Diagnostic>);

@@ -24,7 +24,7 @@ void lump(Mesh& mesh, const SheetShape& s) {
     mesh.mass.assign(n, s.mass / static_cast<double>(n));
     return;
   }
-  // A vertex owns half of every grid interval beside it, in each direction that has any.
+  // A vertex owns half of every grid interval next to it, in each direction that has any.
   const auto share = [](int i, int count) {
     if (count == 1) return 1.0;
     return (i == 0 || i == count - 1 ? 0.5 : 1.0) / (count - 1);

@@ -30,8 +30,9 @@ struct Mesh {
   std::vector<Triangle> triangles;  ///< vertex triples; wind, face contact and pictures use them
   std::vector<double> mass;         ///< [n] kg, > 0, pinned vertices included
   std::optional<Grid> grid;         ///< set if the vertices form a regular sheet
-  /// Of each vertex of the file the one that it became, where `cloth.weld` joined some; else empty.
-  /// What a scene's file numbers is meant so; no part of what is simulated.
+  /// [vertices of the file] vertex that each became, where `cloth.weld` joined some; otherwise
+  /// empty. Vertex numbers in a scene's file refer to the file's vertices. Not part of what is
+  /// simulated.
   std::vector<int> welded;
 
   int size() const { return static_cast<int>(rest.size()); }
@@ -49,43 +50,44 @@ struct Link {
   double rest = 0;
   Family family = Family::structural;
 };
-/// A seam draws two vertices together: a structural link whose rest length is 0 but for what keeps
-/// every solver from dividing by it [m]. It has no strain.
+/// Rest length of a seam, which draws two vertices together [m]: 0, except that solvers divide by
+/// it. A seam is a structural link and has no strain.
 inline constexpr double kSeamRest = 1e-18;
 inline bool is_seam(const Link& link) { return link.rest == kSeamRest; }
 
-/// How a sheet's mass is divided among its vertices.
+/// How the mass of a sheet is divided among its vertices.
 enum class Lumping {
   area,  ///< a quarter of each quad (half of each segment of a chain): edges weigh half
   equal  ///< the same for every vertex
 };
 
-/// A rectangular sheet of nu x nv vertices, flat at rest: vertex (i, j) lies at
-/// origin + i/(nu-1) * width * u + j/(nv-1) * height * v. One column (nu = 1) is a chain.
+/// A rectangular sheet of nu x nv vertices, flat at rest: vertex (i, j) is at origin +
+/// i/(nu-1) * width * u + j/(nv-1) * height * v. One column (nu = 1) is a chain.
 struct SheetShape {
   int nu = 0, nv = 0;            ///< >= 1 each, at least two vertices in all
   double width = 0, height = 0;  ///< m along u and v
   Vec3 origin = Vec3::Zero();    ///< m
   Vec3 u = Vec3::UnitX();        ///< unit
   Vec3 v = -Vec3::UnitY();       ///< unit
-  double mass = 0;               ///< kg in all
+  double mass = 0;               ///< kg in total
   Lumping lumping = Lumping::area;
 };
 
-/// Quads are split along alternating diagonals, so that no direction is preferred.
+/// Makes the sheet's mesh. Quads are split along alternating diagonals, so that no direction is
+/// preferred.
 Mesh make_sheet(const SheetShape&);
 
-/// Which links to derive from a mesh.
+/// The families of links to derive from a mesh.
 struct LinkChoice {
   bool structural = true;
   bool shear = false;
   bool bend = false;
 };
 
-/// Links of a grid, in the order in which Gauss-Seidel visits them: families one after the other;
+/// Links of a grid, in the order in which Gauss-Seidel visits them: one family after another, and
 /// within a family vertex by vertex in row order, first along u, then along v (shear: down-right,
-/// then down-left; bend: every second vertex). So a chain's links run from its first vertex to its
-/// last.
+/// then down-left; bend: every second vertex). The links of a chain thus run from its first vertex
+/// to its last.
 std::vector<Link> grid_links(const Mesh&, const LinkChoice&);
 
 }  // namespace taut

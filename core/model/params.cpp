@@ -14,7 +14,7 @@ namespace {
 
 std::string in_quotes(std::string_view s) { return "'" + std::string(s) + "'"; }
 
-/// A part of a text and where it begins.
+/// A part of a text, and where it begins.
 struct Part {
   std::string text;
   std::size_t at;
@@ -36,7 +36,7 @@ bool parse(std::string_view text, auto& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// A value as it stands in a solver's text: in quotes if it needs them.
+/// A value as it is written in a solver's text, in quotes if it needs them.
 std::string quoted_if_needed(const ParamSpec& spec, const std::string& value) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%";
@@ -48,7 +48,7 @@ std::string quoted_if_needed(const ParamSpec& spec, const std::string& value) {
   return quoted + "'";
 }
 
-/// The canonical text of a value, or the reason why it is not one.
+/// The canonical text of a value. If it is not valid, sets `problem` to the reason.
 std::string canonical_value(const ParamSpec& spec, std::string_view given, std::string& problem) {
   if (spec.kind == ParamSpec::Kind::text) return std::string(given);
   if (spec.kind == ParamSpec::Kind::choice) {
@@ -73,7 +73,7 @@ std::string canonical_value(const ParamSpec& spec, std::string_view given, std::
     problem = "is outside " + as_typed(spec.min) + " to " + as_typed(spec.max);
     return {};
   }
-  // 100000 and not 1e+05, which is no whole number
+  // 100000, not 1e+05, which is not a whole number
   return whole ? std::to_string(integer) : shortest(value == 0 ? 0 : value);
 }
 

@@ -13,22 +13,22 @@ struct ParamSpec {
   enum class Kind { integer, real, choice, text };
   std::string_view name;
   Kind kind = Kind::real;
-  std::string_view unit;                ///< "" if it has none
-  std::string_view default_value;       ///< as typed
-  double min = 0, max = 0;              ///< inclusive; numbers only
-  std::string_view choices;             ///< "exact|sqrt-free"; choices only
-  std::string_view help;                ///< one line
-  std::string_view where = {};          ///< "method=global": another choice has this value
-  std::string_view default_there = {};  ///< then this is the default
+  std::string_view unit;           ///< "" if it has none
+  std::string_view default_value;  ///< as typed
+  double min = 0, max = 0;         ///< inclusive; numbers only
+  std::string_view choices;        ///< "exact|sqrt-free"; choices only
+  std::string_view help;           ///< one line
+  std::string_view where = {};  ///< "method=global": choice for which default_there is the default
+  std::string_view default_there = {};  ///< default in that case
 
-  /// The same with another default there.
+  /// A copy that has another default where `where_` holds.
   constexpr ParamSpec but(std::string_view where_, std::string_view default_) const {
     ParamSpec same = *this;
     same.where = where_;
     same.default_there = default_;
     return same;
   }
-  /// For people: "1", "1; 3 with method=global".
+  /// The default for people: "1", "1; 3 with method=global".
   std::string defaults() const {
     std::string text(default_value);
     if (!where.empty()) text.append("; ").append(default_there).append(" with ").append(where);
@@ -49,49 +49,50 @@ struct ParamSpec {
   }
 };
 
-/// "key=value" of a solver's text. A value in quotes ('a, b' or "a, b") may hold commas; a quote
-/// in it is written twice.
+/// An item "key=value" of a solver's text. A value in quotes ('a, b' or "a, b") may contain commas;
+/// a quote in it is written twice.
 struct ParamItem {
   std::string key, value;  ///< the value without its quotes
   std::size_t at = 0;      ///< where it begins in the text
-  std::string problem;     ///< it is no key=value, or a quote is not closed; "": it is one
+  std::string problem;  ///< why it is not key=value, such as a quote that is not closed; "": it is
 };
 std::vector<ParamItem> param_items(std::string_view text);
 
-/// Validated values of all parameters of one solver.
+/// Validated values of all parameters of a solver.
 class Params {
  public:
   Params() = default;
-  /// `text` is "key=value,key=value" or empty. Throws InputError that names `owner`, the key, what
-  /// was given and what is allowed.
+  /// `text` is "key=value,key=value" or empty. Throws InputError, which names `owner`, the key, the
+  /// given value and what is allowed.
   Params(std::string_view owner, std::span<const ParamSpec>, std::string_view text);
 
   int integer(std::string_view name) const;
   double real(std::string_view name) const;
   std::string_view choice(std::string_view name) const;
   bool is(std::string_view name, std::string_view value) const { return choice(name) == value; }
-  /// What the choice stands for, of pairs of a value's name and what it stands for.
+  /// The meaning of a choice, from pairs of a value's name and its meaning.
   template <class T, std::size_t n>
   T one_of(std::string_view name, const std::pair<std::string_view, T> (&choices)[n]) const {
     std::size_t i = 0;
-    while (choices[i].first != choice(name)) ++i;  // Params accepts no other
+    while (choices[i].first != choice(name)) ++i;  // Params accepts no other value
     return choices[i].second;
   }
   bool has(std::string_view name) const { return find(name) < specs_.size(); }
-  /// Whose parameters they are.
+  /// Name of the solver whose parameters they are.
   const std::string& owner() const { return owner_; }
 
-  /// "key=value,..." in declared order: all of them, or only those that differ from their defaults;
-  /// without those that `but` names, "cmd|build".
+  /// "key=value,..." in declared order, without those that `but` names, "cmd|build". canonical()
+  /// has all of them, brief() those that differ from their defaults.
   std::string canonical(std::string_view but = "") const { return text(false, but); }
   std::string brief(std::string_view but = "") const { return text(true, but); }
-  /// The value in canonical form; a text without quotes.
+  /// The value in canonical form, without quotes.
   std::string_view value(std::string_view name) const;
   std::span<const ParamSpec> specs() const { return specs_; }
 
  private:
   std::string text(bool only_changed, std::string_view but) const;
-  std::string default_of(const ParamSpec&) const;  ///< beside these values of the others
+  /// Default of a parameter, given the values of the others.
+  std::string default_of(const ParamSpec&) const;
   std::size_t find(std::string_view name) const;
   std::string owner_;
   std::span<const ParamSpec> specs_;

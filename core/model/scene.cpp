@@ -15,8 +15,9 @@ namespace taut {
 
 namespace {
 
-/// Writes values one after the other, lengths before contents, so that no two scenes share their
-/// bytes. Keys that came later stand at the end, each with its name and its place among the others.
+/// Writes values one after another, with lengths before contents, so that no two scenes have the
+/// same bytes. Keys that were added later stand at the end, each with its name and its position
+/// among the others.
 class Bytes {
  public:
   explicit Bytes(std::span<const SceneKey> keys) : keys_(keys) {}
@@ -81,7 +82,7 @@ class Bytes {
     add(value.has_value());
     if (value) add(*value);
   }
-  /// The keys of the section that are members of the part.
+  /// Adds the keys of the section that are members of the part.
   template <class Part>
   void add(std::string_view section, const Part& part) {
     const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
@@ -90,7 +91,8 @@ class Bytes {
     };
     each_key(section, part, visit, keys_);
   }
-  /// What came later and is there: with its name and its place among the others.
+  /// Adds a key that was added later and is present, with its name and its position among the
+  /// others.
   template <class AddValue>
   void add_later(std::string_view key, const AddValue& add_value) {
     Bytes bytes(keys_);
@@ -112,7 +114,8 @@ class Bytes {
  private:
   std::span<const SceneKey> keys_;
   std::string text_;
-  std::vector<std::pair<std::string, std::string>> later_;  ///< with its place and value
+  /// Name, and bytes of position and value.
+  std::vector<std::pair<std::string, std::string>> later_;
 };
 
 }  // namespace
@@ -192,7 +195,8 @@ Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
   bytes.add("cloth", s);
   bytes.add(s.dt);
   bytes.add(s.steps);
-  if (s.stiffness != kRigid)  // a scene without has the bytes that it had before there was any
+  // A scene without stiffness keeps the bytes that it had before stiffness existed.
+  if (s.stiffness != kRigid)
     for (const double k : s.stiffness) bytes.add(k);
   if (s.bending) bytes.add(s.bending);
   if (!s.releases.empty()) bytes.add(s.releases);

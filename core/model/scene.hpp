@@ -11,57 +11,58 @@
 
 namespace taut {
 
-/// A step boundary: all that solvers, metrics and the renderer share. Mesh order, whole cloth.
+/// State at a step boundary, which solvers, metrics and the renderer share. The whole cloth, in
+/// mesh order.
 struct State {
   std::vector<Vec3> x;  ///< [n] m
   std::vector<Vec3> v;  ///< [n] m/s
 };
 
-/// Air that moves past the cloth, with Vasilovici's face law (section 3): F = c (n . d) n.
+/// Moving air, with Vasilovici's face law (section 3): F = c (n . d) n.
 struct Wind {
   enum class Law {
-    relative,  ///< d = wind velocity - face velocity, F per m^2: c (n . d) n A; has a terminal
-               ///< speed
-    literal    ///< d = wind velocity alone, as printed; accelerates without end
+    /// D = wind velocity - face velocity, F per m^2: c (n . d) n A; has a terminal speed.
+    relative,
+    literal  ///< d = wind velocity alone, as printed; accelerates without end
   };
   Vec3 velocity = Vec3::Zero();  ///< m/s
-  /// c [N s/m^3]; n is the unit normal, A the face's area; each corner takes F/3
+  /// c [N s/m^3]; n is the unit normal, A the face's area; each corner takes F/3.
   double strength = 0.1;
   Law law = Law::relative;
 };
 
-/// The cloth collides with itself: every particle is a ball of this radius (Vasilovici, 4.2.4).
+/// Collision of the cloth with itself: every particle is a ball of this radius (Vasilovici, 4.2.4).
 struct SelfCollision {
   double radius = 0;  ///< m
 };
 
-/// The cloth resists bending out of its plane (core/model/bending.hpp).
+/// Bending stiffness of the cloth (core/model/bending.hpp).
 struct Bending {
-  double warp = 0;                  ///< N m, > 0: of a strip along the warp
-  double weft = 0;                  ///< N m, > 0: of a strip across it
-  Vec3 direction = -Vec3::UnitY();  ///< unit: of the warp, over the rest shape
+  double warp = 0;                  ///< N m, > 0: stiffness of a strip along the warp
+  double weft = 0;                  ///< N m, > 0: stiffness of a strip across the warp
+  Vec3 direction = -Vec3::UnitY();  ///< unit vector along the warp of the rest shape
 };
 
-/// Pins that move together along a prescribed motion.
+/// Pins that follow one prescribed motion.
 struct PinMotion {
   std::vector<int> vertices;  ///< each of them in Scene::pins
-  Motion motion;              ///< of the place where the vertex starts
+  Motion motion;              ///< of the position where each vertex starts
 };
 
-/// Pins that let go: free from a step boundary on, with the velocity that they had there.
+/// Release of pins: they are free from a step boundary on, with the velocity that they had there.
 struct Release {
-  int step = 0;               ///< > 0: the number of steps after which they are free
-  std::vector<int> vertices;  ///< sorted; each of them in Scene::pins, and in no other release
+  int step = 0;               ///< > 0: number of steps after which they are free
+  std::vector<int> vertices;  ///< sorted; each is in Scene::pins, and in no other release
 };
 
 inline constexpr std::array<double, kFamilies.size()> kRigid{
     std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
     std::numeric_limits<double>::infinity()};
 
-/// What to simulate: plain data in SI units, no behaviour. Every solver receives this same object.
-/// A member that a file says in a single value has a row in scene_keys.cpp.
-/// An empty vector or disengaged optional means that the effect is absent, and an absent effect
-/// costs neither memory nor time (tests/solver/absent_is_free_test.cpp).
+/// Everything to simulate: plain data in SI units, without behaviour. Every solver gets this same
+/// object. A member that a file gives as a single value has a row in scene_keys.cpp. An empty
+/// vector or optional means that the effect is absent, and an absent effect costs neither memory
+/// nor time (tests/solver/absent_is_free_test.cpp).
 struct Scene {
   std::string name;     ///< file stem; a label, not part of the content
   std::string summary;  ///< one sentence; a label, not part of the content
@@ -69,9 +70,9 @@ struct Scene {
   State start;                         ///< may differ from the rest shape
   std::vector<int> pins;               ///< sorted, unique: vertices that no solver may integrate
   std::vector<PinMotion> pin_motions;  ///< empty: pins stay where they start
-  std::vector<Release> releases;       ///< by growing step; empty: pins hold to the end
+  std::vector<Release> releases;       ///< in ascending order of steps; empty: pins hold to the end
   std::vector<Link> links;             ///< Gauss-Seidel order, families contiguous
-  /// Of the links of each family [N/m], > 0; infinite: rigid.
+  /// Stiffness of the links of each family [N/m], > 0; infinite: rigid.
   std::array<double, kFamilies.size()> stiffness = kRigid;
   std::optional<Bending> bending;
   std::vector<Collider> colliders;
@@ -80,39 +81,39 @@ struct Scene {
   Vec3 gravity{0, -9.81, 0};  ///< m/s^2
   double damping = 0;         ///< 1/s: a free particle's velocity decays as exp(-damping t)
   double thickness = 0;       ///< m: cloth keeps this distance from colliders
-  double dt = 0;              ///< s, exact in binary32 so that every solver has the same
+  double dt = 0;              ///< s, exact in binary32, so that every solver has the same
   int steps = 0;              ///< duration / dt, rounded up
 
   double duration() const { return dt * steps; }  ///< s
 };
 
-/// Whether the scene says where the vertex is, and no solver, from the start to the end.
+/// Whether the vertex is pinned from start to end: the scene says where it is, and no solver.
 bool is_pinned(const Scene&, int vertex);
 
-/// The vertices that are held at time t [s]; at that of their release they still are.
+/// The vertices that are pinned at time t [s], including those that are released at that time.
 std::vector<int> pins_at(const Scene&, double t);
 
-/// The scene between its releases, which it has no more: as it is until the first, then with the
-/// pins that are left after each. Its start stays the run's.
+/// The scene cut at its releases, into scenes without releases: the first with all pins, then one
+/// after each release with the pins that are left. The start of each is that of the run.
 std::vector<Scene> stages(const Scene&);
 
 /// Inverse masses [n] in 1/kg; 0 for vertices that are pinned at the start.
 std::vector<double> inverse_masses(const Scene&);
 
-/// What a solver whose links are rigid says of a scene whose links are not: "links of 500 N/m", the
-/// softest; nothing if they are rigid.
+/// The reason why a solver with rigid links does not support the scene: "links of 500 N/m", the
+/// softest; empty if the links are rigid.
 std::vector<std::string> elastic_links(const Scene&);
 
-/// A unit of length for the scene [m]: the diagonal of the rest shape's bounding box.
+/// Length scale of the scene [m]: the diagonal of the rest shape's bounding box.
 double extent(const Scene&);
 
-/// Where pin `vertex` has to be at time t [s]. Precondition: vertex is pinned.
+/// Position of pin `vertex` at time t [s]. Precondition: vertex is pinned.
 Vec3 pin_position(const Scene&, int vertex, double t);
 
-/// The content of a scene as bytes: equal exactly when the scenes are the same simulation.
+/// Content of a scene as bytes, which are equal exactly if the scenes are the same simulation.
 std::string content(const Scene&);
 
-/// The keys of scene_keys.hpp that came later and are not at their defaults.
+/// The keys of scene_keys.hpp that were added later and are not at their defaults.
 std::vector<std::string> later_keys(const Scene&);
 
 }  // namespace taut

@@ -19,7 +19,7 @@ SceneKey vector(std::string_view path, Vec3 Part::*member, std::string_view unit
                 std::string_view example, std::string_view help) {
   return {path, member, "vector", unit, range, "", example, help};
 }
-/// A vector of any length but zero that becomes a unit one.
+/// A vector of any length but zero, which is normalised.
 template <class Part>
 SceneKey direction(std::string_view path, Vec3 Part::*member, std::string_view example,
                    std::string_view help) {
@@ -35,14 +35,14 @@ SceneKey choice(std::string_view path, Enumeration Part::*member, std::string_vi
                 std::string_view example, std::string_view help) {
   return {path, member, "string", "", {}, choices, example, help};
 }
-/// No single value: code of its own reads it.
+/// A key that is not a single value; its own code reads it.
 SceneKey other(std::string_view path, std::string_view type, std::string_view unit,
                std::string_view limits, std::string_view fallback, std::string_view example,
                std::string_view help) {
   return {path, {}, type, unit, {}, "", example, help, limits, fallback};
 }
 
-// Scenes are hashed in the order of the table: a new key stands at the end of its section, with
+// Scenes are hashed in the order of the table: add a new key at the end of its section, with
 // came_later().
 const SceneKey kKeys[] = {
     other("cloth.grid", "two whole numbers", "1", "1 to 2^24 vertices, 2 at least",
@@ -228,7 +228,7 @@ const SceneKey kKeys[] = {
           "one sentence; a label, not part of what is simulated"),
 };
 
-/// What the struct begins with.
+/// Initial value of a member.
 template <class Part, class Value>
 Value initial(Value Part::*member) {
   return Part{}.*member;
@@ -251,7 +251,7 @@ bool is_index(std::string_view text) {
 std::span<const SceneKey> scene_keys() { return kKeys; }
 
 const SceneKey* find_scene_key(std::string_view path) {
-  std::string plain;  // without the numbers of elements
+  std::string plain;  // without the indices of elements
   for (const std::string& part : parts_of(path, '.'))
     if (!is_index(part)) plain += (plain.empty() ? "" : ".") + part;
   const auto found = std::ranges::find(kKeys, plain, &SceneKey::path);

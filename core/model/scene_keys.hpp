@@ -11,20 +11,20 @@
 
 #include "core/model/scene.hpp"
 
-// The keys of a scene file, a row for each. The table drives: the reader (core/io), the bytes of a
+// Keys of a scene file, a row for each. The table drives the reader (core/io), the bytes of a
 // scene's digest (content()), the file that external programs get, `taut list keys`, the tables of
-// experiments/scenes/README.md, the ranges of `taut frontier` and what `taut require` leaves out.
+// experiments/scenes/README.md, the ranges of `taut frontier`, and what `taut require` leaves out.
 
 namespace taut {
 
-/// Largest coordinate, size or displacement that a scene may hold [m].
+/// Largest coordinate, size or displacement in a scene [m].
 inline constexpr double kFar = 1e6;
 
-/// The key of a body's frames, added after results were stored. No SceneKey::Member holds it;
+/// Key of a body's frames, added after results were stored. It is in no SceneKey::Member, but
 /// content() includes it.
 inline constexpr std::string_view kFramesKey = "collider.frames";
 
-/// What a number may be. Non-finite numbers are never allowed.
+/// Allowed range of a number. Non-finite numbers are never allowed.
 struct Range {
   double min = -std::numeric_limits<double>::max();
   double max = std::numeric_limits<double>::max();
@@ -39,7 +39,7 @@ struct Range {
   std::string text() const;  ///< "greater than 0 and at most 10"
 };
 
-/// Single values of a file that become vertices, links and steps of a Scene.
+/// Single values of a file from which vertices, links and steps of a Scene are made.
 struct FileKeys {
   Vec3 origin = Vec3::Zero();  ///< m
   Vec3 u = Vec3::UnitX();      ///< unit
@@ -50,7 +50,7 @@ struct FileKeys {
   Lumping lumping = Lumping::area;
   double span = 0;                       ///< m
   double tilt = 0;                       ///< degrees
-  double stretch = 1;                    ///< start over rest shape
+  double stretch = 1;                    ///< start shape over rest shape
   Vec3 velocity = Vec3::Zero();          ///< m/s
   enum class Inside { error, resolve };  ///< refuse a cloth inside a collider, or move it out
   Inside start_inside = Inside::error;
@@ -60,8 +60,8 @@ struct FileKeys {
   double duration = 10;  ///< s
 };
 
-/// A key of a scene file. One with a member is a single value; any other is read by code of its own
-/// and described here.
+/// A key of a scene file. A key with a member is a single value. Other keys are only described here
+/// and have reading code of their own.
 struct SceneKey {
   using Member =
       std::variant<std::monostate, double Scene::*, Vec3 Scene::*, bool Scene::*, double Wind::*,
@@ -72,19 +72,19 @@ struct SceneKey {
                    double FileKeys::*, Vec3 FileKeys::*, bool FileKeys::*, Lumping FileKeys::*,
                    FileKeys::Inside FileKeys::*>;
 
-  std::string_view path;       ///< "forces.damping"; "summary": at the top of the file
+  std::string_view path;       ///< "forces.damping"; "summary" is at the top of the file
   Member member = {};          ///< its initialiser is the default
-  std::string_view type = {};  ///< "direction": a vector that becomes a unit one
+  std::string_view type = {};  ///< "direction": a vector that is normalised
   std::string_view unit = {};
-  Range range = {};                ///< of a number, or of each component
+  Range range = {};                ///< of a number or of each component
   std::string_view choices = {};   ///< "relative|literal": the enumeration, in its order
   std::string_view example = {};   ///< as typed
   std::string_view help = {};      ///< one line
   std::string_view limits = {};    ///< restrictions that the range cannot express
-  std::string_view fallback = {};  ///< the default in words, where it is no constant
+  std::string_view fallback = {};  ///< the default in words, if it is not a constant
   std::string_view effect = {};    ///< name of the effect that `taut require` removes
   bool needed = false;
-  /// Added after results were stored. The digest includes it only where it differs from its
+  /// Added after results were stored. The digest includes the key only where it differs from its
   /// default, so that scenes without it keep their digests.
   bool added_later = false;
 
@@ -104,8 +104,10 @@ struct SceneKey {
     return path.substr(0, path.find('.') == path.npos ? 0 : path.find('.'));
   }
   std::string_view name() const { return path.substr(path.find('.') + 1); }
-  std::string allowed() const;       ///< the range and limits: "0 to 1e6"
-  std::string default_text() const;  ///< "0.5" as typed, or in words
+  /// Range and limits: "0 to 1e6".
+  std::string allowed() const;
+  /// "0.5" as typed, or in words.
+  std::string default_text() const;
 
  private:
   template <class Value>
@@ -116,18 +118,18 @@ struct SceneKey {
   }
 };
 
-/// In the order of the document.
+/// All keys, in the order of the document.
 std::span<const SceneKey> scene_keys();
 
-/// The key of this dotted path, which may number elements ("collider.0.radius"); nullptr: there is
-/// no such key.
+/// The key of this dotted path, which may contain indices of elements ("collider.0.radius");
+/// nullptr if there is no such key.
 const SceneKey* find_scene_key(std::string_view path);
 
 /// content() and later_keys() with another table of keys.
 std::string content(const Scene&, std::span<const SceneKey> keys);
 std::vector<std::string> later_keys(const Scene&, std::span<const SceneKey> keys);
 
-/// Calls visit(key, member, its default) for every key of the section that is a member of the part.
+/// Calls visit(key, member, default) for every key of the section that is a member of the part.
 template <class Part, class Visit>
 void each_key(std::string_view section, Part& part, const Visit& visit,
               std::span<const SceneKey> keys = scene_keys()) {

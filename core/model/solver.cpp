@@ -134,7 +134,8 @@ SolverChoice parse_solver(std::string_view text) {
   if (colon != text.npos && params.empty()) report(params_at, "expected key=value after the colon");
   if (choice.entry) try {
       choice.params = Params(choice.entry->name, choice.entry->params, params);
-    } catch (const InputError& error) {  // columns count from the start of the whole text
+      // Turn columns of the parameters into columns of the whole text.
+    } catch (const InputError& error) {
       for (const Diagnostic& d : error.diagnostics())
         report(params_at + static_cast<std::size_t>(d.column) - 1, d.message);
     }

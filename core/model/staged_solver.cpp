@@ -6,8 +6,8 @@ namespace taut {
 
 namespace {
 
-/// A solver for each stage of a scene, one after the other. All are made at once: what a solver
-/// prepares is timed of none of them.
+/// A solver for each stage of a scene, one after another. All are made at the start, so that their
+/// preparation is not timed.
 class StagedSolver final : public Solver {
  public:
   using Make = std::function<std::unique_ptr<Solver>(const Scene&, const Params&)>;
@@ -45,20 +45,20 @@ class StagedSolver final : public Solver {
 
  private:
   Solver& now() const { return *solvers_[at_]; }
-  /// A solver in a process of its own has a clock of its own.
+  /// Turns to another stage. A solver in a process of its own has its own clock.
   void turn_to(std::size_t stage) {
     const double spent = timed_ ? cpu_seconds() : 0;
     at_ = stage;
     if (timed_) earlier_ = spent - now().cpu_seconds();
   }
 
-  double dt_;  ///< s, of a step
+  double dt_;  ///< s, length of a step
   std::vector<Release> releases_;
-  std::vector<Scene> scenes_;  ///< a solver may refer to its own
+  std::vector<Scene> scenes_;  ///< solvers may refer to these
   std::vector<std::unique_ptr<Solver>> solvers_;
   std::size_t at_ = 0;
-  mutable bool timed_ = false;  ///< somebody asked for the time
-  double earlier_ = 0;          ///< s, of the stages before
+  mutable bool timed_ = false;  ///< cpu_seconds() was called
+  double earlier_ = 0;          ///< s, of earlier stages
 };
 
 }  // namespace

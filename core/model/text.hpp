@@ -8,20 +8,20 @@
 
 namespace taut {
 
-/// A text from outside as a terminal may have it: each control character but tab and line feed
-/// becomes '?', and what is beyond `most` bytes "...". The text of every Diagnostic is.
+/// External text made safe for a terminal: each control character except tab and line feed becomes
+/// '?', and anything beyond `most` bytes becomes "...". The text of every Diagnostic is printable.
 std::string printable(std::string_view, std::size_t most = 2000);
 
 /// The shortest text that reads back as the same number.
 std::string shortest(double value);
 
-/// The same as a person types it: 1e6 and not 1e+06, no sign of a zero.
+/// The shortest text as a person types it: 1e6 and not 1e+06, zero without a sign.
 std::string as_typed(double value);
 
 /// The parts of "a|b|c".
 std::vector<std::string> parts_of(std::string_view list, char separator = '|');
 
-/// The texts of all, one after the other; text_of(one) is what one of them says.
+/// Joins the texts of all elements; text_of(one) is the text of an element.
 template <class All, class TextOf = std::identity>
 std::string join(const All& all, std::string_view separator, const TextOf& text_of = {}) {
   std::string joined;

@@ -13,7 +13,7 @@ Vec3 at(const Corners& t, const Vec3& weights) {
   return weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
 }
 
-/// Share of b in the point of segment a..b that is nearest to p.
+/// Share of b in the point of segment ab that is nearest to p.
 double nearest_share(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 along = b - a;
   const double length2 = along.squaredNorm();
@@ -26,21 +26,21 @@ std::pair<double, double> nearest_shares(const Vec3& p, const Vec3& q, const Vec
   const Vec3 u = q - p, v = b - a, r = a - p;
   const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
   const double det = uu * vv - uv * uv;
-  // Where the lines are nearest to each other, clamped to pq; then to ab, and back again.
+  // Take the nearest point of the lines, clamp it to pq, then to ab, and project back.
   double on_pq = det > 0 ? std::clamp((vv * u.dot(r) - uv * v.dot(r)) / det, 0.0, 1.0) : 0;
   const double on_ab = nearest_share(a, b, p + on_pq * u);
   on_pq = nearest_share(p, q, a + on_ab * v);
   return {on_pq, on_ab};
 }
 
-/// Distance of the segments pq and ab [m].
+/// Distance between the segments pq and ab [m].
 double distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   const auto [on_pq, on_ab] = nearest_shares(p, q, a, b);
   return (p + on_pq * (q - p) - a - on_ab * (b - a)).norm();
 }
 
-/// Six times the volume of the tetrahedron; positive if d lies above the triangle abc. 0 if the
-/// rounding of the coordinates may have made the sign: faces of one plane do not cross.
+/// Six times the volume of the tetrahedron; positive if d is above the triangle abc. 0 if the sign
+/// may be due to rounding of the coordinates: faces in one plane do not cross.
 double orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 ab = b - a, ac = c - a, ad = d - a;
   const double volume = ab.cross(ac).dot(ad);
@@ -58,7 +58,7 @@ bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
-/// Where the line pq passes through the plane of t, which it does.
+/// The point where the line pq passes through the plane of t. Precondition: it does.
 Vec3 passage(const Vec3& p, const Vec3& q, const Corners& t) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   const double below = normal.dot(p - t[0]), above = normal.dot(q - t[0]);
@@ -81,7 +81,7 @@ double depth_at(const Depths& depths, const Vec3& weights) {
   return least;
 }
 
-/// Calls visit(weights) at every place where the maximum of the least depth can be.
+/// Calls visit(weights) for every point that can be the maximum of the least depth.
 template <class Visit>
 void candidates(const Depths& d, const Visit& visit) {
   for (int corner = 0; corner < 3; ++corner) visit(Vec3::Unit(corner));

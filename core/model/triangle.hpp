@@ -15,11 +15,11 @@ struct TrianglePoint {
   Vec3 weights = Vec3::Zero();
 };
 
-/// The point of a triangle that is nearest to p. Exact; degenerate triangles are segments or
+/// The point of a triangle that is nearest to p, exact. Degenerate triangles are segments or
 /// points.
 TrianglePoint closest_point(const Corners&, const Vec3& p);
 
-/// A point of a triangle and how far below a collider's surface it is; depth <= 0: outside.
+/// A point of a triangle and its depth below a collider's surface; depth <= 0: outside.
 struct Deepest {
   double depth = 0;  ///< m
   TrianglePoint at;
@@ -28,25 +28,25 @@ struct Deepest {
 /// The deepest point of a triangle inside a ball. Exact: the point nearest to the centre.
 Deepest deepest_in(const Ball&, const Corners&);
 
-/// The same inside a capsule. Exact: the point nearest to the axis.
+/// The deepest point of a triangle inside a capsule. Exact: the point nearest to the axis.
 Deepest deepest_in(const Capsule&, const Corners&);
 
 /// The deepest point of a triangle inside a box, exact. Depth is the least of six linear functions,
-/// so its maximum lies at a corner of the triangle, on an edge where two of them are equal, or
-/// inside where three are. A triangle that misses the box gets a depth <= 0 that says no more than
-/// that. Costs a few hundred operations unless `at_least` rejects it: a triangle that provably is
-/// no deeper may be reported as depth = at_least with the weights of its first corner.
+/// so its maximum is at a corner of the triangle, on an edge where two of them are equal, or inside
+/// where three are. A triangle that misses the box gets some depth <= 0. Costs a few hundred
+/// operations unless `at_least` rejects it: a triangle that is provably no deeper may be reported
+/// with depth = at_least and the weights of its first corner.
 Deepest deepest_in(const Box&, const Corners&, double at_least = 0);
 
-/// Radius of the smallest ball around a triangle [m]: the circumscribed circle's, or half the
-/// longest edge of an obtuse one.
+/// Radius of the smallest ball around a triangle [m]: that of its circumscribed circle or, if it is
+/// obtuse, half its longest edge.
 double enclosing_radius(const Corners&);
 
 /// True if the triangles cross: an edge of one passes through the inside of the other. Touching and
 /// overlap within one plane do not count.
 bool cross(const Corners&, const Corners&);
 
-/// Length [m] of the line along which two triangles cross: between the two places where an edge of
+/// Length [m] of the line along which two triangles cross, between the two points where an edge of
 /// one passes through the inside of the other; 0 if they do not cross.
 double crossing_length(const Corners&, const Corners&);
 

@@ -9,15 +9,15 @@ namespace taut {
 
 namespace {
 
-/// Of coordinates, as a share of a body's size: what rounding may have made of them.
+/// Rounding of coordinates, as a share of a body's size.
 constexpr double kNoise = 1e-13;
 
 double squared_distance(const Eigen::AlignedBox3d& box, const Vec3& p) {
   return (box.min() - p).cwiseMax(p - box.max()).cwiseMax(0).squaredNorm();
 }
 
-/// Whether the segment may meet the box, which is so much larger on every side (Ericson, Real-Time
-/// Collision Detection, 5.3.3).
+/// Whether the segment may meet the box after it is enlarged by `larger` on every side (Ericson,
+/// Real-Time Collision Detection, 5.3.3).
 bool meets(const Eigen::AlignedBox3d& box, double larger, const Vec3& middle, const Vec3& half) {
   const Vec3 reach = box.sizes() / 2 + Vec3::Constant(larger);
   const Vec3 apart = middle - box.center(), along = half.cwiseAbs();
@@ -40,8 +40,8 @@ double angle_at(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
-/// The angle-weighted normal of the triangles round a corner of one of them, from that one on
-/// across their edges: to one side, and to the other where they leave a gap.
+/// Angle-weighted normal of the triangles around a corner of one of them. Goes from that triangle
+/// across edges to one side and, if they leave a gap, also to the other side.
 Vec3 normal_round(int triangle, std::size_t which, std::span<const Vec3> vertices,
                   std::span<const Triangle> triangles,
                   std::span<const std::array<std::int32_t, 3>> across,
@@ -103,8 +103,8 @@ Vec3 TriangleMesh::corner_normal(int vertex) const {
   return normal_round(at / 3, to_place(at % 3), vertices_, triangles_, across_, normals_);
 }
 
-/// Angles, of which corners' normals are made, are most of the cost, and few places are at corners:
-/// those of a surface that has been refitted are made when they are asked for.
+/// Moves the vertices. Angles, from which normals of corners are computed, are most of the cost,
+/// and few points are nearest to corners: after a refit these normals are computed when asked for.
 void TriangleMesh::refit(std::vector<Vec3> vertices) {
   vertices_ = std::move(vertices);
   make_boxes();
@@ -207,7 +207,7 @@ double TriangleMesh::volume() const {
   return six / 6;
 }
 
-/// Ericson, Real-Time Collision Detection, 5.1.5.
+/// Nearest point of a triangle: Ericson, Real-Time Collision Detection, 5.1.5.
 TriangleMesh::Place TriangleMesh::place_on(int triangle, const Vec3& p) const {
   const Vec3 &a = corner(triangle, 0), &b = corner(triangle, 1), &c = corner(triangle, 2);
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
@@ -235,7 +235,8 @@ NearestPlace TriangleMesh::seen_from(const Vec3& p, int triangle) const {
   const Vec3& normal = normals_[to_place(triangle)];
   const Vec3 out = p - place.point;
   const double height = normal.dot(p - corner(triangle, 0));
-  // Beside the normal of a flat edge by rounding alone, which must not turn a short way.
+  // Also if p is beside the normal of a flat edge by rounding alone, which must not turn a short
+  // vector.
   if (place.feature == Feature::inside || (out - height * normal).norm() <= kNoise * reach_)
     return inside_box({height, normal, triangle}, p);
   Vec3 pseudo = normal;
@@ -280,7 +281,7 @@ TriangleMesh::NearestTriangles<most> TriangleMesh::nearest_triangles(const Vec3&
   std::array<Waiting, kDeepest> stack;
   std::size_t waiting = 0;
   NearestTriangles<most> best;
-  // Whatever the order of the walk, it sees every triangle that may be one of the nearest.
+  // Whatever its order, the walk sees every triangle that may be one of the nearest.
   const auto too_far = [&](double distance2) {
     return distance2 > best.squares[most - 1] * (1 + 1e-12);
   };
@@ -304,10 +305,11 @@ TriangleMesh::NearestTriangles<most> TriangleMesh::nearest_triangles(const Vec3&
 }
 
 NearestPlace TriangleMesh::nearest(const Vec3& p) const {
-  return seen_from(p, std::max(0, nearest_triangles<1>(p).triangles[0]));  // 0: of no number
+  return seen_from(p, std::max(0, nearest_triangles<1>(p).triangles[0]));  // 0 if p is NaN
 }
 
-/// From the foot of p in the triangle's plane; negative outside of the triangle.
+/// Distance from the foot of p in the triangle's plane to its border; negative outside the
+/// triangle.
 double TriangleMesh::to_border(int triangle, const Vec3& p) const {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -327,7 +329,7 @@ NearestPlace TriangleMesh::nearest(const Vec3& p, Nearby& nearby) const {
       nearby.distances[k] = std::sqrt(found.squares[k]);
     std::copy_n(found.triangles.begin(), Nearby::kMost, nearby.triangles.begin());
     const int first = std::max(0, nearby.triangles[0]);
-    // the point's distances and the border of its foot move by no more than it does
+    // the point's distances, and that of its foot from the border, change by no more than it moves
     const double apart = (nearby.distances[1] - nearby.distances[0]) / 2;
     nearby.within = std::max(0.0, std::min(apart, to_border(first, p)) - nearby.noise);
     return seen_from(p, first);
@@ -341,9 +343,9 @@ NearestPlace TriangleMesh::nearest(const Vec3& p, Nearby& nearby) const {
   return seen_from(p, best.triangles[0]);
 }
 
-/// Seen along the path, as Woop, Benthin and Wald do (Watertight Ray/Triangle Intersection, 2013):
+/// Looks along the path, as Woop, Benthin and Wald do (Watertight Ray/Triangle Intersection, 2013):
 /// each corner is projected by itself, and two triangles judge the edge between them by the same
-/// number with opposite signs. So no path slips through between them, nor at a corner.
+/// number with opposite signs. So no path slips through between them or at a corner.
 std::optional<MeshHit> TriangleMesh::hit(int triangle, const Vec3& from, const Vec3& way) const {
   const Vec3& normal = normals_[to_place(triangle)];
   const double speed = normal.dot(way);

@@ -12,11 +12,11 @@
 
 namespace taut {
 
-/// The place of a triangle surface that is nearest to a point.
+/// The point of a surface of triangles that is nearest to a given point.
 struct NearestPlace {
   double distance = 0;  ///< m; negative behind the surface
-  /// Unit, the gradient of the distance: the triangle's where the place is within one (and across
-  /// edges that are flat), else along the line to the place.
+  /// Unit vector, gradient of the distance: the triangle's normal if the point is inside a triangle
+  /// (or on a flat edge), otherwise along the line to the point.
   Vec3 normal = Vec3::UnitY();
   int triangle = 0;
 };
@@ -28,68 +28,71 @@ struct MeshHit {
   bool inward = false;  ///< against the triangle's normal
 };
 
-/// A surface of triangles in its own frame with a tree of boxes over them: what surface(), first
-/// hits and metrics ask of a body (Collider's MeshBody). Corners go round counter-clockwise seen
-/// from outside. The sign of a distance is that of the angle-weighted pseudo-normal (Baerentzen,
-/// Aanaes, Signed Distance Computation Using the Angle Weighted Pseudonormal, 2005).
+/// A surface of triangles in its own frame, with a tree of boxes over them. It answers what
+/// surface(), first hits and metrics ask of a body (Collider's MeshBody). Corners go
+/// counter-clockwise seen from outside. The sign of a distance is that of the angle-weighted
+/// pseudo-normal (Baerentzen, Aanaes, Signed Distance Computation Using the Angle Weighted
+/// Pseudonormal, 2005).
 ///
-/// Answers depend on the surface and the question alone: of equally near triangles the first in
+/// Answers depend only on the surface and the question: among equally near triangles the first in
 /// the order of `triangles` counts.
 class TriangleMesh {
  public:
-  /// Precondition: triangles name vertices that exist and have an area.
+  /// Preconditions: triangles refer to vertices that exist, and have an area.
   TriangleMesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles);
 
   const std::vector<Vec3>& vertices() const { return vertices_; }  ///< [n] m
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const Eigen::AlignedBox3d& box() const { return box_; }
-  double reach() const { return reach_; }  ///< m, from its frame's origin to the farthest vertex
-  /// No edge without a triangle on either side, which go along it in opposite directions.
+  double reach() const { return reach_; }  ///< m, from the frame's origin to the farthest vertex
+  /// Whether every edge has a triangle on either side, and these go along it in opposite
+  /// directions.
   bool closed() const { return open_edge_ < 0; }
-  /// The first triangle with an edge that has no fellow; negative: closed.
+  /// The first triangle with an edge that has no such counterpart; negative: closed.
   int open_edge() const { return open_edge_; }
-  double volume() const;  ///< m^3; negative: triangles look inward
+  double volume() const;  ///< m^3; negative: triangles face inward
   const Vec3& normal(int triangle) const { return normals_[to_place(triangle)]; }
 
-  /// Angle-weighted, of no particular length. Precondition: a triangle has the vertex.
+  /// Angle-weighted normal, not normalised. Precondition: a triangle has the vertex.
   Vec3 corner_normal(int vertex) const;
-  /// Edges are numbered 3 triangle + k, from its corner k to the next. The number of this one in
-  /// the triangle beyond it; negative: there is none.
+  /// Edges are numbered 3 triangle + k, from corner k of the triangle to the next. Returns the
+  /// number of this edge in the triangle beyond it; negative if there is none.
   int beyond(int triangle, int k) const { return across_[to_place(triangle)][to_place(k)]; }
 
-  /// The vertices move, triangles stay: boxes and normals are made anew, the tree's shape is kept.
+  /// Moves the vertices and keeps the triangles. Boxes and normals are recomputed, the shape of the
+  /// tree is kept.
   void refit(std::vector<Vec3> vertices);
 
   NearestPlace nearest(const Vec3&) const;
-  /// Triangles near a point that has been looked up: while it has hardly moved, the nearest is one
-  /// of them.
+  /// Triangles near a point that was looked up: until it has moved far, the nearest is one of them.
   struct Nearby {
     static constexpr std::size_t kMost = 4;
     Vec3 at = Vec3::Zero();
     std::array<int, kMost> triangles{};         ///< the nearest first
-    std::array<double, kMost + 1> distances{};  ///< m, and that of the next one
-    double within = 0;  ///< m, so far it may move and be nearest to the inside of the first one
-    double noise = 0;   ///< m, far beyond rounding
+    std::array<double, kMost + 1> distances{};  ///< m, followed by that of the next one
+    /// m, distance that it may move and stay nearest to the inside of the first one.
+    double within = 0;
+    double noise = 0;  ///< m, far above rounding
 
-    /// Whether nearest(p, *this) is one of them.
+    /// Whether the nearest triangle to p is surely one of them.
     bool know(const Vec3& p) const {
       const double spare = (distances[kMost] - distances[0] - noise) / 2;
       return spare > 0 && (p - at).squaredNorm() < spare * spare;
     }
   };
-  /// The same bits. Looks p up in `nearby` as long as that knows it, else in the tree, for which
-  /// it then stands.
+  /// The same bits as nearest(). Looks p up in `nearby` if that is sure to know it, otherwise in
+  /// the tree, and then sets `nearby` to p.
   NearestPlace nearest(const Vec3& p, Nearby& nearby) const;
-  /// nearest() of a point whose nearest place is within this triangle.
+  /// nearest() of a point whose nearest point is inside this triangle.
   NearestPlace above(const Vec3& p, int triangle) const {
     const Vec3& normal = normals_[to_place(triangle)];
     return inside_box({normal.dot(p - corner(triangle, 0)), normal, triangle}, p);
   }
-  /// The first triangle on the way, its start included and its end not.
+  /// The first triangle on the path, the start included and the end excluded.
   std::optional<MeshHit> first_hit(const Vec3& from, const Vec3& to) const;
-  /// All of them, in the order of the way; the end is included.
+  /// All triangles on the path, in its order; the end is included.
   std::vector<MeshHit> hits(const Vec3& from, const Vec3& to) const;
-  /// Calls visit(triangle) for each whose box meets this one.
+  /// Calls visit(triangle) for each triangle whose box meets this box.
   template <class Visit>
   void in_box(const Eigen::AlignedBox3d& box, const Visit& visit) const;
 
@@ -98,25 +101,25 @@ class TriangleMesh {
  private:
   static std::size_t to_place(int index) { return static_cast<std::size_t>(index); }
 
-  /// The left child of a node is the next one.
+  /// A node of the tree; its left child is the next node.
   struct Node {
     Eigen::AlignedBox3d box;
-    std::int32_t first = 0;  ///< of a leaf: in order_; else the right child
-    std::int32_t count = 0;  ///< of a leaf's triangles; 0: none
+    std::int32_t first = 0;  ///< of a leaf: index in order_; otherwise the right child
+    std::int32_t count = 0;  ///< number of triangles of a leaf; 0: no leaf
   };
-  static constexpr std::int32_t kLeaf = 2;     ///< triangles at most
-  static constexpr std::size_t kDeepest = 64;  ///< levels; halves of 2^31 triangles have 31
+  static constexpr std::int32_t kLeaf = 2;     ///< most triangles in a leaf
+  static constexpr std::size_t kDeepest = 64;  ///< most levels; halving 2^31 triangles takes 31
 
   enum class Feature { inside, edge, corner };
   struct Place {
     Vec3 point;
     Feature feature = Feature::inside;
-    std::size_t which = 0;  ///< corner, or edge from it to the next one
+    std::size_t which = 0;  ///< corner, or edge from this corner to the next
   };
   Place place_on(int triangle, const Vec3& p) const;
   NearestPlace seen_from(const Vec3& p, int triangle) const;
-  /// Where a body crosses itself, triangles look inward from outside: what is out of its box is
-  /// outside all the same.
+  /// Corrects points outside the box: where a body crosses itself, triangles face inward from
+  /// outside, but what is outside its box is outside all the same.
   NearestPlace inside_box(const NearestPlace& place, const Vec3& p) const {
     const double noise = 1e-9 * reach_;
     if (place.distance >= -noise || !closed() || box_.squaredExteriorDistance(p) <= noise * noise)
@@ -126,12 +129,12 @@ class TriangleMesh {
   double squared_distance_of(int triangle, const Vec3& p) const {
     return (p - place_on(triangle, p).point).squaredNorm();
   }
-  /// The `most` triangles that are nearest to p, the nearest first, of equals the first in the
-  /// order of `triangles`; fewer: -1, at an infinite distance.
+  /// The `most` triangles nearest to p, nearest first; equally near ones in the order of
+  /// `triangles`. If there are fewer: -1, at an infinite distance.
   template <std::size_t most>
   struct NearestTriangles {
     std::array<int, most> triangles;
-    std::array<double, most> squares;  ///< m^2, of their distances
+    std::array<double, most> squares;  ///< m^2, squared distances
     NearestTriangles();
     void add(int triangle, double distance2);
   };
@@ -152,11 +155,11 @@ class TriangleMesh {
 
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
-  std::vector<std::array<std::int32_t, 3>> across_;  ///< beyond()
+  std::vector<std::array<std::int32_t, 3>> across_;  ///< see beyond()
   std::vector<Vec3> normals_;                        ///< [triangles] unit
-  std::vector<Vec3> corner_normals_;                 ///< [n] corner_normal(); empty: made if asked
-  std::vector<std::int32_t> corner_at_;              ///< [n] 3 triangle + k of one there
-  std::vector<std::int32_t> order_;                  ///< triangles as leaves have them
+  std::vector<Vec3> corner_normals_;     ///< [n] corner_normal(); empty: computed when asked for
+  std::vector<std::int32_t> corner_at_;  ///< [n] 3 triangle + k of some triangle there
+  std::vector<std::int32_t> order_;      ///< triangles in the order of the leaves
   std::vector<Node> nodes_;
   Eigen::AlignedBox3d box_;
   double reach_ = 0;

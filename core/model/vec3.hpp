@@ -5,8 +5,8 @@
 
 namespace taut {
 
-/// A point, direction or velocity in world space; right-handed, y up by convention of the shipped
-/// scenes.
+/// A point, direction or velocity in world space, which is right-handed; y is up by convention of
+/// the shipped scenes.
 using Vec3 = Eigen::Vector3d;
 
 }  // namespace taut

@@ -4,10 +4,10 @@
 
 namespace taut {
 
-/// Vasilovici's law for one face (section 3), F = c (n . d) n, with n the unit normal and F scaled
-/// by the face's area; every corner takes a third, which is what this returns [N]. Positions xa,
-/// xb, xc [m]; face_velocity [m/s] is the mean of the corners' velocities, which the literal law
-/// does not read. A face without area feels nothing. All solvers blow with this one function.
+/// Force of the wind on each corner of a face [N], by Vasilovici's law (section 3): F = c (n . d) n
+/// with the unit normal n, scaled by the face's area; every corner takes a third. Positions xa, xb,
+/// xc [m]; face_velocity [m/s] is the mean of the corners' velocities, which the literal law
+/// ignores. A face without area feels nothing. All solvers use this function.
 inline Vec3 wind_on_corner(const Wind& wind, const Vec3& xa, const Vec3& xb, const Vec3& xc,
                            const Vec3& face_velocity) {
   const Vec3 twice_area = (xb - xa).cross(xc - xa);

@@ -22,7 +22,7 @@ Eigen::VectorXd laguerre_roots(int n) {
   return tridiagonal_eigenvalues(diagonal, beside);
 }
 
-/// Root of an increasing function between a and b, to neighbouring doubles.
+/// Root of an increasing function between a and b, down to neighbouring doubles.
 template <class F>
 double bisect(double a, double b, const F& f) {
   for (int n = 0; n < 2000; ++n) {
@@ -33,8 +33,8 @@ double bisect(double a, double b, const F& f) {
   return a + (b - a) / 2;
 }
 
-/// What a full correction of link j does to the strains: -1 on itself, its share on its neighbours.
-/// The support does not move, so link 0 hands all of its strain to link 1.
+/// Effect of a full correction of link j on the strains: -1 on itself, its share on its neighbours.
+/// The support does not move, so link 0 passes all of its strain on to link 1.
 Eigen::VectorXd correction(int n, int j) {
   Eigen::VectorXd d = Eigen::VectorXd::Zero(n);
   d[j] = -1;
@@ -117,7 +117,8 @@ double spring_grid_eigenvalue(int nu, bool shear, bool bend) {
   const std::vector<Link> links = grid_links(mesh, {.shear = shear, .bend = bend});
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   std::vector<Vec3> u(at(mesh.size())), next;
-  for (std::size_t i = 0; i < u.size(); ++i)  // in the plane, no symmetry of the grid
+  // Displacements in the plane without any symmetry of the grid.
+  for (std::size_t i = 0; i < u.size(); ++i)
     u[i] = {std::sin(1.0 + 7.0 * static_cast<double>(i)),
             std::cos(2.0 + 3.0 * static_cast<double>(i)), 0};
   double value = 0, before = -1;

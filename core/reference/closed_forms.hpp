@@ -8,8 +8,8 @@
 
 #include "core/model/vec3.hpp"
 
-/// Truths as code: closed forms, discrete identities and converged references that no solver of
-/// the testbed takes part in. SI units throughout.
+/// Truths as code: closed forms, discrete identities and converged references in which no solver of
+/// the testbed takes part. SI units throughout.
 
 namespace taut::reference {
 
@@ -17,51 +17,55 @@ namespace taut::reference {
 /// in (0, pi): 2 pi sqrt(L/g) / AGM(1, cos(amplitude/2)) (Gauss).
 double pendulum_period(double length, double g, double amplitude);
 
-/// Time [s] at which that pendulum first passes its lowest point: a quarter of the period.
+/// Time [s] at which the pendulum of pendulum_period() first passes its lowest point: a quarter of
+/// the period.
 inline double pendulum_quarter(double length, double g, double amplitude) {
   return pendulum_period(length, g, amplitude) / 4;
 }
 
-/// Positions [m] of the two unit masses of a double pendulum (both links 1 m, g = 9.81 m/s^2), the
-/// first hung from the origin, angles [rad] from the downward vertical, from rest, after t [s].
-/// Classical Runge-Kutta on the Lagrangian equations, `steps` of equal size: error ~ steps^-4.
+/// Positions [m] of the two unit masses of a double pendulum after t [s], released at rest. Both
+/// links are 1 m long, g = 9.81 m/s^2, and the first mass hangs from the origin; angles [rad] are
+/// from the downward vertical. Classical Runge-Kutta on the Lagrangian equations with `steps` equal
+/// steps: error ~ steps^-4.
 std::array<Vec3, 2> double_pendulum(std::array<double, 2> angles, double t, int steps = 20000);
 
-/// Angle per step [rad] of a stick that turns freely about a pivot, one step after an angle per
-/// step phi, under Verlet with converged projection: tan(phi') = sin(phi) / (2 - cos(phi)).
+/// Next angle per step [rad] of a stick that turns freely about a pivot, if the last angle per step
+/// was phi, under Verlet with converged projection: tan(phi') = sin(phi) / (2 - cos(phi)).
 double stick_next_angle(double phi);
 
-/// Angular frequencies [rad/s], ascending, of small swings of n equal masses hung on links of
-/// length/n: sqrt(g/l xi), xi the roots of the Laguerre polynomial L_n (D. Bernoulli 1733).
+/// Angular frequencies [rad/s], ascending, of small swings of n equal masses that hang on links of
+/// length/n: sqrt(g/l xi), where xi are the roots of the Laguerre polynomial L_n (D. Bernoulli
+/// 1733).
 std::vector<double> hanging_chain_frequencies(int n, double length, double g);
 
-/// Shape of mode `mode` (1 = lowest) of that chain: L_i(xi) of the i-th mass counted from the free
-/// end, listed from the top, scaled to a largest value of 1. [n]
+/// Shape of mode `mode` (1 = lowest) of that chain, listed from the top: L_i(xi) of the i-th mass
+/// counted from the free end, scaled to a largest value of 1. [n]
 std::vector<double> hanging_chain_mode(int n, int mode);
 
-/// The continuum limit of hanging_chain_frequencies for mode = 1, 2, ...: (j_0m / 2) sqrt(g/L).
+/// Angular frequency [rad/s] of mode 1, 2, ... in the continuum limit of
+/// hanging_chain_frequencies(): (j_0m / 2) sqrt(g/L).
 double hanging_rope_frequency(int mode, double length, double g);
 
-/// Angular frequencies [rad/s], ascending, of n masses m [kg] on springs K [N/m], one end fixed
-/// and the other free: 2 sqrt(K/m) sin((2j-1) pi / (2(2n+1))).
+/// Angular frequencies [rad/s], ascending, of n masses m [kg] on springs K [N/m], with one end
+/// fixed and the other free: 2 sqrt(K/m) sin((2j-1) pi / (2(2n+1))).
 std::vector<double> spring_chain_frequencies(int n, double stiffness, double mass);
 
 /// Largest eigenvalue times m/k of a flat nu x nu grid of equal masses and springs of equal
-/// stiffness, free at its edges, for motion in its plane: explicit integrators without damping are
+/// stiffness, with free edges, for motion in its plane. Explicit integrators without damping are
 /// stable while dt < 2 sqrt(m/k) / sqrt(this). Power iteration to about 1e-6.
 double spring_grid_eigenvalue(int nu, bool shear, bool bend);
 
-/// Ratio of the tensions at both ends of a rope of links that turns by `wrap` [rad] in equal steps
-/// of `link` [rad] over a rough cylinder, on the verge of slipping: each node balances
-/// (T2 - T1) cos(link/2) = mu (T1 + T2) sin(link/2). Tends to exp(mu wrap) in second order.
+/// Ratio of the tensions at both ends of a rope of links on the verge of slipping, which turns by
+/// `wrap` [rad] in equal steps of `link` [rad] over a rough cylinder. Each node balances (T2 - T1)
+/// cos(link/2) = mu (T1 + T2) sin(link/2). Tends to exp(mu wrap) in second order.
 double capstan_ratio(double mu, double wrap, double link);
 
-/// The same where each link, not its ends, touches the cylinder, in its middle: half of what holds
-/// it at either end, so that tension and push grow by r a node, r - 1/r = 2 mu sin(link). Tends to
-/// exp(mu wrap) in second order, from below.
+/// Ratio of the tensions as in capstan_ratio(), but the links touch the cylinder, in their middle,
+/// and not the nodes. Each end takes half of a link's contact force, so tension and push grow by r
+/// per node, r - 1/r = 2 mu sin(link). Tends to exp(mu wrap) in second order, from below.
 double capstan_ratio_of_links(double mu, double wrap, double link);
 
-/// A chain of equal links between two supports of equal height, an equal load at every joint.
+/// A chain of equal links between two supports of equal height, with an equal load at every joint.
 struct Catenary {
   std::vector<double> x, y;     ///< [links + 1] m, from (0, 0) to (span, 0)
   std::vector<double> tension;  ///< [links] N
@@ -69,40 +73,42 @@ struct Catenary {
   double sag() const;           ///< m, depth of the lowest joint
 };
 
-/// tan(theta_i) = (P/H)(i - (N+1)/2) and sum of l_i cos(theta_i) = span: one monotone root H, by
-/// bisection to the last bit. Links lengthen by T/stiffness; infinite stiffness [N/m] = rods.
-/// Preconditions: links >= 2, load [N] > 0, 0 < span, and span < links * link for rods.
+/// The catenary with tan(theta_i) = (P/H)(i - (N+1)/2) and sum of l_i cos(theta_i) = span. H is a
+/// root of a monotone function, found by bisection to the last bit. Links lengthen by T/stiffness;
+/// infinite stiffness [N/m] = rods. Preconditions: links >= 2, load [N] > 0, 0 < span, and
+/// span < links * link for rods.
 Catenary discrete_catenary(int links, double span, double link, double load,
                            double stiffness = std::numeric_limits<double>::infinity());
 
 /// Sag [m] of an inextensible rope of `length` over `span`: 2a sinh(span/2a) = length.
 double continuum_sag(double length, double span);
 
-/// One relaxation sweep over the links of a chain of n equal free masses, the first link fixed to
-/// a support, acting on the links' strains [m], from the top down (gauss_seidel) or all at once
-/// (jacobi). Each correction is multiplied by omega. [n x n]
+/// Matrix of one relaxation sweep over the links of a chain of n equal free masses, whose first
+/// link is fixed to a support. It acts on the links' strains [m]. Sweeps go from the top down
+/// (gauss_seidel) or correct all links at once (jacobi); each correction is multiplied by omega. [n
+/// x n]
 enum class Sweep { gauss_seidel, jacobi };
 Eigen::MatrixXd chain_sweep(int n, Sweep, double omega = 1);
 
-/// Strain [m] of every link of the chain at rest when each step lets the masses fall by
-/// a = g dt^2 [m] and then applies k sweeps G: e = (I - G^k)^-1 G^k a delta_1.
+/// Strain [m] of every link of the chain at rest, if each step lets the masses fall by a = g dt^2
+/// [m] and then applies k sweeps G: e = (I - G^k)^-1 G^k a delta_1.
 Eigen::VectorXd steady_strain(const Eigen::MatrixXd& sweep, int k, double a);
 
-/// The largest of these strains in the limit of many links, Gauss-Seidel:
-/// (2a/n) sum over odd j of 1 / (exp(j^2 pi^2 k / (4 n^2)) - 1).
+/// Largest of these strains in the limit of many links, Gauss-Seidel: (2a/n) sum over odd j of
+/// 1 / (exp(j^2 pi^2 k / (4 n^2)) - 1).
 double collapsed_strain(int n, int k, double a);
 
-/// Spectral radius of a Gauss-Seidel sweep, cos^2(pi/2n), and of a Jacobi sweep, cos(pi/2n): the
-/// printed limits for a chain of n links.
+/// Spectral radius of a sweep over a chain of n links, the printed limits: cos^2(pi/2n) for
+/// Gauss-Seidel, cos(pi/2n) for Jacobi.
 double chain_radius(int n, Sweep);
 
-/// What k Gauss-Seidel sweeps do to small sideways displacements of that chain hanging at rest, in
-/// place of the implicit (1 + w^2 dt^2)^-1: each correction acts along its link as it lies at that
-/// moment of the sweeps. [n x n]; a = g dt^2 [m], links of length l [m].
+/// Effect of k Gauss-Seidel sweeps on small sideways displacements of that chain hanging at rest,
+/// in place of the implicit (1 + w^2 dt^2)^-1. Each correction acts along its link as it lies at
+/// that moment of the sweeps. [n x n]; a = g dt^2 [m], links of length l [m].
 Eigen::MatrixXd transverse_sweeps(int n, int k, double a, double l);
 
-/// Growth per step of a mode that k sweeps multiply by mu: the roots of z^2 - 2 mu z + mu = 0.
-/// The one of larger modulus.
+/// Growth per step of a mode that k sweeps multiply by mu: the root of z^2 - 2 mu z + mu = 0 with
+/// the larger modulus.
 std::complex<double> verlet_root(double mu);
 
 }  // namespace taut::reference

@@ -35,9 +35,9 @@ Eigen::VectorXd tridiagonal_eigenvalues(const Eigen::VectorXd& diagonal,
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
   if (solver.info() == Eigen::Success) return solver.eigenvalues();
-  // Eigen 3.4 takes a value beside the diagonal for zero if its square is small beside the
-  // diagonal, which depends on the unit: with large numbers it may never end where the same matrix
-  // scaled below 1 does.
+  // Eigen 3.4 treats an off-diagonal value as zero if its square is small beside the diagonal,
+  // which depends on the unit. With large numbers it may never end, where the same matrix scaled
+  // below 1 does.
   const double largest = diagonal.cwiseAbs().maxCoeff();
   solver.computeFromTridiagonal(diagonal / largest, beside / largest, Eigen::EigenvaluesOnly);
   return largest * converged(solver).eigenvalues();

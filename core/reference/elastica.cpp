@@ -8,14 +8,15 @@ namespace taut::reference {
 
 namespace {
 
-/// phi = pi/2 - theta, phi', reach and drop at t = 1 - s.
+/// phi = pi/2 - theta, phi', reach and drop, as functions of t = 1 - s.
 using Shape = Eigen::Vector4d;
 
 Shape slope(double t, const Shape& y, double gamma, double force) {
   return {y[1], (gamma * t + force) * std::sin(y[0]), std::sin(y[0]), std::cos(y[0])};
 }
 
-/// From the free end at the angle phi to the vertical to the clamp, or to where phi exceeds pi.
+/// Integrates from the free end, at the angle phi to the vertical, to the clamp or to where phi
+/// exceeds pi.
 Shape shot(double phi, double gamma, double force, int steps) {
   const double h = 1.0 / steps;
   Shape y(phi, 0, 0, 0);
@@ -32,7 +33,7 @@ Shape shot(double phi, double gamma, double force, int steps) {
 }  // namespace
 
 Elastica elastica(double gamma, double force, int steps) {
-  double low = -600, high = std::log(std::numbers::pi / 2);  // of the logarithm of phi
+  double low = -600, high = std::log(std::numbers::pi / 2);  // bounds of log(phi)
   for (int k = 0; k < 100 && high - low > 1e-15 * std::abs(low); ++k) {
     const double middle = (low + high) / 2;
     const bool beyond = shot(std::exp(middle), gamma, force, steps)[0] > std::numbers::pi / 2;
@@ -43,7 +44,7 @@ Elastica elastica(double gamma, double force, int steps) {
 }
 
 double bending_length(double angle) {
-  double low = 1e-6, high = 1e6;  // of gamma
+  double low = 1e-6, high = 1e6;  // bounds of gamma
   for (int k = 0; k < 60; ++k) {
     const double middle = std::sqrt(low * high);
     const Elastica e = elastica(middle, 0, 1000);

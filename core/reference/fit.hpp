@@ -8,11 +8,11 @@
 
 namespace taut {
 
-/// y = factor x^exponent.
+/// The law y = factor x^exponent.
 struct PowerLaw {
   double factor = 0;
   double exponent = 0;
-  double error = 0;  ///< one standard error of the exponent; 0 with two points
+  double error = 0;  ///< standard error of the exponent; 0 with two points
 };
 /// Least-squares line through (log x, log y). Preconditions: equal sizes >= 2, all values > 0, not
 /// all x equal.
@@ -34,7 +34,7 @@ inline PowerLaw fit_power_law(std::span<const double> x, std::span<const double>
   return {std::exp(intercept), exponent, n > 2 ? std::sqrt(rest / (n - 2) / sxx) : 0};
 }
 
-/// Least-squares p, q in y_{n+1} = p y_n + q y_{n-1}: exact for one oscillating mode, whose roots
+/// Least-squares p, q in y_{n+1} = p y_n + q y_{n-1}. Exact for one oscillating mode, whose roots
 /// are those of z^2 - p z - q = 0. Precondition: at least four values.
 inline std::array<double, 2> two_term_recurrence(const std::vector<double>& y) {
   double aa = 0, ab = 0, bb = 0, ac = 0, bc = 0;
@@ -49,8 +49,8 @@ inline std::array<double, 2> two_term_recurrence(const std::vector<double>& y) {
   return {(ac * bb - bc * ab) / det, (aa * bc - ab * ac) / det};
 }
 
-/// Where a continuous function changes sign between a and b, to `tolerance`; f(a) and f(b) differ
-/// in sign.
+/// Where a continuous function changes sign between a and b, to `tolerance`. Precondition: f(a) and
+/// f(b) differ in sign.
 template <class F>
 double sign_change(double a, double b, double tolerance, const F& f) {
   const bool positive = f(a) > 0;

@@ -19,15 +19,15 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
-/// K of rigid links over the largest m/h^2, at most.
+/// Largest K of rigid links, as a multiple of the largest m/h^2.
 constexpr double kHardest = 1e8;
-/// Multipliers that leave more than this share of the violation grow without end, where links
-/// resist at second order alone: a taut row between two pins. Then K grows instead, and what is
-/// left of the bend is halved with every factor of 8.
+/// A round of multipliers stalls if it leaves more than this share of the violation. Multipliers
+/// then grow without end, where links resist at second order alone: a taut row between two pins. K
+/// grows instead, and every factor of 8 halves what is left of the bend.
 constexpr double kStalls = 0.8;
-constexpr double kLocked = 1e-7;     ///< m, of a violation
-constexpr double kRounding = 1e-14;  ///< m, of all lengths together
-constexpr double kTouching = 1e-13;  ///< m, of gaps and slips that contact leaves
+constexpr double kLocked = 1e-7;     ///< m, largest violation of a minimum
+constexpr double kRounding = 1e-14;  ///< m, rounding of all lengths together
+constexpr double kTouching = 1e-13;  ///< m, gaps and slips that contact may leave
 
 }  // namespace
 
@@ -61,13 +61,15 @@ ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, cons
   if (rigid_) of_others_ = rigid_relations(scene, k, inertia_);
 }
 
-/// Newton's method for it, in the places of those vertices that have no relation.
+/// Newton's method for the step. Its unknowns are the positions of the vertices without a relation.
 struct ImplicitStep::Newton final : Multiplied {
-  Matrix basis = {};  ///< of the vertices in those that have no relation; empty: unity
-  Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< with relations
+  /// Positions of all vertices from those without a relation; empty: the identity.
+  Matrix basis = {};
+  Eigen::SimplicialLDLT<Matrix> ldlt = {};  ///< used if there are relations
   bool analysed = false;
-  PanelFactor panels = {};             ///< without, where it is several times faster
-  std::vector<std::size_t> rank = {};  ///< of each vertex that moves, in the order of elimination
+  /// Used if there are no relations, where it is several times faster.
+  PanelFactor panels = {};
+  std::vector<std::size_t> rank = {};  ///< order of elimination of each vertex that moves
 
   Newton(const ImplicitStep& s, double rigid) : Multiplied(s, rigid) {
     if (step.of_others_.empty()) return;
@@ -86,7 +88,7 @@ struct ImplicitStep::Newton final : Multiplied {
     basis.setFromTriplets(entries.begin(), entries.end());
   }
   bool reduced() const { return !step.of_others_.empty(); }
-  /// Where the vertices are by those that have no relation.
+  /// Sets vertices with a relation to where the other vertices put them.
   Points related(Points x) const {
     if (!reduced()) return x;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -100,7 +102,7 @@ struct ImplicitStep::Newton final : Multiplied {
     const Vector g = gradient(x);
     return reduced() ? Vector(basis.transpose() * g) : g;
   }
-  /// Whether the Hessian is positive definite.
+  /// Factors the Hessian. Returns whether it is positive definite.
   bool factor(const Points& x, bool clamped) {
     return reduced() ? factor_reduced(x, clamped) : factor_panels(x, clamped);
   }
@@ -141,7 +143,7 @@ struct ImplicitStep::Newton final : Multiplied {
     panels = PanelFactor(rank.size(), pairs, 3, widest());
     for (std::size_t k = 0; k < rank.size(); ++k) rank[to_index(panels.order()[k])] = k;
   }
-  /// The inverse of what was factored, times -g.
+  /// Minus the inverse of the factored matrix, times g.
   Vector newton_step(const Vector& g) const {
     if (reduced()) return ldlt.solve(-g);
     std::vector<double> rows(static_cast<std::size_t>(size));
@@ -162,7 +164,7 @@ struct ImplicitStep::Newton final : Multiplied {
     return x;
   }
 
-  /// Down to a gradient below `enough` [N] or to rounding.
+  /// Descends to a gradient below `enough` [N] or to rounding.
   Points minimise(Points x, double enough) {
     for (int k = 0; k < 100; ++k) {
       const Vector g = gradient_of_own(x);
@@ -234,7 +236,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   Minimum found;
   double before = 1e300;
   const int rounds = in_contact() ? 400 : rigid_ ? 60 : 1;
-  double contact = 0;  // m, by which it is not yet settled
+  double contact = 0;  // m, distance from settled contact
   for (int round = 0; round < rounds; ++round) {
     const Points last = x;
     x = problem.minimise(std::move(x), 1e-10 + rounding());
@@ -258,7 +260,7 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
     }
     before = found.stretch;
   }
-  // with the multipliers as they were for this x
+  // Undo the last update: these multipliers are the ones for which x is the minimum.
   for (std::size_t j = 0; j < links_.size(); ++j)
     if (std::isinf(links_[j].stiffness))
       problem.multiplier[j] -= problem.stiffness[j] * problem.stretch(x, j);

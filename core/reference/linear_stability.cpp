@@ -14,7 +14,8 @@ namespace taut {
 
 namespace {
 
-constexpr std::size_t kMostLinks = 128;  ///< of a dense sweep: its eigenvalues cost n^3
+/// Most links of a dense sweep, whose eigenvalues cost n^3.
+constexpr std::size_t kMostLinks = 128;
 
 /// A link between two particles as linear theory sees it.
 struct Bar {
@@ -35,8 +36,8 @@ std::vector<Bar> bars(const Scene& scene, const std::vector<double>& w,
   return result;
 }
 
-/// Largest eigenvalue of a symmetric operator on R^n, given as y = A x: Lanczos with full
-/// reorthogonalisation (Golub & Van Loan, 10.3).
+/// Largest eigenvalue of a symmetric operator y = A x on R^n: Lanczos with full reorthogonalisation
+/// (Golub & Van Loan, 10.3).
 template <class Apply>
 double largest_eigenvalue(Eigen::Index n, const Apply& apply) {
   const Eigen::Index most = std::min<Eigen::Index>(n, 100);
@@ -64,8 +65,8 @@ struct Elastic {
   std::vector<BendingElement> bending;
 };
 
-/// Largest eigenvalue of M^-1/2 (stiff K + damped C) M^-1/2, C = drag times unity on free
-/// particles.
+/// Largest eigenvalue of M^-1/2 (stiff K + damped C) M^-1/2, where C is drag times the identity on
+/// free particles.
 double spring_eigenvalue(const Elastic& parts, const std::vector<double>& w, double stiff,
                          double damped) {
   const auto n = static_cast<Eigen::Index>(3 * w.size());
@@ -92,9 +93,9 @@ double spring_eigenvalue(const Elastic& parts, const std::vector<double>& w, dou
   });
 }
 
-/// A mode of x' = v, v' = -w^2 x - y v, y = c/m, has the multipliers 1 + h l, l^2 + y l + w^2 = 0:
-/// of a complex pair |z|^2 = 1 - y h + w^2 h^2. Empty with unequal masses, whose modes drag
-/// couples.
+/// Stability of explicit Euler with drag. A mode of x' = v, v' = -w^2 x - y v, with y = c/m, has
+/// the multipliers 1 + h l, l^2 + y l + w^2 = 0; a complex pair has |z|^2 = 1 - y h + w^2 h^2.
+/// Empty with unequal masses, whose modes drag couples.
 std::optional<LinearStability> dragged_explicit_euler(const std::vector<double>& w,
                                                       const Elastic& all, double h, double drag) {
   double inverse_mass = 0;
@@ -134,8 +135,8 @@ std::optional<LinearStability> stability(const Scene& scene, const LinearSprings
              : "substep < 2/w, w the fastest mode of the springs"};
 }
 
-/// One sweep in strain space: correcting link j by its strain e_j changes all strains by
-/// -omega e_j A_:j / A_jj, A = J M^-1 J^T.
+/// Matrix of one sweep in strain space: correcting link j by its strain e_j changes all strains by
+/// -omega e_j A_:j / A_jj, with A = J M^-1 J^T.
 Eigen::MatrixXd sweep(const std::vector<Bar>& links, const std::vector<double>& w, double omega,
                       bool jacobi) {
   const auto n = static_cast<Eigen::Index>(links.size());

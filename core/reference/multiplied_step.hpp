@@ -12,55 +12,55 @@ namespace taut::reference {
 
 using Points = std::vector<Vec3>;
 
-/// K of rigid links over the largest m/h^2, at first.
+/// Initial K of rigid links, as a multiple of the largest m/h^2.
 inline constexpr double kHardness = 1e4;
 
-/// G with rigid links as springs K that a multiplier [N] has shifted: l C + K/2 C^2.
-/// With contact as an augmented Lagrangian, too: forces and tangent planes that follow in rounds.
+/// G with rigid links as springs K that a multiplier l [N] shifts: l C + K/2 C^2. Contact is an
+/// augmented Lagrangian, too, with forces and tangent planes that are updated in rounds.
 struct ImplicitStep::Multiplied {
   const ImplicitStep& step;
   std::vector<double> stiffness, multiplier;
   std::vector<Eigen::Index> column;  ///< of each vertex in gradients; -1: a pin
   Eigen::Index size = 0;
-  /// Of vertex i at collider k, [i][k]: the forces that shift its part of the energy [N].
+  /// Forces [N] of collider k on vertex i, [i][k], that shift its part of the energy.
   struct Touch {
     double push = 0, bound = 0;
     Vec3 rub = Vec3::Zero();
   };
   std::vector<Touch> touches = {};
-  /// Of vertex i at collider k, [i][k]: the surface's tangent plane where it is nearest, fixed
-  /// while G is minimised, for with planes that turn its gradient is not that of an energy.
+  /// Tangent plane of collider k at its point nearest to vertex i, [i][k]. It is fixed while G is
+  /// minimised: with planes that turn, the gradient would not be that of an energy.
   struct TangentPlane {
     Vec3 normal = Vec3::Zero();
-    double offset = 0;  ///< m, of the scene's thickness above the surface
+    double offset = 0;  ///< m, at the scene's thickness above the surface
   };
   std::vector<TangentPlane> planes = {};
-  double hardness = 0;  ///< N/m, of contact
+  double hardness = 0;  ///< N/m, stiffness of contact
 
-  /// `rigid`: the K of rigid links [N/m].
+  /// rigid: K of rigid links [N/m].
   Multiplied(const ImplicitStep&, double rigid);
-  /// The K of rigid links from now on [N/m].
+  /// Sets K of rigid links [N/m] from now on.
   void harden(double rigid);
   double stretch(const Points& x, std::size_t j) const {
     const auto& [a, b, rest, k] = step.links_[j];
     return (x[b] - x[a]).norm() - rest;
   }
   double energy(const Points& x) const;             ///< J
-  Eigen::VectorXd gradient(const Points& x) const;  ///< N, by columns
+  Eigen::VectorXd gradient(const Points& x) const;  ///< N, indexed by `column`
   Vec3 contact_force(const Points& x) const;        ///< N
-  void lay_planes(const Points& x);                 ///< the tangent planes at x
-  /// The planes and the forces become those at x; how far that is from contact's conditions [m].
+  void lay_planes(const Points& x);                 ///< sets the tangent planes to those at x
+  /// Sets planes and forces to those at x. Returns how far that is from contact's conditions [m].
   double update_contact(const Points& x);
 
-  /// What a collider does to a vertex: the energy of (push - k gap)+ and of rub - k slip, which is
-  /// no longer than the bound, its force and its Hessian.
+  /// Effect of a collider on a vertex: energy, force and Hessian of the push (push - k gap)+ and of
+  /// the friction rub - k slip, which is no longer than the bound.
   struct Held {
     double energy = 0;
     Vec3 force = Vec3::Zero();
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
     double push = 0;
     Vec3 rub = Vec3::Zero();
-    double gap = 0, slip = 0;  ///< m; the slip that friction has to take back
+    double gap = 0, slip = 0;  ///< m; slip: what friction has to take back
   };
   Held held(std::size_t i, std::size_t k, const Vec3& x) const {
     const Obstacle& obstacle = step.colliders_[k];
@@ -93,15 +93,15 @@ struct ImplicitStep::Multiplied {
     out.force += out.rub;
     return out;
   }
-  /// visit(i, k, what collider k does to vertex i).
+  /// Calls visit(i, k, effect of collider k on vertex i).
   template <class Visit>
   void each_held(const Points& x, const Visit& visit) const {
     for (std::size_t i = 0; i < x.size(); ++i)
       for (std::size_t k = 0; column[i] >= 0 && k < step.colliders_.size(); ++k)
         visit(i, k, held(i, k, x[i]));
   }
-  /// The Hessian: add(row, column, block) of three rows and columns, in its lower triangle; each
-  /// block is symmetric.
+  /// Calls add(row, column, block) for the Hessian's blocks of three rows and columns, in its lower
+  /// triangle; each block is symmetric.
   template <class Add>
   void each_block(const Points& x, bool clamped, const Add& add) const {
     for (std::size_t i = 0; i < x.size(); ++i)

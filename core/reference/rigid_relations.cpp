@@ -10,10 +10,11 @@ namespace taut::reference {
 
 namespace {
 
-constexpr double kFlat = 1e-13;     ///< of lengths: what is in a plane, or on a line
-constexpr double kNothing = 1e-12;  ///< a weight beside those of order 1
+constexpr double kFlat = 1e-13;     ///< deviation from a plane or a line, as a share of lengths
+constexpr double kNothing = 1e-12;  ///< a weight that counts as 0 beside those of order 1
 
-/// sum of weights x = 0 of three vertices with these distances; empty: they are not on a line.
+/// Weights with sum of weights x = 0 for three vertices at these distances; empty if they are not
+/// on a line.
 std::vector<double> on_a_line(double ab, double ac, double bc) {
   for (const auto& [sum, relation] :
        {std::pair(ab + bc - ac, std::vector{-bc / ac, 1.0, -ab / ac}),
@@ -23,7 +24,8 @@ std::vector<double> on_a_line(double ab, double ac, double bc) {
   return {};
 }
 
-/// The same of four with a, b and c on no line; empty: they are not in a plane.
+/// Weights as in on_a_line() for four vertices in a plane, with a, b and c not on a line; empty if
+/// they are not in a plane.
 std::vector<double> in_a_plane(double ab, double ac, double ad, double bc, double bd, double cd) {
   const auto place = [&](double from_a, double from_b) {  // a = (0, 0), b = (ab, 0)
     const double along = (ab * ab + from_a * from_a - from_b * from_b) / (2 * ab);
@@ -44,8 +46,8 @@ std::vector<double> in_a_plane(double ab, double ac, double ad, double bc, doubl
 std::vector<Weights> rigid_relations(const Scene& scene, const Stiffness& stiffness,
                                      const std::vector<double>& inertia) {
   const std::size_t n = inertia.size();
-  std::vector<Weights> beside(n);    // later neighbours, distance
-  for (const Link& l : scene.links)  // between pins too
+  std::vector<Weights> beside(n);    // distances to later neighbours
+  for (const Link& l : scene.links)  // also between pins
     if (std::isinf(stiffness[static_cast<std::size_t>(l.family)]))
       beside[to_index(std::min(l.a, l.b))][to_index(std::max(l.a, l.b))] = l.rest;
   std::vector<Weights> of_others(n);
@@ -60,7 +62,7 @@ std::vector<Weights> rigid_relations(const Scene& scene, const Stiffness& stiffn
       if (inertia[v] > 0 && std::abs(weight) > kNothing &&
           (solved == n || std::abs(weight) >= (1 - kNothing) * std::abs(sum[solved])))
         solved = v;
-    if (solved == n) return;  // said already
+    if (solved == n) return;  // the other relations imply it
     any = true;
     const double own = sum[solved];
     sum.erase(solved);

@@ -9,13 +9,14 @@
 
 namespace taut::reference {
 
-/// A place as a sum of weights times the places of these vertices.
+/// A position as a weighted sum of the positions of these vertices.
 using Weights = std::map<std::size_t, double>;
 
-/// Four vertices in a plane, or three on a line, all rigidly linked, stay so: linear relations,
-/// which their links say at second order only. Each is solved for one vertex that moves. [n] The
-/// place of each vertex by those that have no relation, which have themselves alone; empty: there
-/// is no relation. inertia: [n], 0 of pins; links without a finite stiffness [N/m] are rigid.
+/// Linear relations of rigidly linked vertices: four in a plane or three on a line stay so, which
+/// their links ensure at second order only. Each relation is solved for one vertex that moves.
+/// Returns [n] the position of each vertex from those without a relation, which have themselves
+/// alone; empty if there is no relation. inertia: [n], 0 for pins. Links without a finite stiffness
+/// [N/m] are rigid.
 std::vector<Weights> rigid_relations(const Scene&, const Stiffness&,
                                      const std::vector<double>& inertia);
 

@@ -19,7 +19,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 using Triplet = Eigen::Triplet<double>;
 
-/// The least step of converged_motion(): two seconds are some million steps.
+/// Least step of converged_motion(): two seconds take about a million such steps.
 constexpr double kLeastStep = 0x1p-19;  ///< s
 
 double stiffness_of(const Scene& scene, const Link& l) {
@@ -44,7 +44,7 @@ std::vector<Vec3> wind_forces(const Scene& scene, const std::vector<Vec3>& x,
   return f;
 }
 
-/// States at the times; empty if a projection failed.
+/// States at `times`; empty if a projection failed.
 std::vector<State> run(const Scene& scene, const std::vector<double>& times, double dt) {
   Shake shake(scene, dt);
   std::vector<State> states;
@@ -72,7 +72,7 @@ struct Shake::Impl {
   double dt;
   int n = 0;  ///< steps taken
   std::vector<double> w;
-  std::vector<Link> links, springs;  ///< rigid, elastic; an end moves
+  std::vector<Link> links, springs;  ///< rigid and elastic, with an end that moves
   std::vector<BendingElement> bending;
   std::vector<Vec3> x, previous, before_previous;
   Eigen::SimplicialLDLT<Matrix> ldlt;
@@ -84,7 +84,8 @@ struct Shake::Impl {
       if (w[to_index(l.a)] + w[to_index(l.b)] > 0) (is_rigid(s, l) ? links : springs).push_back(l);
   }
 
-  /// J M^-1 J^T at x, J the gradients d of (|d|^2 - r^2)/2: links that share a vertex couple.
+  /// Factors J M^-1 J^T at x. J are the gradients d of (|d|^2 - r^2)/2: links that share a vertex
+  /// couple.
   bool factor() {
     std::vector<std::vector<std::pair<int, double>>> beside(x.size());  // link, sign at the vertex
     for (int j = 0; j < static_cast<int>(links.size()); ++j) {
@@ -125,7 +126,8 @@ struct Shake::Impl {
         violation[j] = (delta(y, j).squaredNorm() - r * r) / 2;
         worst = std::max(worst, std::abs(violation[j]) / (r * r));
       }
-      if (worst < 1e-15 || (worst < 1e-13 && worst >= before)) return true;  // rounding
+      // Only rounding is left.
+      if (worst < 1e-15 || (worst < 1e-13 && worst >= before)) return true;
       if (!(worst < 1e3)) return false;
       before = worst;
       const Vector lambda = ldlt.solve(violation);
@@ -139,7 +141,7 @@ struct Shake::Impl {
     return false;
   }
 
-  /// Velocity at x from the past alone, of order 2 as soon as there are two steps behind.
+  /// Velocity at x from past positions alone, of order 2 once there are two earlier steps.
   std::vector<Vec3> velocity_now() const {
     if (n == 0) return scene.start.v;
     std::vector<Vec3> v(x.size());
@@ -154,7 +156,7 @@ struct Shake::Impl {
     for (const Link& l : springs) {
       const Vec3 d = x[to_index(l.b)] - x[to_index(l.a)];
       const double length = d.norm();
-      if (length == 0) continue;  // no direction to pull in
+      if (length == 0) continue;  // there is no direction to pull in
       const Vec3 pull = stiffness_of(scene, l) * (length - l.rest) / length * d;
       f[to_index(l.a)] += pull;
       f[to_index(l.b)] -= pull;
@@ -223,7 +225,8 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
 }
 
 double fastest_vibration(const Scene& scene) {
-  std::vector<double> row(scene.start.x.size(), 0.0);  // of the stiffness matrix, sum |k| [N/m]
+  // Sum |k| of each row of the stiffness matrix [N/m].
+  std::vector<double> row(scene.start.x.size(), 0.0);
   for (const Link& l : scene.links)
     if (!is_rigid(scene, l))
       for (const int end : {l.a, l.b}) row[to_index(end)] += 2 * stiffness_of(scene, l);
@@ -241,11 +244,12 @@ double fastest_vibration(const Scene& scene) {
 
 namespace {
 
-/// Whether every row of a flat grid with all structural and shear links, rigid, hung by its first
-/// row and let go with straight rows, stays straight: then it swings as one column of rods. Proof,
-/// row by row: a vertex at the distances l and sqrt(l^2 + s^2) from the vertex above it and from
-/// that one's neighbour at the distance s is displaced from the first at a right angle to the row;
-/// the links along the row then make these displacements equal.
+/// Whether every row of a flat rigid grid stays straight, so that it swings as one column of rods.
+/// The grid has all structural and shear links, hangs by its first row and is released with
+/// straight rows. Proof, row by row: a vertex is at the distances l and sqrt(l^2 + s^2) from the
+/// vertex above it and from that one's neighbour, which is s away. Its displacement from the vertex
+/// above is thus at a right angle to the row, and the links along the row make these displacements
+/// equal.
 bool rows_stay_straight(const Scene& scene) {
   const auto& grid = scene.mesh.grid;
   if (!grid || grid->nu < 2 || grid->nv < 2 || !scene.pin_motions.empty() || scene.wind ||
@@ -274,7 +278,7 @@ bool rows_stay_straight(const Scene& scene) {
   return true;
 }
 
-/// Its first column, with the masses of whole rows.
+/// The scene's first column, with the masses of whole rows.
 Scene first_column(const Scene& scene) {
   const Grid& grid = *scene.mesh.grid;
   Scene column = scene;

@@ -20,10 +20,10 @@ using Triplet = Eigen::Triplet<double>;
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-9;
 
-/// The rest position of every vertex [m] if straight lines decide it: a vertex on a shortest path
-/// between two fixed vertices that is as long as their distance is fixed; a vertex that is as far
-/// below a fixed one as their shortest path is long cannot hang lower. Nothing if that leaves a
-/// vertex open or a link with the wrong length (relative tolerance 1e-9).
+/// Positions at rest [m] if straight lines decide all of them. A vertex is fixed if it is on a
+/// shortest path between two fixed vertices that is as long as their distance. A vertex that is as
+/// far below a fixed one as their shortest path is long cannot hang lower. Empty if this leaves a
+/// vertex undecided or a link with the wrong length (relative tolerance 1e-9).
 std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
   const std::size_t n = scene.start.x.size();
   const Adjacency neighbours(scene.links, scene.mesh.size());
@@ -49,7 +49,7 @@ std::optional<std::vector<Vec3>> hanging_straight(const Scene& scene) {
           x[to_index(i)] = x[to_index(a)] + from[p].length[to_index(i)] * along;
         }
     }
-  // A vertex is at its lowest when, over all fixed ones, height - path length is largest.
+  // A vertex is at its lowest where height - path length is largest over all fixed vertices.
   const Vec3 down = scene.gravity.normalized();
   std::vector<double> lowest(n, kUnreached);
   std::vector<Vec3> place = x;
@@ -80,7 +80,7 @@ bool hangs_whole(const Scene& scene) {
   return std::ranges::none_of(ways.start, [](int pin) { return pin < 0; });
 }
 
-/// The free vertices' unknowns and the links between them. C_j = (|d|^2 - r^2) / (2r) [m].
+/// The unknowns of the free vertices and the links between them. C_j = (|d|^2 - r^2) / (2r) [m].
 class Problem {
  public:
   explicit Problem(const Scene& scene) : scene_(scene), column_(scene.start.x.size(), -1) {
@@ -116,13 +116,13 @@ class Problem {
     const double r = link(j).rest;
     return (delta(y, j).squaredNorm() - r * r) / (2 * r);
   }
-  /// out += scale * gradient of C_j.
+  /// Adds scale * gradient of C_j to `out`.
   void add_gradient(const Vector& y, int j, double scale, Vector& out) const {
     const Vec3 g = scale / link(j).rest * delta(y, j);
     if (const int b = column_[to_index(link(j).b)]; b >= 0) out.segment<3>(b) += g;
     if (const int a = column_[to_index(link(j).a)]; a >= 0) out.segment<3>(a) -= g;
   }
-  /// The blocks of pull * Hessian(C_j) + stiff * gradient gradient^T, lower triangle.
+  /// Adds the blocks of pull * Hessian(C_j) + stiff * gradient gradient^T, lower triangle.
   void add_hessian(const Vector& y, int j, double pull, double stiff,
                    std::vector<Triplet>& out) const {
     const double r = link(j).rest;
@@ -156,7 +156,7 @@ class Problem {
                                      : scene_.start.x[to_index(i)];
   }
   const Scene& scene_;
-  std::vector<int> column_;  ///< of a vertex's first unknown; -1: pinned
+  std::vector<int> column_;  ///< first unknown of a vertex; -1: pinned
   std::vector<Link> links_;
   Vector weight_;
   int free_ = 0;
@@ -203,12 +203,12 @@ void minimise(const Problem& p, Point& point, double mu, double tolerance) {
     double length = 1;
     while (length > 1e-10 && value(point.y + length * step) > now + 1e-4 * length * slope)
       length /= 2;
-    if (length <= 1e-10) return;  // at the level of rounding
+    if (length <= 1e-10) return;  // only rounding is left
     point.y += length * step;
   }
 }
 
-/// To about six digits: Newton on the KKT system does the rest.
+/// Solves to about six digits; Newton on the KKT system does the rest.
 void augmented_lagrangian(const Problem& p, Point& point, double mu) {
   const double force = p.weight().lpNorm<Eigen::Infinity>();
   double tolerance = force;
@@ -225,8 +225,8 @@ void augmented_lagrangian(const Problem& p, Point& point, double mu) {
   }
 }
 
-/// Newton on gradient = 0, C = 0 of the pulling links: [H J^T; J -delta] is quasi-definite, so an
-/// LDLT exists in every order; iterative refinement removes the effect of delta.
+/// Newton on gradient = 0 and C = 0 of the pulling links. [H J^T; J -delta] is quasi-definite, so
+/// an LDLT exists in every order; iterative refinement removes the effect of delta.
 bool polish(const Problem& p, const std::vector<int>& pulling, Point& point) {
   const int n = p.unknowns(), m = static_cast<int>(pulling.size());
   const double scale = point.lambda.maxCoeff(), delta = 1e-12;
@@ -258,8 +258,8 @@ bool polish(const Problem& p, const std::vector<int>& pulling, Point& point) {
   return true;
 }
 
-/// Polishes, drops links that turn out to push, takes in links that turn out too long, until the
-/// set of pulling links stays.
+/// Polishes, drops links that turn out to push and adds links that turn out too long, until the set
+/// of pulling links no longer changes.
 bool polish_active(const Problem& p, std::vector<int>& pulling, Point& point) {
   for (int round = 0; round < 20; ++round) {
     if (!polish(p, pulling, point)) return false;
@@ -276,12 +276,12 @@ bool polish_active(const Problem& p, std::vector<int>& pulling, Point& point) {
     if (next == pulling) return true;
     pulling = std::move(next);
   }
-  return true;  // solve() judges what it has become
+  return true;  // solve() judges the result
 }
 
 struct Solution {
   Point point;
-  std::string reason;  ///< "" if it is one
+  std::string reason;  ///< why it is not a solution; "": it is one
 };
 
 Solution solve(const Problem& p, const std::vector<Vec3>& start, double mu_factor) {
@@ -369,7 +369,7 @@ Equilibrium static_equilibrium(const Scene& scene) {
     return e;
   }
   const Problem p(scene);
-  // Two ways that share neither start nor penalty: their distance is the floor.
+  // Solve twice, sharing neither start nor penalty: the distance of the solutions is the floor.
   const Solution s = solve(p, scene.start.x, 1);
   if (!s.reason.empty()) return refused(s.reason);
   std::vector<Vec3> other = scene.start.x;

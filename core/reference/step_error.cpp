@@ -18,23 +18,28 @@ namespace {
 using Points = std::vector<Vec3>;
 using Eigen::Matrix3d;
 
-/// K of rigid links over the largest m/h^2, and how often their multipliers follow a solution.
+/// K of rigid links, as a multiple of the largest m/h^2.
 constexpr double kRigidHardness = 1e6;
+/// Rounds in which the system is solved and the multipliers of rigid links are updated.
 constexpr int kMultiplierRounds = 3;
-/// Of all stiffness at a vertex, that of its contact.
+/// Stiffness of contact at a vertex, as a multiple of all other stiffness there.
 constexpr double kContactHardness = 1e4;
-/// Of the scene's extent, a gap: such a vertex touches, until it is pulled.
+/// Largest gap at which a vertex counts as touching until it is pulled, as a share of the scene's
+/// extent.
 constexpr double kNearly = 1e-6;
-/// Steps of Newton's method: two, and more while the last is beyond a share of all.
+/// Most steps of Newton's method: two, and more while the last one is not small.
 constexpr int kMostSteps = 4;
-constexpr double kBelieved = 0.3;  ///< the last, of all
+/// Last step of an estimate that is believed, as a share of the sum.
+constexpr double kBelieved = 0.3;
+/// kSmall: a last step below this share of the sum ends the steps. kMostRatio: largest ratio of
+/// successive steps that is extrapolated.
 constexpr double kSmall = 0.1, kMostRatio = 0.8;
-/// Of the way that is missed, what the last round may still move it.
+/// Largest displacement by the last round, as a share of the motion that is missed.
 constexpr double kMostMoved = 0.3;
-/// Of the scene's extent, RMS: steps of Newton's method that are less are taken for rounding.
-/// Contact does not come nearer, for what touches and slips is told by kNearly.
+/// Steps of Newton's method, as a share of the scene's extent (RMS), that are taken for rounding.
+/// In contact they stay larger, because kNearly decides what touches and slips.
 constexpr double kRounded = 1e-9, kRoundedInContact = 1e-5;
-/// How often a linear system is solved for the tensions and the forces of contact in it.
+/// Number of times that a linear system is solved, to update the tensions and contact forces in it.
 constexpr int kRounds = 2, kRoundsOfLengths = 3, kSecondRounds = 1, kRoundsInContact = 6,
               kSecondRoundsInContact = 4;
 
@@ -81,7 +86,7 @@ class StepError::Work {
       out = {rms(all), rms(way_), false};
       if (k > 0 && out.last <= kSmall * out.distance) break;
     }
-    // where steps shrink by a factor, as where links are slack, the others are its powers
+    // Where steps shrink by a factor, as with slack links, sum the geometric series.
     double along = 0, square = 0;
     for (std::size_t i = 0; i < moving_.size(); ++i) {
       along += way_[i].dot(last[i]);
@@ -117,19 +122,19 @@ class StepError::Work {
   struct Member {
     std::size_t a = 0, b = 0;
     double rest = 0, stiffness = 0;  ///< m, N/m; infinite: rigid
-    double tension = 0;              ///< N, to which the last linear system led
+    double tension = 0;              ///< N, from the last linear system
     double excess = 0, length = 0;   ///< m, at x
-    Vec3 u = Vec3::Zero();           ///< unit, at x
+    Vec3 u = Vec3::Zero();           ///< unit vector at x
   };
-  /// A vertex at a collider.
+  /// A vertex and a collider.
   struct Touch {
     enum class Kind { open, sticks, slips } kind = Kind::open;
     Vec3 normal = Vec3::Zero();
     double gap = 0;            ///< m, at x
-    Vec3 slip = Vec3::Zero();  ///< m, at x: the way since t beside the collider
-    Vec3 rub = Vec3::Zero();   ///< N, what friction does to a vertex that slips
+    Vec3 slip = Vec3::Zero();  ///< m, at x: displacement since t tangential to the collider
+    Vec3 rub = Vec3::Zero();   ///< N, friction on a vertex that slips
   };
-  /// Of 3 x 3 numbers in the matrix; null: an end is pinned.
+  /// A block of 3 x 3 numbers in the matrix; null: one end is pinned.
   struct Block {
     double* first = nullptr;
     std::size_t stride = 0;
@@ -174,7 +179,7 @@ class StepError::Work {
     return {first, static_cast<std::size_t>(factor_.at(high, low, 1) - first)};
   }
 
-  /// The step's prediction, pins and colliders.
+  /// Computes the step's prediction, pins and colliders.
   void begin(const State& from, double t, double h) {
     h_ = h;
     const double keep = std::exp(-scene_.damping * h);
@@ -218,7 +223,8 @@ class StepError::Work {
   bool is_rigid(const Member& l) const { return keeps_lengths_ || std::isinf(l.stiffness); }
   double stiffness(const Member& l) const { return is_rigid(l) ? rigid_ : l.stiffness; }
 
-  /// way_: from x to the minimum of the model there; false: there is none.
+  /// Sets way_ to the displacement from x to the minimum of the model there. Returns false if there
+  /// is none.
   bool newton(const Points& x, int rounds) {
     for (Member& l : links_) {
       const Vec3 d = x[l.b] - x[l.a];
@@ -256,7 +262,7 @@ class StepError::Work {
     return column_[vertex] < 0 ? Vec3(Vec3::Zero()) : way_[to_index(column_[vertex])];
   }
 
-  /// The surfaces' tangent planes at x.
+  /// Sets the surfaces' tangent planes to those at x.
   void lay_planes(const Points& x) {
     for (std::size_t c = 0; c < shapes_.size(); ++c)
       for (std::size_t k = 0; k < moving_.size(); ++k) {
@@ -277,7 +283,7 @@ class StepError::Work {
   Touch::Kind engaged(std::size_t collider) const {
     return scene_.colliders[collider].friction > 0 ? Touch::Kind::sticks : Touch::Kind::slips;
   }
-  /// Whether it touches, sticks and slips, and how it is rubbed, by the solution.
+  /// Decides from the solution whether each vertex touches, and sticks or slips, and its friction.
   void settle_contacts() {
     for (std::size_t j = 0; j < touches_.size(); ++j) {
       const std::size_t k = j % moving_.size(), c = j / moving_.size();
@@ -340,7 +346,8 @@ class StepError::Work {
     }
   }
 
-  /// way_, with the tensions of rigid links shifted by what stretch the last solution left.
+  /// Solves for way_, with tensions of rigid links updated by the stretch that the last solution
+  /// left.
   void solve(const Points& x) {
     Points right(moving_.size());
     for (std::size_t k = 0; k < moving_.size(); ++k)
@@ -378,21 +385,22 @@ class StepError::Work {
   const Scene& scene_;
   double extent_;  ///< m
   std::vector<BendingElement> bending_;
-  std::vector<int> column_;          ///< [n] place among those that move
-  std::vector<std::size_t> moving_;  ///< vertices
+  std::vector<int> column_;          ///< [n] index among the vertices that move
+  std::vector<std::size_t> moving_;  ///< vertices that move
   std::vector<Member> links_;
   PanelFactor factor_;
-  std::vector<std::size_t> rank_;               ///< [moving] in the order of elimination
+  std::vector<std::size_t> rank_;               ///< [moving] rank in the order of elimination
   std::vector<Block> diagonal_, beside_;        ///< [moving], [links]
-  std::vector<std::pair<Block, double>> bent_;  ///< [N/m] of bending, times unity
+  std::vector<std::pair<Block, double>> bent_;  ///< bending [N/m] in each block, times the identity
   std::vector<double> in_order_;
   double h_ = 0, rigid_ = 0;      ///< s, N/m
-  double moved_ = 0;              ///< m, by the last round
-  bool keeps_lengths_ = false;    ///< all links are rigid, at the lengths that they have
-  std::vector<double> hardness_;  ///< [moving] N/m, of contact
+  double moved_ = 0;              ///< m, RMS displacement by the last round
+  bool keeps_lengths_ = false;    ///< all links are rigid at their present lengths
+  std::vector<double> hardness_;  ///< [moving] N/m, stiffness of contact
   Points y_, way_;                ///< [n], [moving] m
   std::vector<taut::Shape> shapes_;
-  Points carried_;              ///< [colliders][moving] m, if they went with the collider
+  /// [colliders][moving] m, positions if they moved with the collider.
+  Points carried_;
   std::vector<Touch> touches_;  ///< [colliders][moving]
   bool new_touches_ = true;
 };

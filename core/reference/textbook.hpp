@@ -8,16 +8,16 @@
 
 namespace taut {
 
-/// TimeStep() of Jakobsen, Advanced Character Physics (GDC 2001), line by line for particles of any
-/// mass: an array of structures, the links as the scene lists them, the root and the divisions
-/// where the listing has them. What every result and every speed of core/solver is compared with.
-/// Gravity, damping, links and pins at rest; nothing else.
+/// TimeStep() of Jakobsen, Advanced Character Physics (GDC 2001), line by line, for particles of
+/// any mass: an array of structures, the links as the scene lists them, the root and the divisions
+/// where the listing has them. Every result and every speed of core/solver is compared with it. It
+/// handles gravity, damping, links and pins at rest; nothing else.
 template <class Real>
 class Textbook {
  public:
   using Point = Eigen::Matrix<Real, 3, 1>;
 
-  /// `square_root` false: the projection of the listing without one (simd/distance.hpp).
+  /// square_root: if false, uses the listing's projection without a root (simd/distance.hpp).
   Textbook(const Scene& scene, int iterations, bool square_root = true)
       : iterations_(iterations),
         square_root_(square_root),
@@ -53,7 +53,7 @@ class Textbook {
       relax([this](std::size_t j, Real correction) { lambda_[j] += correction; });
   }
 
-  /// One pass over the constraints.
+  /// Makes one pass over the constraints.
   void sweep() {
     relax([](std::size_t, Real) {});
   }
@@ -69,7 +69,7 @@ class Textbook {
     Real rest;
   };
 
-  /// Calls keep(j, correction of constraint j [kg m]).
+  /// Corrects each constraint in turn and calls keep(j, correction of constraint j [kg m]).
   template <class Keep>
   void relax(const Keep& keep) {
     square_root_ ? relax<true>(keep) : relax<false>(keep);

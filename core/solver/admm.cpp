@@ -1,13 +1,13 @@
 // ADMM: Narain, Overby, Brown: ADMM >= Projective Dynamics (SCA 2016); Overby et al. (TVCG 2017).
-// Each link has a wanted vector z and a scaled multiplier u; an iteration is, with d = x_b - x_a,
+// Each link has a target vector z and a scaled multiplier u. With d = x_b - x_a, an iteration is
 //
 //     p = d + u                             links:  z = r p/|p|                          (rigid)
 //     u = p - z                                     z = (K r + k |p|)/(K + k) p/|p|      (spring K)
-//     x from the factored system of weights k [N/m] with z - u in the place of d
+//     x from the factored system of weights k [N/m], whose target for each link is z - u
 //
-// so the matrix is that of Projective Dynamics (pd.cpp) with k in the place of K. k is a
-// parameter of the method alone: it decides how fast, not where to, the iterations go. Links of
-// families that the scene leaves rigid are so beside springs.
+// The matrix is therefore that of Projective Dynamics (pd.cpp) with k in place of K. k is a
+// parameter of the method alone: it decides how fast the iterations converge, not where to.
+// Families that the scene leaves rigid stay rigid beside springs.
 #include <cmath>
 #include <limits>
 
@@ -103,7 +103,7 @@ class AdmmPass final : public Pass<Real> {
       for (auto& coordinates : slot.multiplier) std::ranges::fill(coordinates, Real(0));
   }
 
-  /// The links with k in the place of K, and k/K of each.
+  /// Springs of stiffness k, one for each link; appends k/K of each to `ratios` (0: rigid).
   static std::vector<Spring> weights(const loop::Setup& s, std::vector<double>& ratios) {
     constexpr double kHard = std::numeric_limits<double>::infinity();
     std::vector<Spring> springs =

@@ -1,6 +1,6 @@
-// Augmented Vertex Block Descent: Giles, Diaz, Yuksel (SIGGRAPH 2025), of rigid links. Each link
-// has a multiplier l [N] and a stiffness k [N/m] that grows while it is violated. With C the
-// stretch, C_0 that at x_t, n its length and u as in vbd.cpp:
+// Augmented Vertex Block Descent (Giles, Diaz, Yuksel, SIGGRAPH 2025) for rigid links. Each link
+// has a multiplier l [N] and a stiffness k [N/m] that grows while the link is violated. C is the
+// stretch, C_0 the stretch at x_t, n the length of the link, and u is defined in vbd.cpp:
 //
 //     substep:  l *= alpha gamma;   k = clamp(gamma k, k_min, k_max)
 //     sweep:    F = k (C - alpha C_0) + l,    f = -m/h^2 (x - y) + sum F u
@@ -90,7 +90,7 @@ class AugmentedPass final : public Pass<Real> {
   }
 
  private:
-  /// Multipliers and stiffnesses of all links.
+  /// Runs the kernel on the multipliers and stiffnesses of all links.
   void update(const Particles<Real>& p,
               void (*kernel)(const AugmentedStep<Real>&, std::size_t, std::size_t)) {
     const AugmentedStep<Real> step{.groups = blocks_.groups().data(),

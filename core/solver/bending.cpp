@@ -4,7 +4,7 @@ namespace taut {
 
 namespace {
 
-/// An element as the pass reads it, in the precision of the particles.
+/// A bending element as the pass reads it, in the precision of the particles.
 template <class Real>
 struct Projected {
   std::uint32_t size, vertex[6];
@@ -29,7 +29,7 @@ class BendingPass final : public Pass<Real> {
   void apply(Particles<Real>& p, double, double) override {
     for (std::size_t k = 0; k < projected_.size(); ++k) {
       const Projected<Real>& e = projected_[k];
-      const V first = p.x[e.vertex[0]];  // differences: floats of nearby places keep them
+      const V first = p.x[e.vertex[0]];  // differences of nearby positions are exact in float
       V g = e.weight[1] * (p.x[e.vertex[1]] - first);
       for (std::uint32_t i = 2; i < e.size; ++i) g += e.weight[i] * (p.x[e.vertex[i]] - first);
       const V change = e.inverse * (-g - e.softness * lambda_[k]);
@@ -48,7 +48,7 @@ class BendingPass final : public Pass<Real> {
   }
 
  private:
-  /// For substeps of h [s].
+  /// Computes the constants of all elements for substeps of h [s].
   void prepare(double h) {
     projected_.clear();
     for (const BendingElement& e : elements_) {
@@ -72,7 +72,7 @@ class BendingPass final : public Pass<Real> {
   std::vector<BendingElement> elements_;
   std::vector<double> w_;  ///< 1/kg
   std::vector<Projected<Real>> projected_;
-  double prepared_for_ = 0;  ///< s; 0: for no substep yet
+  double prepared_for_ = 0;  ///< s; 0: no substep yet
   std::vector<V> lambda_;    ///< kg m^3
 };
 

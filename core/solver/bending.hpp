@@ -8,13 +8,13 @@
 
 namespace taut {
 
-/// Projects the scene's bending elements one after the other, each a constraint g = sum c_i x_i = 0
-/// of three components with the compliance 1/k (XPBD, as core/solver/xpbd.cpp):
+/// Projects the scene's bending elements one after another. Each is a constraint
+/// g = sum c_i x_i = 0 of three components with compliance 1/k (XPBD, as in core/solver/xpbd.cpp):
 ///
 ///     dlambda = (-g - a lambda)/(sum w_i c_i^2 + a),   x_i += w_i c_i dlambda,   a = 1/(k h^2)
 ///
-/// g is linear, so a projection is exact. lambda is 0 at the beginning of a substep and kept from
-/// sweep to sweep, so that converged sweeps are implicit Euler's step. w: inverse masses [1/kg].
+/// g is linear, so a projection is exact. lambda is 0 at the start of a substep and kept from sweep
+/// to sweep, so converged sweeps give implicit Euler's step. w: inverse masses [1/kg].
 template <class Real>
 std::unique_ptr<Pass<Real>> make_bending_pass(const Scene&, std::span<const double> w);
 

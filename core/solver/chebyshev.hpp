@@ -14,14 +14,15 @@ inline constexpr ParamSpec kChebyshev =
     ParamSpec::real("chebyshev", "", "0", 0, 0.99999,
                     "rho of Chebyshev's semi-iteration, the error's factor per iteration; 0: none");
 
-/// Over-relaxation of a pass f whose error shrinks by rho an iteration (Wang: A Chebyshev
+/// Over-relaxation of a pass f whose error shrinks by a factor rho per iteration (Wang: A Chebyshev
 /// Semi-Iterative Approach for Accelerating Projective and Position-Based Dynamics, SIGGRAPH Asia
 /// 2015, equation 9):
 ///
 ///     x_k+1 = omega_k (f(x_k) - x_k-1) + x_k-1,
 ///     omega_k = 2/(2 - rho^2), then 4/(4 - rho^2 omega_k-1), from the third iteration of a substep
 ///
-/// With real eigenvalues up to rho, and that right, the error shrinks by rho/(1 + sqrt(1 - rho^2)).
+/// If the eigenvalues of f are real and rho is the largest, the error shrinks by
+/// rho/(1 + sqrt(1 - rho^2)) per iteration.
 template <class Real>
 class ChebyshevPass final : public Pass<Real> {
  public:
@@ -71,7 +72,8 @@ class ChebyshevPass final : public Pass<Real> {
   std::vector<typename Points<Real>::Point> from_, before_;  ///< m, x_k and x_k-1
 };
 
-/// rho in [0, 1); 0: the pass as it is.
+/// Wraps the pass in ChebyshevPass, or returns it unchanged if rho is 0. Precondition: rho in
+/// [0, 1).
 template <class Real>
 std::unique_ptr<Pass<Real>> with_chebyshev(std::unique_ptr<Pass<Real>> pass, double rho,
                                            std::size_t particles, ThreadPool& pool) {

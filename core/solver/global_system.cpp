@@ -14,16 +14,16 @@ namespace {
 
 using Rows = CoupledContacts::Rows;
 
-constexpr double kSame = 1e-9;  ///< of a normal and of an offset [m]
+constexpr double kSame = 1e-9;  ///< tolerance for equal normals, and for equal offsets [m]
 
-/// By vertex.
+/// Orders TouchingVertex by vertex.
 struct Before {
   static int vertex(const TouchingVertex& at) { return static_cast<int>(at.vertex); }
   bool operator()(const TouchingVertex& at, int v) const { return vertex(at) < v; }
   bool operator()(int v, const TouchingVertex& at) const { return v < vertex(at); }
 };
 
-/// The unknowns, which are the vertices that move; -1: a pin.
+/// The unknown of each vertex: the vertices that move are numbered; -1: a pin.
 std::vector<int> unknown_of_vertices(std::span<const double> w) {
   std::vector<int> unknown(w.size(), -1);
   int next = 0;
@@ -62,17 +62,20 @@ std::vector<int> vertices_in_order(const PanelFactor& factor, std::span<const do
 template <class Real>
 struct GlobalSystem<Real>::Contact {
   std::unique_ptr<Contacts> contacts;
-  std::vector<TouchingVertex> touching;  ///< of this iteration: vertices, then pieces
-  std::size_t vertices = 0;              ///< of them
+  /// Contacts of this iteration: those of vertices, then of pieces.
+  std::vector<TouchingVertex> touching;
+  std::size_t vertices = 0;  ///< number of contacts of vertices in `touching`
   TouchingPieces pieces{.solved = true};
-  std::vector<TouchingPiece*> solved;  ///< of them, which vertices alone do not keep out
+  /// Pieces that the contacts of their corners do not hold off.
+  std::vector<TouchingPiece*> solved;
   using Corners = std::vector<std::pair<Eigen::Index, double>>;
-  std::vector<Corners> places;  ///< [touching] among `rows`, with their weights
+  std::vector<Corners> places;  ///< [touching] where its corners are in `rows`, and their weights
   std::vector<Eigen::Index> place_of_row;
-  Rows held;  ///< N, forces in the last solution
+  Rows held;  ///< N, contact forces in the last solution
   CoupledContacts coupled;
-  std::vector<Eigen::VectorXd> inverse;  ///< [rows] m/N, columns; empty: not needed yet
-  /// What a force at each of these rows moves the others by [m/N].
+  /// [rows] columns of the inverse [m/N]; empty: not needed yet.
+  std::vector<Eigen::VectorXd> inverse;
+  /// Displacement of each of `rows` per force at each of them [m/N].
   Eigen::MatrixXd compliance;
   std::vector<int> rows;
 
@@ -95,7 +98,7 @@ struct GlobalSystem<Real>::Contact {
       touching.push_back(piece.at);
     }
   }
-  /// All corners are at the same flat place of the collider as the piece.
+  /// Whether all corners touch the same flat part of the collider as the piece, and so hold it off.
   bool is_kept_out_by_corners(const TouchingPiece& piece) const {
     const auto at_plane = [&](int corner) {
       const auto [first, last] = std::equal_range(
@@ -115,7 +118,7 @@ struct GlobalSystem<Real>::Contact {
     if (c >= vertices) return solved[c - vertices]->force;
     return contacts->force(touching[c].vertex, touching[c].collider);
   }
-  /// f(vertex, weight): its place is their sum.
+  /// Calls f(vertex, weight) for the corners of contact c, whose position is their weighted sum.
   template <class F>
   void each_corner(std::size_t c, const F& f) const {
     if (c < vertices) return f(touching[c].vertex, 1.0);
@@ -125,7 +128,7 @@ struct GlobalSystem<Real>::Contact {
         f(to_index(piece.corners[k]), weight);
   }
 
-  /// The rows of all that touches and moves; where contact c has its corners among them.
+  /// Returns the rows of all moving vertices in contact, and sets `places` accordingly.
   std::vector<int> find_places(const std::vector<int>& row_of) {
     std::vector<int> found;
     place_of_row.assign(inverse.size(), -1);
@@ -144,7 +147,7 @@ struct GlobalSystem<Real>::Contact {
     return found;
   }
 
-  /// As CoupledContacts::resolve(), of places x of the rows.
+  /// CoupledContacts::resolve() for contacts of vertices only. x: positions of the rows.
   Rows resolve_vertices(Rows& x) {
     std::vector<Eigen::Index> place;
     for (const Corners& at : places) place.push_back(at.front().first);
@@ -152,7 +155,8 @@ struct GlobalSystem<Real>::Contact {
         compliance, touching, place, [this](std::size_t c) -> ContactForce& { return force(c); },
         x);
   }
-  /// The same where pieces touch, too: a force at one acts on its corners by their weights.
+  /// CoupledContacts::resolve() where pieces touch, too: a force at a piece acts on its corners by
+  /// their weights.
   Rows resolve_all(const Rows& x) {
     const auto n = static_cast<Eigen::Index>(places.size());
     Eigen::MatrixXd between = Eigen::MatrixXd::Zero(n, n);
@@ -178,7 +182,7 @@ struct GlobalSystem<Real>::Contact {
     return change;
   }
 
-  /// Solves for the columns of the inverse that are missing, four at a time.
+  /// Solves for the missing columns of the inverse, four at a time.
   void find_columns(const PanelFactor& factor, const std::vector<int>& wanted) {
     std::vector<int> missing;
     for (const int r : wanted)
@@ -260,7 +264,7 @@ void GlobalSystem<Real>::factor(double h) {
   inertia_.assign(groups_.size() * kLanes, Real(0));
   factor_.clear();
   for (std::size_t r = 0; r < mass_.size(); ++r) {
-    inertia_[r] = static_cast<Real>(mass_[r] / (h * h));  // groups are full but for the last
+    inertia_[r] = static_cast<Real>(mass_[r] / (h * h));  // all groups but the last are full
     *factor_.at(r, r) = mass_[r] / (h * h);
   }
   const auto add = [&](int row, int column, double k) {
@@ -290,7 +294,7 @@ void GlobalSystem<Real>::begin(const Particles<Real>& p, double t, double h) {
   contact_->coupled.begin();
 }
 
-/// To rows_, which holds the forces of inertia and links.
+/// Adds bending to rows_, which holds the forces of inertia and links.
 template <class Real>
 void GlobalSystem<Real>::add_bending(const Particles<Real>& p) {
   for (const BendingElement& e : bending_) {
@@ -310,7 +314,8 @@ void GlobalSystem<Real>::solve_forces(std::span<double> forces) {
   factor_.solve_four(forces.data());
 }
 
-/// rows_ holds the forces of inertia and links; bending and contact join them.
+/// Moves p.x to the solution. rows_ holds the forces of inertia and links; adds bending and
+/// contact.
 template <class Real>
 void GlobalSystem<Real>::solve_rows(Particles<Real>& p) {
   if (mass_.empty()) return;
@@ -339,7 +344,7 @@ void GlobalSystem<Real>::solve_rows(Particles<Real>& p) {
     resolve_contacts(p);
 }
 
-/// By rows_.
+/// Moves the vertices by rows_ [m].
 template <class Real>
 void GlobalSystem<Real>::move(Particles<Real>& p) {
   Real* const x = p.x.data();
@@ -347,7 +352,7 @@ void GlobalSystem<Real>::move(Particles<Real>& p) {
   for (std::size_t i = 0; i < 4 * mass_.size(); ++i) x[i] += static_cast<Real>(by[i]);
 }
 
-/// p.x is the solution with the forces as they were.
+/// Corrects p.x, the solution with the last contact forces, by the change of these forces.
 template <class Real>
 void GlobalSystem<Real>::resolve_contacts(Particles<Real>& p) {
   Contact& contact = *contact_;

@@ -1,24 +1,24 @@
-// Implicit Euler by Newton's method. A step from x_t, v_t with y = x_t + h v_t + h^2 a is the
+// Implicit Euler by Newton's method. With y = x_t + h v_t + h^2 a, a step from x_t, v_t is the
 // minimum of
 //
 //     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2,     C = |d| - r,  d = x_b - x_a,  u = d/|d|
 //
-// and each iteration solves H p = -g for the gradient g [N] and the Hessian of the springs
+// Each iteration solves H p = -g for the gradient g [N] and the Hessian of the springs
 //
 //     K [ u u^T + c (I - u u^T) ],     c = 1 - r/|d|
 //
-// with c clamped to at least 0, which keeps H positive definite (Choi, Ko: Stable but Responsive
-// Cloth, SIGGRAPH 2002). Where full steps no longer bring the gradient down fast, the Hessian is
-// taken as it is, if it is positive definite. The step is halved until G falls (Armijo). From x_t,
-// one iteration without line search is the linearised step of Baraff, Witkin: Large Steps in Cloth
-// Simulation (SIGGRAPH 1998). start=inertia begins at y instead, where nothing touches.
+// where c is clamped to at least 0, which keeps H positive definite (Choi, Ko: Stable but
+// Responsive Cloth, SIGGRAPH 2002). Once full steps no longer reduce the gradient fast, the
+// unclamped Hessian is used if it is positive definite. The step is halved until G falls (Armijo).
+// One iteration from x_t without line search is the linearised step of Baraff, Witkin: Large Steps
+// in Cloth Simulation (SIGGRAPH 1998). start=inertia starts at y instead, unless something touches.
 //
-// With multipliers=keep (core/solver/newton/kept_tensions.hpp) the tension across links is one that
-// outlives the step, and iterations begin at y; a step whose gradient, in the norm of 1/M, has
-// grown in the end, and one in which anything touches, is computed as above. integrator=bdf2 and
-// midpoint are steps of the same form with another y and h (newton/integrator.hpp). Contact adds
-// its own part to G (core/solver/contact/augmented_contacts.hpp), whose forces follow once the
-// gradient is small.
+// With multipliers=keep (core/solver/newton/kept_tensions.hpp), each link's tension is kept from
+// step to step as its resistance to sideways motion, and iterations start at y. A step is
+// recomputed as above if its gradient, in the norm of 1/M, has grown by the end, or if anything
+// touches. integrator=bdf2 and midpoint are steps of the same form with another y and h
+// (newton/integrator.hpp). Contact adds a term to G (core/solver/contact/augmented_contacts.hpp);
+// its forces are updated once the gradient is small.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,12 +36,14 @@ namespace taut::solver::implicit {
 
 namespace {
 
-/// Iterations end where |g| [N] is below this share of |M/h^2 (y - x_t)|, all that drives the step,
-/// or below what rounding of the places makes of the springs: the first one only if that, too, is
-/// below a share, for a light cloth is moved by less.
+/// Tolerances of the Newton iterations, as shares of |M/h^2 (y - x_t)|, which is all that drives
+/// the step. Iterations end where |g| [N] is below kTolerance of it or below what rounding of the
+/// positions makes of the spring forces. The first iteration is skipped only if |g| is also below
+/// kFirstTolerance of it: a light cloth is driven by less than that rounding.
 constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
-/// Up to so many vertices that move, the factor is taken. It is faster than conjugate gradients at
-/// any size that was tried (methods.md) and is bound by its memory, 6 kB a vertex there.
+/// Largest number of moving vertices for which linear=auto factors the matrix. The factor is faster
+/// than conjugate gradients at every size that was tried (methods.md); its memory is the limit, 6
+/// kB a vertex at this size.
 constexpr std::size_t kFactorPays = 100000;
 constexpr ParamSpec kOwn[] = {
     loop::iterations("50", "Newton iterations, at most; they end at 1e-9 of the forces of inertia"),
@@ -140,7 +142,7 @@ class NewtonPass final : public Pass<double> {
     if (g.norm() <= (first ? enough_at_first_ : enough_) || !(first    ? first_iteration(x, p, g, h)
                                                               : plain_ ? iterate(x, g, h)
                                                                        : iterate_kept(x, g, h))) {
-      // the minimum for these forces of contact; the end if theirs is no other one
+      // x is the minimum for the current contact forces; the substep is done if these do not change
       left_ = 0;
       if (!step_.contacts.update(p, x, h, left_, enough_)) ended_at_ = std::move(x);
       return;
@@ -161,7 +163,8 @@ class NewtonPass final : public Pass<double> {
   }
 
  private:
-  /// The step is computed from x_t on, and tensions count from the next one.
+  /// Restarts the substep at x_t with plain Newton iterations; tensions are kept again from the
+  /// next one.
   void start_over(Particles<double>& p) {
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
@@ -171,10 +174,11 @@ class NewtonPass final : public Pass<double> {
     kept_.forget();
   }
 
-  /// The step from x_t, linearised with the pins still there: their way to t + h is on the
-  /// right-hand side, so that a frame that moves steadily is as one at rest. It is solved for x -
-  /// y, so that rounding in stiff links moves no centre of mass; where a factor breaks down in
-  /// double precision its places are NaN, which ends a case as exploded.
+  /// The step from x_t, linearised with the pins still at x_t: their displacement to t + h is on
+  /// the right-hand side, so that a steadily moving frame behaves like a frame at rest. The unknown
+  /// is x - y, so that rounding in stiff links does not move the centre of mass. If the
+  /// factorisation breaks down in double precision, positions become NaN, which ends a case as
+  /// exploded.
   bool first_iteration(std::vector<Vec3>& x, const Particles<double>& p, const Vector& g,
                        double h) {
     std::vector<Vec3> start(p.size());
@@ -201,7 +205,7 @@ class NewtonPass final : public Pass<double> {
     return take(x, direction, g, h);
   }
 
-  /// One Newton step; false: rounding does not let the energy fall any further.
+  /// One Newton step. Returns false if rounding does not let the energy fall any further.
   bool iterate(std::vector<Vec3>& x, const Vector& g, double h) {
     step_.linearise(x, clamped_);
     Vector direction;
@@ -217,7 +221,7 @@ class NewtonPass final : public Pass<double> {
     const double rounding = enough_ * std::sqrt(*std::ranges::max_element(p.w));
     return !(now <= std::max(at_first_, rounding));
   }
-  /// One iteration with the tensions that were kept; false: there is no factor.
+  /// One iteration with the kept tensions. Returns false if the matrix has no factor.
   bool iterate_kept(std::vector<Vec3>& x, const Vector& g, double h) {
     step_.linearise(x, true);
     kept_.put_into(step_.hessian, x);
@@ -229,7 +233,8 @@ class NewtonPass final : public Pass<double> {
     return true;
   }
 
-  /// Moves x along the direction, by halves of it until the energy falls; false: it does not.
+  /// Moves x along the direction, halving the step until the energy falls. Returns false if it does
+  /// not.
   bool take(std::vector<Vec3>& x, const Vector& direction, const Vector& g, double h) {
     if (!line_search_) {
       left_ = 0;
@@ -244,7 +249,7 @@ class NewtonPass final : public Pass<double> {
       const double now = step_.energy(trial, h);
       const Vector g_now = step_.gradient(trial, h);
       const bool falls = now <= energy_before + 1e-4 * step * slope;
-      // near the minimum, differences of the energy are rounding: the gradient decides
+      // near the minimum, differences of the energy are mere rounding: the gradient decides
       const bool rounds = now <= energy_before * (1 + 1e-12) && g_now.norm() < g.norm();
       if (!falls && !rounds) continue;
       left_ = g_now.norm();
@@ -255,7 +260,7 @@ class NewtonPass final : public Pass<double> {
     return false;
   }
 
-  /// A cloth moves with its pins before anything drives it [m].
+  /// Mean displacement of the pins [m], with which the cloth moves before anything drives it.
   Vec3 mean_way_of_pins(const Particles<double>& p) const {
     Vec3 sum = Vec3::Zero();
     int pins = 0;
@@ -267,7 +272,7 @@ class NewtonPass final : public Pass<double> {
     return pins > 0 ? Vec3(sum / pins) : sum;
   }
 
-  /// p.x is x_t, of pins where they are at its end.
+  /// p.x holds x_t, but pins are already where they are at the end of the step.
   void set_tolerances(const Particles<double>& p, double h) {
     double inertia2 = 0, rounding2 = 0;
     const Vec3 frame = mean_way_of_pins(p);
@@ -288,13 +293,13 @@ class NewtonPass final : public Pass<double> {
   int iterations_;
   Integrator integrator_;
   KeptTensions kept_;
-  double at_first_ = 0;  ///< N/sqrt(kg), of |g| at the prediction
-  bool plain_ = true;    ///< Newton's method, without kept tensions, in this substep
+  double at_first_ = 0;  ///< N/sqrt(kg), |g| at the prediction
+  bool plain_ = true;    ///< this substep is plain Newton's method, without kept tensions
   bool from_y_ = false;  ///< iterations of this substep began at y
-  double left_ = 0;      ///< N, the gradient after the last Newton step
+  double left_ = 0;      ///< N, |g| after the last Newton step
   bool clamped_ = true, first_ = true;
-  double enough_ = 0, enough_at_first_ = 0;  ///< N, of |g| in this substep
-  std::vector<Vec3> ended_at_;  ///< m, where nothing was left to do in this substep; empty: nowhere
+  double enough_ = 0, enough_at_first_ = 0;  ///< N, tolerances of |g| in this substep
+  std::vector<Vec3> ended_at_;  ///< m, where this substep converged; empty: it has not yet
 };
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {

@@ -1,5 +1,5 @@
 // Thomas Jakobsen, Advanced Character Physics (GDC 2001). TimeStep(), Verlet() and the loop over
-// iterations are core/solver/loop.cpp; what is here is the relaxation of the links.
+// iterations are in core/solver/loop.cpp; this file has the relaxation of the links.
 #include <cmath>
 
 #include "core/model/solver.hpp"

@@ -8,14 +8,14 @@
 
 namespace taut {
 
-/// What springs keep in slots at each of their ends that moves.
+/// Per-spring data, stored in slots at each end that moves.
 template <class Slots>
 struct SlotsOfSprings {
   const VertexGroups& groups;
   const std::vector<Spring>& springs;
-  Slots& slots;  ///< a vector
+  Slots& slots;  ///< a vector of slots
 
-  /// Calls f({a, b, the end's vertex}, slot, lane).
+  /// Calls f({a, b, the end's vertex}, slot, lane) for each end that moves.
   template <class F>
   void each(const F& f) const {
     const Adjacency ends = ends_of(springs, groups.layout().size());
@@ -32,8 +32,9 @@ struct SlotsOfSprings {
   }
 };
 
-/// Calls take(slot, lane, earlier slot, its lane, sign) for each end of a spring that had a slot
-/// when more vertices were pinned; where the end itself was a pin, its other end's with sign -1.
+/// Hands over per-spring data after pins were released. Calls take(slot, lane, earlier slot, its
+/// lane, sign) for each end of a spring that had a slot before. sign is 1; it is -1 where the end
+/// was a pin, and the earlier slot is then that of the spring's other end.
 template <class Slot, class Take>
 void take_over(const SlotsOfSprings<std::vector<Slot>>& now,
                const SlotsOfSprings<const std::vector<Slot>>& earlier, const Take& take) {

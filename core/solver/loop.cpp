@@ -26,7 +26,7 @@ constexpr Choice<SelfCollisionMethod> kSelfCollision[] = {{"grid", SelfCollision
                                                           {"octree", SelfCollisionMethod::octree},
                                                           {"off", SelfCollisionMethod::off}};
 
-/// Throws InputError if this machine does not have it.
+/// The instruction set of parameter `simd`. Throws InputError if this machine does not have it.
 Simd simd_of(const Params& params) {
   for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
     if (params.is("simd", to_string(simd))) {
@@ -46,7 +46,7 @@ ContactSettings contact_settings(const Params& params) {
           .simd = simd_of(params)};
 }
 
-/// The vertices that are not integrated: held, or moved along the scene's motions.
+/// The vertices that are not integrated: they are held, or follow the scene's motions.
 class Pins {
  public:
   Pins(const Scene& scene, const Layout& layout) {
@@ -66,8 +66,8 @@ class Pins {
   }
   Pins() = default;
 
-  /// Undoes what integration did to those of blocks [begin, end) and puts them where they have to
-  /// be at time t [s].
+  /// Moves the pins in blocks [begin, end) to their positions at time t [s], overriding the
+  /// integration.
   template <class Real>
   void place(Particles<Real>& p, std::size_t begin, std::size_t end, double t) {
     for (const auto& [v] : held_.of(begin, end))
@@ -127,7 +127,7 @@ class Loop final : public Solver {
     contact_begins_ = solving != nullptr;
   }
 
-  /// The published TimeStep(), substeps times with dt / substeps.
+  /// The published TimeStep(), run `substeps` times with dt / substeps.
   void step(double t, double dt) override {
     const double h = dt / substeps_;
     prepare_verlet(h);
@@ -161,7 +161,8 @@ class Loop final : public Solver {
     for (Pass<Real>* pass : all_passes()) pass->restart();
   }
 
-  /// Every coordinate as it is, and what passes have kept: the k-th of a class from the k-th.
+  /// Continues from `before`: copies every coordinate, and the k-th pass of a class takes over from
+  /// the k-th of that class.
   void go_on(const Solver& before) override {
     Solver::go_on(before);
     const auto& old = dynamic_cast<const Loop&>(before);
@@ -181,7 +182,7 @@ class Loop final : public Solver {
   }
 
   void store(State& state) const override {
-    pool_.finish();  // who visits substeps comes while work is queued
+    pool_.finish();  // visitors of substeps come while work is queued
     state.x.resize(p_.size());
     state.v.resize(p_.size());
     for (std::size_t i = 0; i < p_.size(); ++i) {
@@ -232,7 +233,8 @@ class Loop final : public Solver {
     return pass;
   }
 
-  /// Gravity and damping of substeps of dt [s]: as much work as integrating hundreds of particles.
+  /// Sets gravity and damping for substeps of dt [s]. This costs as much as integrating hundreds of
+  /// particles.
   void prepare_verlet(double dt) {
     if (dt == prepared_for_) return;
     for (std::size_t i = 0; i < kGrain; ++i) {
@@ -248,7 +250,8 @@ class Loop final : public Solver {
     prepared_for_ = dt;
   }
 
-  /// x* = x + (x - x') + a dt^2, the velocity x - x' damped; pins as they are at time t.
+  /// Verlet: x* = x + (x - x') + a dt^2, with the velocity x - x' damped; pins move to their
+  /// positions at t.
   void verlet(double t) {
     pool_.queue(
         p_.layout->blocks(),
@@ -263,7 +266,7 @@ class Loop final : public Solver {
 
   int iterations_;
   int substeps_;
-  double h_;  ///< s, of a substep
+  double h_;  ///< s, length of a substep
   Vec3 gravity_;
   double damping_;
   Simd simd_;
@@ -272,28 +275,28 @@ class Loop final : public Solver {
   Particles<Real> p_;
   alignas(64) Real g_[kGrain];
   VerletStep<Real> verlet_{};
-  double prepared_for_ = 0;  ///< s; 0: for no substep yet
+  double prepared_for_ = 0;  ///< s; 0: no substep yet
   PassList forces_;
   PassList constraints_;
-  Pass<Real>* accelerating_ = nullptr;  ///< of constraints_
+  Pass<Real>* accelerating_ = nullptr;  ///< one of constraints_
   ContactPasses<Real> contact_;
-  bool contact_begins_ = false;  ///< its forces of the last substep are part of y
+  bool contact_begins_ = false;  ///< contact forces of the last substep are part of y
 };
 
 bool in_float(const Params& params) {
   return params.has("precision") && params.is("precision", "float");
 }
 
-/// Of the coordinates where a scene starts [m]: the largest, and its unit in the last place in
-/// float.
+/// Largest coordinate [m] at the scene's start, and its unit in the last place in float.
 std::pair<double, double> coordinates(const Scene& scene) {
   double farthest = 0;
   for (const Vec3& x : scene.start.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
   return {farthest, std::ldexp(1.0, std::ilogb(std::max(farthest, 1e-30)) - 23)};
 }
 
-/// Verlet's x - x_previous is a whole number of units in the last place of x: gravity's g h^2 is
-/// rounded to one in every substep, the same way as long as the coordinate's exponent stays.
+/// Describes the precision. Verlet's x - x_previous is a whole number of units in the last place of
+/// x. Gravity's g h^2 is rounded to such a unit in every substep, always the same way while the
+/// coordinate keeps its exponent.
 std::string precision_of(const Scene& scene, const Params& params) {
   if (!in_float(params)) return "double";
   const double h = scene.dt / params.integer("substeps");
@@ -315,7 +318,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params, MakeLinks
 template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<float>);
 template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<double>);
 
-/// In float, x + g h^2 is x once g h^2 is less than half a unit in the last place of x: nothing
+/// In float, x + g h^2 equals x once g h^2 is less than half a unit in the last place of x: nothing
 /// would ever begin to fall.
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   const auto is_thin = [](const Collider& c) {

@@ -14,7 +14,7 @@
 
 /// The step that solvers of distance constraints share (core/solver/loop.cpp): Verlet, pins and
 /// their motions, wind, damping, contact, self-collision, tethers, substeps, threads, float and
-/// double. A new solver is one file with what differs: a pass that solves the links.
+/// double. A new solver is one file that adds a pass that solves the links.
 ///
 ///     template <class Real>
 ///     class MyLinks final : public Pass<Real> {               // core/solver/layout/particles.hpp
@@ -33,62 +33,62 @@
 ///       return loop::make<double>(scene, params, make_links<double>);
 ///     }
 ///
-/// A substep [t, t + h] of the loop, p its particles:
+/// A substep [t, t + h] of the loop, where p are its particles:
 ///
-///  1. accelerate(), if Links::accelerates: p.x = x_t, and (p.x - p.previous) / h the velocity
+///  1. accelerate(), if Links::accelerates: p.x = x_t, and (p.x - p.previous) / h is the velocity
 ///     [m/s], as always between substeps. What is added to p.a [m/s^2] is integrated in 2.
 ///  2. Verlet: p.previous = x_t and p.x = y = x_t + exp(-damping h) (x_t - x_t-1) + h^2 (g + p.a);
-///     a pin is where it has to be at t + h.
-///  3. begin(): y and x_t are there to be kept; multipliers are set to zero, or kept.
+///     pins move to their positions at t + h.
+///  3. begin(): y and x_t can be saved; multipliers are reset, or kept.
 ///  4. `iterations` times: apply() moves p.x once towards the links' lengths, then contact with
-///     friction puts out what is inside colliders. apply() finds p.x as contact left it. With
-///     Links::contacts it does so once, after the last iteration.
-///     In between the loop projects the scene's bending, unless Links::bends (make_bending_pass).
-///  5. end(): after the last iteration. To move p.x without a change of velocity, move p.previous
-///     by as much.
+///     friction pushes out what is inside colliders. apply() finds p.x as contact left it. With
+///     Links::contacts, contact comes once, after the last iteration.
+///     In between, the loop projects the scene's bending, unless Links::bends (make_bending_pass).
+///  5. end(): after the last iteration. To move p.x without changing its velocity, move p.previous
+///     by the same amount.
 ///
-/// Rules for a pass: p.w[i] = 0 [1/kg] is a pin, and p.x of it is not written. Whatever else is
-/// needed of steps before the pass keeps itself. Loops over particles read p.x[i] and write
-/// p.x.set(i, ..), in any layout; Layout::packed(n) has x y z 0 of particle i at p.x.data() + 4 i.
-/// cost() is that of one apply(); its `projections` count where a line solves links one by one.
+/// Rules for a pass: p.w[i] = 0 [1/kg] marks a pin, whose p.x must not be written. A pass stores
+/// everything else that it needs from earlier steps. Loops over particles read p.x[i] and write
+/// p.x.set(i, ..), in any layout; with Layout::packed(n), x y z 0 of particle i are at
+/// p.x.data() + 4 i. cost() is the cost of one apply(); set `projections` in an entry that solves
+/// links one by one.
 namespace taut::loop {
 
-/// What a solver makes its passes of.
+/// What a solver makes its passes from.
 struct Setup {
   const Scene& scene;
   const Params& params;
   std::span<const double> w;  ///< [n] inverse masses [1/kg]; 0: pinned
   Simd simd;                  ///< for kernels<Real>()
-  ThreadPool& pool;           ///< for passes that queue
+  ThreadPool& pool;           ///< for passes that queue work
 };
 
-/// What a solver adds to the loop. In every iteration come first `coarse`, then tethers, then
-/// `pass`.
+/// What a solver adds to the loop. Each iteration runs `coarse`, then tethers, then `pass`.
 template <class Real>
 struct Links {
   Layout layout;                                    ///< where the particles lie in memory
   std::unique_ptr<Pass<Real>> pass = nullptr;       ///< null: no link can move
-  bool accelerates = false;                         ///< `pass` does, and p.a is there
-  bool bends = false;                               ///< `pass` takes the scene's bending
-  bool contacts = false;                            ///< `pass` has Contacts
+  bool accelerates = false;                         ///< `pass` has accelerate(), which needs p.a
+  bool bends = false;                               ///< `pass` includes the scene's bending
+  bool contacts = false;                            ///< `pass` includes contact (Contacts)
   std::vector<std::unique_ptr<Pass<Real>>> coarse;  ///< accelerators of `pass`
   Projection tethers = Projection::exact;
 };
 template <class Real>
 using MakeLinks = Links<Real> (*)(const Setup&);
 
-/// Throws InputError if this machine does not have the instruction set.
+/// Makes the solver. Throws InputError if this machine does not have the instruction set.
 template <class Real>
 std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<Real>);
 
-/// By the parameter `precision`.
+/// Makes the solver in float or double, by the parameter `precision`.
 inline std::unique_ptr<Solver> make(const Scene& scene, const Params& params,
                                     MakeLinks<float> in_float, MakeLinks<double> in_double) {
   if (params.is("precision", "float")) return make<float>(scene, params, in_float);
   return make<double>(scene, params, in_double);
 }
 
-/// What the loop itself would get wrong (SolverEntry::unsupported).
+/// Reasons why the loop itself would get the scene wrong (SolverEntry::unsupported).
 std::vector<std::string> unsupported(const Scene&, const Params&);
 
 /// How friction acts where contact is projected, and where it is part of the solve (Contacts).
@@ -96,18 +96,18 @@ inline constexpr std::string_view
     kProjectedFriction = "Coulomb: tangential correction at most mu times the depth",
     kSolvedFriction = "Coulomb: friction at most mu times the push, forces of the solve itself";
 
-/// The loop's lines, `own` after those of time integration (SolverEntry::resolved_settings);
-/// `bending`: how the scene's is taken.
+/// The loop's settings, with `own` after those of time integration
+/// (SolverEntry::resolved_settings). bending: how the scene's bending is solved.
 ResolvedSettings resolved_settings(
     const Scene&, const Params&, const ResolvedSettings& own,
     std::string_view bending = "projected after the links with compliance and multipliers (XPBD)",
     std::string_view friction = kProjectedFriction);
 
-/// That setting by the parameter `order`; `of`: which links it is the order of.
+/// The setting of the parameter `order`. of: the links that are ordered.
 ResolvedSetting link_order(const Params&, const std::string& of = "");
 
-// The loop's parameters. `iterations` (one without it), `tethers` and `precision` (double without
-// it) may be left out.
+// Parameters of the loop. A solver may leave out `iterations` (then one), `tethers` and `precision`
+// (then double).
 constexpr ParamSpec iterations(std::string_view default_value, std::string_view help) {
   return ParamSpec::integer("iterations", default_value, 0, 1e6, help);
 }
@@ -139,12 +139,12 @@ inline constexpr ParamSpec kThreads = ParamSpec::integer(
     "threads", "1", 1, 64,
     "threads that share the sweeps of order=coloured; any number computes the same bits");
 
-/// What a scene may not need of the common parameters (SolverEntry::optional_effects).
+/// Parameters of effects that a scene may not need (SolverEntry::optional_effects).
 inline constexpr OptionalEffect kOptionalEffects[] = {
     {"contact of faces", "faces", "on|edges|off", true},
     {"continuous detection", "contact", "continuous|discrete", true}};
 
-/// A solver's own parameters, then those that every solver of the loop has.
+/// A solver's own parameters, followed by those that every solver of the loop has.
 template <std::size_t n>
 constexpr auto with_common(const ParamSpec (&own)[n]) {
   constexpr std::array common{kContact, kFaces, kSelf, kSimd, kThreads};

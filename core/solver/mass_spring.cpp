@@ -1,13 +1,13 @@
-// Springs and dampers before any constraint, F = -k x - c v, integrated explicitly: Vasilovici,
-// Cloth Simulation Report, section 3. Contact projects what they have moved (core/solver/loop.cpp).
+// Springs and dampers without constraints, F = -k x - c v, integrated explicitly: Vasilovici, Cloth
+// Simulation Report, section 3. Contact then projects the moved particles (core/solver/loop.cpp).
 //
 //     explicit-euler     x' = x + v dt;   v' = v + a(x, v) dt              as printed there
 //     symplectic-euler   v' = v + a dt;   x' = x + v' dt
 //     verlet             x* = 2x - x' + a dt^2                             v = (x - x')/dt
 //
-// The last two are one motion. Stable without drag while dt < 2/w, w^2 the largest eigenvalue of
-// K/M (explicit Euler never is). Drag taken at the lagged velocity shrinks that limit to
-// (2/w)(sqrt(1 + zeta^2) - zeta); Verlet's `drag-at=central` restores it.
+// The last two give the same motion. Without drag they are stable while dt < 2/w, where w^2 is the
+// largest eigenvalue of K/M; explicit Euler is never stable. Drag at the lagged velocity shrinks
+// that limit to (2/w)(sqrt(1 + zeta^2) - zeta); Verlet's `drag-at=central` restores it.
 #include <cmath>
 
 #include "core/model/bending.hpp"
@@ -70,7 +70,7 @@ class Springs final : public Pass<Real> {
 
   const Layout& layout() const { return groups_.layout(); }
 
-  /// F = -k x of every spring and F = -c v of every particle; a = F/m.
+  /// Adds F/m to the accelerations, with F = -k x of every spring and F = -c v of every particle.
   void accelerate(Particles<Real>& p, double, double h) override {
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = p.x[i] - p.previous[i];
     const AccelerationSweep<Real> sweep{.groups = groups_.data(),
@@ -92,7 +92,7 @@ class Springs final : public Pass<Real> {
     }
   }
 
-  /// What Verlet made of it is x* = x + v' h.
+  /// Corrects the loop's Verlet step, x* = x + v' h, for central drag or explicit Euler.
   void begin(Particles<Real>& p, double, double h) override {
     const Real keep = static_cast<Real>(std::exp(-damping_ * h));
     for (std::size_t i = 0; i < moved_.size(); ++i) {
@@ -131,11 +131,11 @@ class Springs final : public Pass<Real> {
   bool central_, explicit_;
   double damping_;
   std::vector<BendingElement> bending_;
-  std::array<std::size_t, kFamilies.size()> count_{};  ///< springs
+  std::array<std::size_t, kFamilies.size()> count_{};  ///< number of springs by family
   VertexGroups groups_;
   std::vector<SpringSlot<Real>> slots_;
   std::vector<Real> w_;   ///< [groups][kLanes] 1/kg
-  std::vector<V> moved_;  ///< h v before the step; empty: not needed
+  std::vector<V> moved_;  ///< m, h v before the step; empty if not needed
   ThreadPool& pool_;
 };
 

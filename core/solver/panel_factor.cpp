@@ -12,15 +12,15 @@ namespace taut {
 
 namespace {
 
-/// So many columns a panel of single numbers has at most, for which loops are unrolled, and of
-/// blocks, where the update is the work.
+/// Largest number of columns of a panel: kWidest of single numbers, for which loops are unrolled,
+/// and kWidestOfBlocks of blocks, where the update is most of the work.
 constexpr std::uint32_t kWidest = kWidestPanel, kWidestOfBlocks = 4;
-/// A column joins a panel if of the numbers that the panel then has, no more than this share are 0.
+/// A column joins a panel if at most this share of the panel's numbers would then be 0.
 constexpr double kMostZeros = 0.2;
 
 using Columns = std::vector<std::vector<int>>;
 
-/// Minimum degree.
+/// Minimum-degree order of elimination.
 std::vector<int> thin_order(int n, std::span<const PanelFactor::Pair> pairs) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
@@ -38,7 +38,7 @@ std::vector<int> inverse_of(const std::vector<int>& order) {
   return rank;
 }
 
-/// Of each row, the columns before it in which the matrix has an entry.
+/// For each row, the columns before it in which the matrix has an entry.
 Columns columns_before(const std::vector<int>& order, std::span<const PanelFactor::Pair> pairs) {
   const std::vector<int> rank = inverse_of(order);
   Columns before(order.size());
@@ -49,8 +49,8 @@ Columns columns_before(const std::vector<int>& order, std::span<const PanelFacto
   return before;
 }
 
-/// The first row below the diagonal of each column of the factor; -1: none (Liu, ACM TOMS 12,
-/// 1986).
+/// Elimination tree (Liu, ACM TOMS 12, 1986): for each column of the factor, the first row below
+/// its diagonal; -1: none.
 std::vector<int> elimination_tree(const Columns& before) {
   std::vector<int> parent(before.size(), -1), ancestor(before.size(), -1);
   for (std::size_t row = 0; row < before.size(); ++row)
@@ -63,7 +63,7 @@ std::vector<int> elimination_tree(const Columns& before) {
   return parent;
 }
 
-/// Children before their parents, and subtrees together.
+/// Postorder of the tree: children before their parents, and subtrees together.
 std::vector<int> postorder(const std::vector<int>& parent) {
   Columns children(parent.size());
   std::vector<int> open, order;
@@ -79,7 +79,7 @@ std::vector<int> postorder(const std::vector<int>& parent) {
   return order;
 }
 
-/// Of each column of the factor, the rows below its diagonal.
+/// For each column of the factor, the rows below its diagonal.
 Columns rows_of_columns(const Columns& before, const std::vector<int>& parent) {
   Columns below(before.size());
   for (std::size_t row = 0; row < before.size(); ++row)
@@ -191,7 +191,7 @@ double* PanelFactor::at(std::size_t row, std::size_t column, std::size_t r, std:
 
 void PanelFactor::clear() { std::ranges::fill(values_, 0.0); }
 
-/// Adds what a child left to the panel and to what that leaves itself.
+/// Adds the update of a child to the panel and to the panel's own update.
 void PanelFactor::add_update(const FactorPanel& child, const double* of_child,
                              const FactorPanel& panel, double* update) {
   const std::uint32_t* const place = place_.data() + child.first_row;
@@ -201,7 +201,7 @@ void PanelFactor::add_update(const FactorPanel& child, const double* of_child,
     for (std::size_t r = 0; r < block_; ++r) {
       const double* from = of_child + (block_ * i + r) * side_of_update(child);
       double* const to_own = own + (block_ * place[i] + r) * columns;
-      // below the diagonal of either: the row is beyond the panel's own wherever the column is
+      // j <= i: where the column is beyond the panel's own, the row is, too
       double* const to_update = place[i] < panel.columns
                                     ? nullptr
                                     : update + (block_ * (place[i] - panel.columns) + r) * side;

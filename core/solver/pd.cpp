@@ -1,24 +1,25 @@
-// Projective Dynamics: Bouaziz et al. (SIGGRAPH 2014), of springs as in Liu et al., Fast Simulation
-// of Mass-Spring Systems (SIGGRAPH Asia 2013). An iteration gives each link its length in the
-// direction that it has (local), q = r d/|d|, and then places all vertices by one factored system
-// (global):
+// Projective Dynamics (Bouaziz et al., SIGGRAPH 2014) of springs, as in Liu et al., Fast Simulation
+// of Mass-Spring Systems (SIGGRAPH Asia 2013). An iteration first gives each link its rest length
+// in the direction that it has, q = r d/|d| (local), and then places all vertices by one factored
+// system (global):
 //
 //     (M/h^2 + sum K (e_b - e_a)(e_b - e_a)^T) x = M/h^2 y + sum K (e_b - e_a) q^T
 //
-// Written as the way from the x before, the right-hand side is minus the gradient of the energy of
-// implicit Euler there, and K (d - q) the force of a spring: no q is kept.
+// The unknown is the displacement from the last x. The right-hand side is then minus the gradient
+// of implicit Euler's energy there, in which K (d - q) is the force of a spring: no q is stored.
 //
-// Its fixed point is implicit Euler's step (implicit.cpp). Motion across stretched links of strain
-// e contracts by s lambda (1 - e)/(1 + s lambda) per iteration, s = h^2 K/m, which tends to 1: the
-// stiffer the links, the more iterations until the cloth moves at all, and a strain near zero does
-// not say that it did.
+// The fixed point is implicit Euler's step (implicit.cpp). Motion across stretched links of strain
+// e contracts by s lambda (1 - e)/(1 + s lambda) per iteration, with s = h^2 K/m. This tends to 1:
+// the stiffer the links, the more iterations until the cloth moves at all, and a strain near zero
+// does not say that it did.
 //
-// method=lbfgs and method=ncg go other ways down the same energy G, from the same prediction.
-// L-BFGS (Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation of Hyperelastic
-// Materials, TOG 2017) corrects the factor's solution of -g by the last `history` pairs of ways and
-// changes of the gradient, in the two loops of Nocedal (1980); without pairs it is Projective
-// Dynamics with a line search. NCG is Polak and Ribiere's, with a preconditioner: the matrix'
-// diagonal of links and masses, or the factor. Both are halved until G falls (Armijo).
+// method=lbfgs and method=ncg descend the same energy G from the same start. L-BFGS (Liu, Bouaziz,
+// Kavan, Quasi-Newton Methods for Real-Time Simulation of Hyperelastic Materials, TOG 2017)
+// corrects the factor's solution for -g by the last `history` pairs of displacements and gradient
+// changes, in the two loops of Nocedal (1980); without pairs it is Projective Dynamics with a line
+// search. NCG is the nonlinear conjugate gradient method of Polak and Ribiere, preconditioned by
+// the factor or by the matrix' diagonal of links and masses. Both halve the step until G falls
+// (Armijo).
 #include <Eigen/Cholesky>
 #include <limits>
 #include <utility>
@@ -50,9 +51,10 @@ constexpr ParamSpec kOwn[] = {
 };
 constexpr auto kParams = loop::with_common(kOwn);
 
-/// Peng et al.: Anderson Acceleration for Geometry Optimization and Physics Simulation (SIGGRAPH
-/// 2018). With f the fixed-point map and F = f(x) - x, the next iterate is f(x) - sum theta_i dG_i
-/// where theta minimises |F - sum theta_i dF_i| over the last iterations' differences.
+/// Anderson acceleration: Peng et al.: Anderson Acceleration for Geometry Optimization and Physics
+/// Simulation (SIGGRAPH 2018). With the fixed-point map f and F = f(x) - x, the next iterate is
+/// f(x) - sum theta_i dG_i, where theta minimises |F - sum theta_i dF_i| over the differences of
+/// the last iterations.
 class Anderson {
  public:
   Anderson(std::size_t window, std::size_t vertices) : window_(window), vertices_(vertices) {}
@@ -62,7 +64,7 @@ class Anderson {
     images_.clear();
   }
 
-  /// image = f(x) for this x.
+  /// The next iterate after x. image = f(x).
   std::vector<Vec3> next(const std::vector<Vec3>& x, const std::vector<Vec3>& image) {
     const auto flat = [](const std::vector<Vec3>& v) {
       return Eigen::Map<const Eigen::VectorXd>(v.front().data(),
@@ -98,14 +100,16 @@ class Anderson {
   std::vector<Eigen::VectorXd> residuals_, images_;  ///< of the last iterations
 };
 
-/// m^2 N/m: a pair of a way and a change of the gradient with less curvature is left out. Of a
-/// step's slope, that the energy has to fall by. m: of the largest way, for a difference of
-/// gradients.
+/// kLeastCurvature: a pair of displacement and gradient change with less curvature [m^2 N/m] is
+/// dropped. kFallsOfLbfgs and kFallsOfNcg: sufficient decrease of the line search (Armijo), as
+/// shares of the slope.
 constexpr double kLeastCurvature = 1e-18, kFallsOfLbfgs = 0.03, kFallsOfNcg = 1e-4;
+/// Largest displacement [m] of a step that is made for a difference of gradients.
 constexpr double kDifference = 1e-6;
+/// Most halvings of a step in the line search.
 constexpr int kMostHalvings = 30;
 
-/// Directions down an energy, from its gradients [N] at places [m] in vectors of rows.
+/// Search directions down an energy, from gradients [N] at positions [m] in vectors of rows.
 class Descent {
  public:
   using Vector = Eigen::VectorXd;
@@ -124,7 +128,7 @@ class Descent {
     last_x_.resize(0);
   }
 
-  /// precondition(v): v [N] becomes a way [m].
+  /// precondition(v) turns v [N] into a displacement [m] in place.
   template <class Precondition>
   Vector direction(const Vector& x, const Vector& g, const Precondition& precondition) {
     Vector d = lbfgs_ ? two_loops(x, g, precondition) : conjugate(g, precondition);
@@ -186,8 +190,8 @@ class Descent {
 
   bool lbfgs_, on_, by_factor_;
   std::size_t history_;
-  std::vector<Vector> ways_, changes_;        ///< m, N
-  Vector last_x_, last_g_, last_z_, last_d_;  ///< of the iteration before; empty: there is none
+  std::vector<Vector> ways_, changes_;        ///< displacements [m], gradient changes [N]
+  Vector last_x_, last_g_, last_z_, last_d_;  ///< of the last iteration; empty: none yet
 };
 
 template <class Real>
@@ -256,7 +260,7 @@ class ProjectivePass final : public Pass<Real> {
   }
 
  private:
-  /// k (d - q) of a link is the force of a spring.
+  /// The iteration of Projective Dynamics; k (d - q) of a link is the force of a spring.
   void solve(Particles<Real>& p) {
     system_.solve(p, [this](const ForceSweep<Real>& sweep, std::size_t begin, std::size_t end) {
       forces_(sweep, slots_.data(), begin, end);
@@ -265,7 +269,7 @@ class ProjectivePass final : public Pass<Real> {
 
   using Vector = Eigen::VectorXd;
 
-  /// Of G at p.x [N].
+  /// Gradient of G at p.x [N].
   Vector gradient(const Particles<Real>& p) {
     Vector g(static_cast<Eigen::Index>(4 * system_.rows()));
     system_.find_forces(p,
@@ -307,7 +311,7 @@ class ProjectivePass final : public Pass<Real> {
       put(p, x + share * d);
       const double now = energy(positions(p), h, p);
       if (now <= before + descent_.falls() * share * slope) return;
-      // near the minimum, differences of the energy are rounding: the gradient decides
+      // near the minimum, differences of the energy are mere rounding: the gradient decides
       if (now <= before * (1 + 1e-12) && gradient(p).norm() < g.norm()) return;
       if (!std::isfinite(now)) continue;
     }
@@ -319,7 +323,7 @@ class ProjectivePass final : public Pass<Real> {
       if (p.w[i] > 0) p.x.set(i, x[i].template cast<Real>());
   }
 
-  /// G [J] of x.
+  /// G [J] at x.
   double energy(const std::vector<Vec3>& x, double h, const Particles<Real>& p) const {
     double sum = bending_energy(system_.bending(), x);
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -333,7 +337,7 @@ class ProjectivePass final : public Pass<Real> {
     return sum;
   }
 
-  /// To the last solution of the global system if the combination raised the energy.
+  /// Goes back to the last solution of the global system if the combination raised the energy.
   void fall_back(Particles<Real>& p, double h) {
     const double now = energy(positions(p), h, p);
     if (now > energy_) {
@@ -350,10 +354,11 @@ class ProjectivePass final : public Pass<Real> {
   std::vector<SpringSlot<Real>> slots_;
   Anderson anderson_;
   Descent descent_;
-  Vector diagonal_;                ///< [rows][4] N/m, of the matrix; of method=ncg
-  std::vector<double> stiffness_;  ///< [rows][4] N/m, its part of links and bending
-  std::vector<Vec3> last_image_;   ///< m; with Anderson acceleration or another method
-  double energy_ = 0;              ///< J, of the last iterate
+  Vector diagonal_;                ///< [rows][4] N/m, diagonal of the matrix, for method=ncg
+  std::vector<double> stiffness_;  ///< [rows][4] N/m, links' and bending's part of that diagonal
+  /// m; only with Anderson acceleration or a method other than plain.
+  std::vector<Vec3> last_image_;
+  double energy_ = 0;  ///< J, at the last iterate
 };
 
 template <class Real>

@@ -26,7 +26,7 @@ struct Spring {
   double stiffness = 0;      ///< K, N/m
 };
 
-/// Parameters of solvers of springs, one for each family.
+/// Stiffness parameters of spring solvers, one for each family.
 inline constexpr std::array kStiffness{
     ParamSpec::real("structural", "N/m", "10000", 0, 1e12,
                     "spring constant of structural links; 0: no spring"),
@@ -34,11 +34,12 @@ inline constexpr std::array kStiffness{
                     "spring constant of shear links; 0: no spring"),
     ParamSpec::real("bend", "N/m", "100", 0, 1e12, "spring constant of bend links; 0: no spring")};
 
-/// What a search may try of them, of solvers whose iterations cost the more of them the stiffer.
+/// Stiffnesses that a search may try, for solvers that need more iterations the stiffer the
+/// springs.
 inline constexpr AccuracyParameters::Ladder kStiffnesses{"structural|shear",
                                                          "1000|3000|10000|30000|1e+05"};
 
-/// Spring constants [N/m] by family: the scene's, infinite where it leaves links rigid, or the
+/// Spring constants [N/m] by family: the scene's, infinite where it leaves links rigid, or else the
 /// solver's parameters.
 inline std::array<double, kFamilies.size()> stiffnesses(const Scene& scene, const Params& params) {
   if (takes_stiffness(scene, params)) return scene.stiffness;
@@ -59,7 +60,7 @@ inline std::vector<Spring> make_springs(const Scene& scene, std::span<const doub
   return springs;
 }
 
-/// The other ends of each vertex' springs.
+/// The other ends of the springs at each vertex.
 inline Adjacency ends_of(const std::vector<Spring>& springs, std::size_t vertices) {
   std::vector<Link> links;
   for (const Spring& s : springs)
@@ -67,7 +68,8 @@ inline Adjacency ends_of(const std::vector<Spring>& springs, std::size_t vertice
   return Adjacency(links, static_cast<int>(vertices));
 }
 
-/// Slots of the springs, their rest and stiffness filled in; set(slot, lane, spring) does the rest.
+/// Slots of the springs with rest length and stiffness filled in; set(slot, lane, spring) does the
+/// rest.
 template <class Slot, class Set>
 std::vector<Slot> slots_of_springs(const VertexGroups& groups, const Adjacency& ends,
                                    const std::vector<Spring>& springs, const Set& set) {
@@ -80,8 +82,9 @@ std::vector<Slot> slots_of_springs(const VertexGroups& groups, const Adjacency& 
 }
 inline constexpr auto kNothingElse = [](const auto&...) {};
 
-/// What the loop would get wrong, and links that are rigid in the scene where others have a
-/// stiffness: of solvers that take every K as a number (SolverEntry::unsupported).
+/// Reasons why a solver that takes every K as a number cannot run the scene
+/// (SolverEntry::unsupported): what the loop would get wrong, and links that are rigid in the scene
+/// where others have a stiffness.
 inline std::vector<std::string> unsupported_of_springs(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
   const auto k = stiffnesses(scene, params);
@@ -93,7 +96,7 @@ inline std::vector<std::string> unsupported_of_springs(const Scene& scene, const
   return reasons;
 }
 
-/// For the resolved settings.
+/// The line about springs in the resolved settings.
 inline ResolvedSetting describe_springs(const Scene& scene, const Params& params) {
   const auto k = stiffnesses(scene, params);
   const auto of_family = [&](Family family) {

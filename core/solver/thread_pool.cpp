@@ -8,14 +8,15 @@ namespace taut {
 
 namespace {
 
-/// Longer than what is done between two steps. Waiting on a futex from the start would cost more
-/// than a small sweep.
+/// Spin for this long before waiting on the futex: longer than the work between two steps, since a
+/// futex wait costs more than a small sweep.
 constexpr std::chrono::microseconds kSpinTime{100};
 constexpr int kPausesPerCheck = 32;
-/// 20 to 70 us, longer than a stage of a part: then its thread is not on a core.
+/// Pauses of a waiting thread before it yields, 20 to 70 us: longer than a stage of a part, so the
+/// thread that it waits for is not on a core.
 constexpr int kMostPauses = 1000;
-/// 40 to 140 us of all stages together, more than a thread waits for one that is on a core: what
-/// moves to another core has to move back.
+/// Pauses before a thread works on parts of others, 40 to 140 us of all stages together: more than
+/// a thread waits for one that is on a core. Data that move to another core have to move back.
 constexpr int kPausesBeforeHelping = 2000;
 
 void pause() {
@@ -24,7 +25,7 @@ void pause() {
 #endif
 }
 
-/// Of a thread that waits for what another is doing.
+/// Waiting for another thread: each call pauses, or yields after kMostPauses calls.
 class Wait {
  public:
   void operator()() { ++pauses_ < kMostPauses ? pause() : std::this_thread::yield(); }
@@ -66,8 +67,8 @@ void ThreadPool::stop() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-/// Returns once the part has done so many stages: does itself what nobody is doing, of its
-/// neighbours too.
+/// Returns once the part has done `stages` stages. Does itself what no thread is doing, also of
+/// neighbouring parts.
 void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
   Part& p = parts_[part];
   Wait wait;
@@ -103,13 +104,14 @@ void ThreadPool::work_off(std::size_t member) {
             kPausesBeforeHelping};
   const auto count = static_cast<std::uint32_t>(stages_.size());
   for (std::uint32_t stage = 1; stage <= count; ++stage) {
-    // Stages that nobody waits for: all of them while a part is in the cache.
+    // Skip stages that no other part waits for, so that all of them run while a part is in the
+    // cache.
     if (stage < count && !stages_[stage - 1].reaches_next_part && !stages_[stage].reaches_next_part)
       continue;
     for (std::size_t k = 0; k < me.end - me.begin; ++k)  // both ends first: others wait for them
       advance(me, k % 2 == 0 ? me.begin + k / 2 : me.end - 1 - k / 2, stage);
   }
-  for (std::size_t part = 0; part < part_count_; ++part)  // whose thread is late
+  for (std::size_t part = 0; part < part_count_; ++part)  // parts whose thread is late
     advance(me, part, count);
 }
 

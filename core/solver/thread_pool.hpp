@@ -13,12 +13,12 @@
 
 namespace taut {
 
-/// Threads that wait for work and divide it. What they compute must not depend on how it is split;
-/// then nothing depends on how many there are.
+/// Threads that wait for work and divide it. Results must not depend on how the work is split; then
+/// they do not depend on the number of threads.
 ///
-/// Each has a slice of its own, the same one every time, so that its data stay in its cache, and
-/// does what others have left undone where it would have to wait for them. Whoever has not come yet
-/// is not waited for: on a busy machine the caller does the work alone.
+/// Each thread has its own slice, the same every time, so that its data stay in its cache. Where it
+/// would have to wait for others, it does what they have left undone. The caller never waits for a
+/// thread that has not started: on a busy machine it does all the work itself.
 class ThreadPool {
  public:
   /// threads >= 1, the caller included; 1 starts none. Throws std::system_error if not all start.
@@ -29,13 +29,14 @@ class ThreadPool {
 
   std::size_t threads() const { return threads_.size() + 1; }  ///< the caller included
 
-  /// A pass over fewer particles is done before another thread has come. About where a second one
-  /// began to pay: 64 x 64 no, 96 x 96 yes; not measured again.
+  /// Fewest particles for which threads share a pass: a smaller pass is done before another thread
+  /// has come. A second thread began to pay at about this size (64 x 64 no, 96 x 96 yes; not
+  /// measured again).
   static constexpr std::size_t kWorthSharing = 8192;
 
-  /// Calls work(begin, end) on parts of [0, count) at the same time, unless not `shared`; returns
-  /// when all are done. What work throws, here and below, the caller gets when it waits for the
-  /// work; what nobody had begun by then is left undone.
+  /// Calls work(begin, end) on parts of [0, count) at the same time, or once on all of it if not
+  /// `shared`. Returns when all are done. Here and below, the caller gets an exception of `work`
+  /// when it waits for the work; parts that had not begun by then are skipped.
   template <class Work>
   void run(std::size_t count, const Work& work, bool shared = true) {
     finish();
@@ -47,8 +48,8 @@ class ThreadPool {
     finish();
   }
 
-  /// Calls work(n, begin, end) for the n-th of so many parts of [0, count), each once: for what has
-  /// to be kept apart. One part is the caller's.
+  /// Calls work(n, begin, end) once for each of `parts` parts of [0, count), for results that must
+  /// be kept apart. One part is the caller's.
   template <class Work>
   void run_parts(std::size_t parts, std::size_t count, const Work& work) {
     run(parts, [&](std::size_t first, std::size_t last) {
@@ -57,9 +58,9 @@ class ThreadPool {
     });
   }
 
-  /// A stage of work on blocks of particles, each for itself: calls work(begin, end) on parts of
-  /// [0, blocks), after what is queued before it has been done to them. With one thread or not
-  /// `shared` at once, otherwise not before finish(); `work` is copied.
+  /// Queues a stage of work on independent blocks of particles: calls work(begin, end) on parts of
+  /// [0, blocks), after the stages queued before it have been done on them. With one thread or if
+  /// not `shared` this happens at once, otherwise not before finish(). `work` is copied.
   template <class Work>
   void queue(std::size_t blocks, const Work& work, bool shared = true) {
     if (threads_.empty() || !shared) {
@@ -69,8 +70,8 @@ class ThreadPool {
     add_stage(blocks, false, work);
   }
 
-  /// Two stages, the even blocks and then the odd ones: calls work(block), which may work on the
-  /// one after it, too.
+  /// Queues two stages, the even blocks and then the odd ones: calls work(block), which may also
+  /// work on the block after it.
   template <class Work>
   void queue_pairs(std::size_t blocks, const Work& work, bool shared = true) {
     const auto stage = [&](std::size_t parity) {
@@ -83,12 +84,12 @@ class ThreadPool {
       stage(1)(0, blocks);
       return;
     }
-    if (stages_.size() + 2 > kMostStages) finish();  // both at once: see blocks_per_unit_
+    if (stages_.size() + 2 > kMostStages) finish();  // both in one dispatch: see blocks_per_unit_
     add_stage(blocks, false, stage(0));
     add_stage(blocks, true, stage(1));
   }
 
-  /// Returns when all that is queued is done.
+  /// Returns when all queued work is done.
   void finish() {
     if (!stages_.empty()) dispatch();
   }
@@ -107,27 +108,28 @@ class ThreadPool {
     }
     void operator()(std::size_t begin, std::size_t end) const { call_(work_, begin, end); }
 
-    bool reaches_next_part;  ///< works on its first block, too
+    bool reaches_next_part;  ///< also works on the first block of the next part
 
    private:
     void (*call_)(const std::byte*, std::size_t, std::size_t);
-    alignas(16) std::byte work_[368];  // a box that moves, in double
+    alignas(16) std::byte work_[368];  // fits contact with a moving box in double
   };
-  /// Numbers of stages. Only who takes a part on looks at `begun`: it stays in that core's cache.
+  /// Progress of a part: numbers of stages. Only a thread that takes the part on reads `begun`, so
+  /// it stays in that core's cache.
   struct Part {
     alignas(64) std::atomic<std::uint32_t> done{0};
     alignas(64) std::atomic<std::uint32_t> begun{0};
   };
 
-  /// Of a slice, at most. Each costs 0.2 us a stage, and with one a thread would always wait for
-  /// the one beside it.
+  /// Most parts in a thread's slice. Each costs 0.2 us a stage; with one part, a thread would
+  /// always wait for its neighbour.
   static constexpr std::size_t kParts = 4;
-  static constexpr std::size_t kMostStages = 128;  ///< and depth of advance()
+  static constexpr std::size_t kMostStages = 128;  ///< also limits the depth of advance()
 
-  /// A thread at work: which parts are its own, and for how long it leaves the others' to them.
+  /// A thread at work: its own parts, and how long it leaves the others' to them.
   struct Member {
     std::size_t begin, end;
-    int patience;  ///< pauses
+    int patience;  ///< number of pauses
     bool owns(std::size_t part) const { return begin <= part && part < end; }
   };
 
@@ -148,16 +150,17 @@ class ThreadPool {
   void advance(Member&, std::size_t part, std::uint32_t stages);
 
   std::vector<Stage> stages_;
-  std::size_t count_ = 0;  ///< what their parts are parts of
-  /// A part has whole units: two blocks if there are pairs, so that it begins with an even one.
+  std::size_t count_ = 0;  ///< number of blocks of each stage
+  /// Parts consist of whole units. A unit is two blocks if there are pairs, so that each part
+  /// begins with an even block.
   std::size_t blocks_per_unit_ = 1;
-  std::vector<Part> parts_;  ///< room for those of all threads
+  std::vector<Part> parts_;  ///< room for the parts of all threads
   std::size_t part_count_ = 0;
-  std::atomic<std::uint32_t> round_{0};  ///< how often work has been dispatched
-  /// Whether there is work, 1, and twice the number of threads, besides the caller, that see it.
+  std::atomic<std::uint32_t> round_{0};  ///< number of dispatches
+  /// 1 if there is work, plus twice the number of threads, besides the caller, that see it.
   alignas(64) std::atomic<std::uint32_t> gate_{0};
   std::atomic<bool> failed_{false};  ///< work has thrown
-  std::exception_ptr failure_;       ///< the first
+  std::exception_ptr failure_;       ///< the first exception
   std::atomic<bool> stop_{false};
   std::vector<std::thread> threads_;
 };

@@ -1,11 +1,11 @@
-// Vertex Block Descent: Chen, Liu, Yang, Yuksel (SIGGRAPH 2024), of springs. A sweep moves each
+// Vertex Block Descent (Chen, Liu, Yang, Yuksel, SIGGRAPH 2024) of springs. A sweep moves each
 // vertex to the minimum of a quadratic model of implicit Euler's energy (implicit.cpp) in its own
-// coordinates, all others held:
+// coordinates, with all others held:
 //
 //     f = -m/h^2 (x - y) + sum K C u              u from the vertex towards the link's other end
 //     H = m/h^2 I + sum K [ u u^T + max(0, 1 - r/n) (I - u u^T) ],      x += H^-1 f
 //
-// with damping k_d: H gains k_d/h times the springs' part, f loses that times x - x_t.
+// With damping k_d, H gains k_d/h times the springs' part, and f loses that times x - x_t.
 #include "core/solver/chebyshev.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
@@ -61,7 +61,7 @@ class DescentPass final : public Pass<Real> {
  private:
   std::vector<Spring> springs_;
   VertexBlocks<Real, SpringSlot<Real>> blocks_;
-  double damping_;  ///< s
+  double damping_;  ///< s, k_d
 };
 
 template <class Real>

@@ -18,15 +18,16 @@
 
 namespace taut {
 
-/// Where a substep's iterations start (VBD, section 3.7): y without that part of gravity that did
-/// not act in the last substep because something held the vertex, which then fell short of its y.
+/// Start of a substep's iterations (VBD, section 3.7): y without the part of gravity that did not
+/// act in the last substep, because something held the vertex and it fell short of its y.
 template <class Real>
 class AdaptiveStart {
  public:
   AdaptiveStart(const Scene& scene, bool on)
       : gravity_(scene.gravity), on_(on && gravity_.norm() > 0) {}
 
-  /// p.x is y, p.previous x_t; y: of the last substep, empty if there was none, becomes this one's.
+  /// Moves p.x from y to the start. p.previous is x_t. y is that of the last substep, empty if
+  /// there was none, and becomes this one's.
   void begin(Particles<Real>& p, Points<Real>& y, double h) const {
     if (!on_ || y.empty()) {
       y = p.x;
@@ -49,15 +50,16 @@ class AdaptiveStart {
 };
 
 /// Sweeps of solvers that move one vertex at a time to the minimum of a quadratic model in its own
-/// three coordinates, all others held: colour after colour, so that lanes and threads divide a
-/// colour and any number of them computes the same bits. Links are in lanes; bending and contact
-/// are computed vertex by vertex, and not at all where the scene has none.
+/// three coordinates, with all others held. Colours come one after another; lanes and threads
+/// divide a colour, and any number of them computes the same bits. Links are computed in lanes.
+/// Bending and contact are computed vertex by vertex, and only if the scene has them.
 template <class Real, class Slot>
 class VertexBlocks {
  public:
   using Sweep = void (*)(const VertexSweep<Real>&, const Slot*, std::size_t, std::size_t);
 
-  /// By the parameter `order`: colours, or the scene's order, one vertex after the other.
+  /// Visits vertices by the parameter `order`: in colours, or one after another in the scene's
+  /// order.
   VertexBlocks(const loop::Setup& s, const std::vector<Spring>& springs, Sweep kernel)
       : VertexBlocks(s, springs, kernel, ends_of(springs, s.w.size())) {}
 
@@ -81,8 +83,8 @@ class VertexBlocks {
     if (contacts_) contacts_->take_over(*before.contacts_);
   }
 
-  /// p.x is where the sweeps start; what touches a collider starts where contact alone would leave
-  /// it (Contacts::predict). Sweeps would bring that about slowly, against stiff links.
+  /// Moves p.x to where the sweeps start. Vertices that touch a collider start where contact alone
+  /// would leave them (Contacts::predict): sweeps would get them there slowly, against stiff links.
   void begin(Particles<Real>& p, double t, double h) {
     start_.begin(p, y_, h);
     if (h != inertia_of_) set_inertia(p, h);
@@ -92,7 +94,7 @@ class VertexBlocks {
     contacts_->predict(p, h);
   }
 
-  /// damping: k_d [s] of the springs.
+  /// Makes one sweep over all vertices. damping: k_d [s] of the springs.
   void sweep(Particles<Real>& p, double damping, double h) {
     const VertexSweep<Real> v{.groups = groups_.data(),
                               .x = p.x.data(),
@@ -113,7 +115,7 @@ class VertexBlocks {
     pieces_.left = std::sqrt(left2);
   }
 
-  /// Calls work(begin, end) on parts of so many groups that do not depend on each other.
+  /// Calls work(begin, end) on parts of `groups` independent groups.
   template <class Work>
   void share(std::size_t groups, const Work& work) {
     pool_.run(groups, work, groups * kLanes >= kWorthSharing);
@@ -127,9 +129,10 @@ class VertexBlocks {
 
  private:
   struct Bent {
-    std::size_t element, place;  ///< the vertex is its place-th
+    std::size_t element, place;  ///< index of the vertex within the element
   };
-  /// As long as a sweep of ThreadPool::kWorthSharing particles over links.
+  /// Fewest vertices for which threads share a sweep, which takes as long as one of
+  /// ThreadPool::kWorthSharing particles over links.
   static constexpr std::size_t kWorthSharing = ThreadPool::kWorthSharing / 4;
 
   VertexBlocks(const loop::Setup& s, const std::vector<Spring>& springs, Sweep kernel,
@@ -148,7 +151,7 @@ class VertexBlocks {
     set_bending_stiffness();
   }
 
-  /// Calls f(vertex, group, lane) for those of groups [begin, end).
+  /// Calls f(vertex, group, lane) for the vertices of groups [begin, end).
   template <class F>
   void visit(std::size_t begin, std::size_t end, const F& f) const {
     for (std::size_t g = begin; g < end; ++g)
@@ -170,7 +173,7 @@ class VertexBlocks {
   Real& bending_force(std::size_t g, std::size_t row, std::size_t lane) {
     return bending_forces_[(4 * g + row) * kLanes + lane];
   }
-  /// The bending part of a vertex' Hessian is a number times unity.
+  /// Sets the bending part of each vertex' Hessian, which is a number times the identity.
   void set_bending_stiffness() {
     if (bending_.empty()) return;
     bending_forces_.assign(groups_.size() * 4 * kLanes, Real(0));
@@ -192,7 +195,7 @@ class VertexBlocks {
     });
   }
 
-  /// Of which pieces each vertex is a corner, and how stiff contact is at it.
+  /// Finds the pieces of which each vertex is a corner, and how stiff contact is there.
   void prepare_pieces(std::size_t vertices) {
     pieces_of_.assign(vertices, {});
     for (const TouchingPiece& piece : pieces_.all)
@@ -212,8 +215,8 @@ class VertexBlocks {
   }
   bool is_corner(std::size_t i) const { return !pieces_.all.empty() && !pieces_of_[i].empty(); }
 
-  /// The corners of pieces of a colour: one thread's, for those of one piece may be in one colour.
-  /// Returns the sum of the squared forces on them [N^2].
+  /// Moves those vertices of a colour that are corners of pieces. This is done by one thread, since
+  /// corners of one piece may have one colour. Returns the sum of the squared forces on them [N^2].
   double move_pieces(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t begin,
                      std::size_t end) {
     double left2 = 0;
@@ -240,7 +243,7 @@ class VertexBlocks {
     });
   }
 
-  /// To second order around where p.x is.
+  /// Adds contact of the pieces of vertex i, to second order around p.x.
   void add_pieces(const Particles<Real>& p, std::size_t i, VertexModel<Real>& m) const {
     Vec3 force = Vec3::Zero();
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
@@ -262,10 +265,10 @@ class VertexBlocks {
   }
 
   /// Moves vertex i again from where it was before the lanes moved it: to the minimum of the same
-  /// model outside of the colliders, with friction. Returns the squared force that was on it [N^2].
+  /// model outside the colliders, with friction. Returns the squared force that was on it [N^2].
   double move_in_contact(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t i,
                          std::size_t g, int lane) {
-    p.x.set(i, before_[i]);  // slots without a link lead to the vertex itself
+    p.x.set(i, before_[i]);  // slots without a link refer to the vertex itself
     const Vec3 x = before_[i].template cast<double>();
     const Vec3 previous = p.previous[i].template cast<double>();
     const Vec3T<Real> at{before_[i].x(), before_[i].y(), before_[i].z()};
@@ -288,20 +291,20 @@ class VertexBlocks {
   VertexGroups groups_;
   std::vector<Slot> slots_;
   AdaptiveStart<Real> start_;
-  std::unique_ptr<Contacts> contacts_;  ///< null: none
+  std::unique_ptr<Contacts> contacts_;  ///< null: no contact
   struct Corner {
     const TouchingPiece* piece;
     double weight;
   };
   TouchingPieces pieces_;                       ///< of this sweep
-  std::vector<std::vector<Corner>> pieces_of_;  ///< [n] in this sweep
+  std::vector<std::vector<Corner>> pieces_of_;  ///< [n] pieces of each vertex in this sweep
   std::vector<double> piece_stiffness_;         ///< TouchingPieces::stiffness
   std::vector<std::vector<Bent>> bent_;         ///< [n] elements of each vertex; empty: no bending
   std::vector<Real> inertia_;                   ///< [groups][kLanes] N/m
-  double inertia_of_ = 0;                       ///< s, of which substep; 0: of none
+  double inertia_of_ = 0;                       ///< s, substep of inertia_; 0: none yet
   std::vector<Real> bending_forces_;            ///< VertexSweep::bending; empty: no bending
-  Points<Real> y_;                              ///< m, where they would go without links
-  Points<Real> before_;  ///< m, before their lanes moved them; empty: no contact
+  Points<Real> y_;                              ///< m, positions without links
+  Points<Real> before_;  ///< m, before the lanes moved them; empty: no contact
   ThreadPool& pool_;
 };
 

@@ -9,7 +9,7 @@ namespace taut {
 
 namespace {
 
-/// What every wind has in common.
+/// What all passes of wind have in common.
 template <class Real>
 class WindPass : public Pass<Real> {
  public:
@@ -31,7 +31,7 @@ class WindPass : public Pass<Real> {
   Wind wind_;
 };
 
-/// On the faces of a regular sheet, a vector of quads at a time.
+/// Wind on the faces of a regular sheet, a vector of quads at a time.
 template <class Real>
 class SheetWindPass final : public WindPass<Real> {
  public:
@@ -51,7 +51,7 @@ class SheetWindPass final : public WindPass<Real> {
          in_row % lane_count] = static_cast<Real>(w[v]);
     }
     for (int i = 0; i + 1 < columns; ++i)
-      for (int j = 0; j < 2; ++j)  // as make_sheet splits them
+      for (int j = 0; j < 2; ++j)  // split as by make_sheet
         diagonals_[to_index(j) * row + to_index(i % vectors * lanes + i / vectors)] =
             (i + j) % 2 == 0 ? Real(1) : Real(-1);
     faces_ = {vectors, stride, {diagonals_.data(), diagonals_.data() + row}, w_.data()};
@@ -83,7 +83,7 @@ class SheetWindPass final : public WindPass<Real> {
   SheetFaces<Real> faces_{};
 };
 
-/// On any faces of packed particles.
+/// Wind on any faces of packed particles.
 template <class Real>
 class FaceWindPass final : public WindPass<Real> {
  public:
@@ -111,7 +111,7 @@ class FaceWindPass final : public WindPass<Real> {
   }
 
  private:
-  /// Of faces between a spare particle and itself.
+  /// Adds a batch of faces between a spare particle and itself, which do nothing.
   void add_idle_batch(const Layout& layout) {
     FaceBatch<Real>& batch = batches_.emplace_back();
     for (auto& corners : batch.corner)

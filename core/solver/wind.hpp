@@ -15,8 +15,8 @@ namespace taut {
 template <class Real>
 using Vec3Of = Eigen::Matrix<Real, 3, 1>;
 
-/// a[i] += w[i] times the wind's force on vertex i; nothing if the scene has no wind.
-/// x [n] m, v [n] m/s, w [n] 1/kg, a [n] m/s^2.
+/// Adds w[i] times the wind's force on vertex i to a[i]; does nothing if the scene has no wind. x
+/// [n] m, v [n] m/s, w [n] 1/kg, a [n] m/s^2.
 template <class Real>
 void add_wind(const Scene& scene, const std::vector<Vec3Of<Real>>& x,
               const std::vector<Vec3Of<Real>>& v, const std::vector<Real>& w,
@@ -37,8 +37,8 @@ void add_wind(const Scene& scene, const std::vector<Vec3Of<Real>>& x,
   }
 }
 
-/// The wind on every face (core/model/wind.hpp) as a pass of `jakobsen`, in its precision.
-/// w: inverse masses.
+/// The wind on every face (core/model/wind.hpp) as a pass of the loop, in the precision of the
+/// particles. w: inverse masses [1/kg].
 template <class Real>
 std::unique_ptr<Pass<Real>> make_wind(const Scene&, std::span<const double> w, const Layout&, Simd,
                                       ThreadPool&);

@@ -6,9 +6,9 @@
 //     dlambda = (-C - alpha/h^2 lambda) / (w1 + w2 + alpha/h^2),   lambda = 0 at every substep
 //     x1 -= w1 dlambda n;   x2 += w2 dlambda n;   lambda += dlambda
 //
-// alpha [m/N] is the inverse of a spring constant. The arithmetic is compliant_excess
-// (core/solver/simd/distance.hpp), the step core/solver/loop.cpp; with alpha = 0 every bit is that
-// of jakobsen:projection=exact. method=global solves all links at once instead
+// alpha [m/N] is the inverse of a spring constant. The arithmetic is in compliant_excess
+// (core/solver/simd/distance.hpp), the step in core/solver/loop.cpp. With alpha = 0 every bit
+// equals that of jakobsen:projection=exact. method=global solves all links at once instead
 // (core/solver/xpbd_global.hpp).
 #include <algorithm>
 
@@ -43,7 +43,7 @@ constexpr auto kParams = loop::with_common(
      kOrderParam, ParamSpec::integer("seed", "1", 0, 2147483647, "of order=random"), kLayoutParam,
      loop::kTethers});
 
-/// m/N, by family.
+/// Compliances [m/N] by family.
 std::array<double, kFamilies.size()> compliances(const Scene& scene, const Params& params) {
   std::array<double, kFamilies.size()> all;
   for (const Family family : kFamilies) {
@@ -63,7 +63,7 @@ loop::Links<Real> make_links(const loop::Setup& setup) {
   const double h = setup.scene.dt / params.integer("substeps");
   Compliances links{.over_h2 = compliances(setup.scene, params)};
   for (double& compliance : links.over_h2) compliance /= h * h;
-  // One sweep finds every multiplier at 0, where it is not needed.
+  // In a single sweep every multiplier starts at 0, so none is needed.
   links.multipliers = params.is("multipliers", "keep") && params.integer("iterations") > 1 &&
                       std::ranges::any_of(links.over_h2, [](double a) { return a > 0; });
   const RelaxationSettings settings{.projection = Projection::exact,

@@ -18,13 +18,14 @@ namespace {
 
 using Eigen::Matrix3d;
 
-/// a of rigid links, of the matrix' mean diagonal.
+/// Regularisation of rigid links: their compliance as a share of the matrix' mean diagonal.
 constexpr double kSoftnessOfRigid = 1e-9;
-/// The same for what contact takes rigid links for: as stiff as they are in the matrix it would be
-/// all that rounding leaves of it.
+/// Compliance of rigid links in contact, as a share of the matrix' mean diagonal. With
+/// kSoftnessOfRigid, contact would be so stiff that rounding left nothing else of the matrix.
 constexpr double kSoftnessInContact = 1e-3;
-/// Of a step's slope, that the energy has to fall by; and how often a step is halved, at most.
+/// Sufficient decrease of the line search (Armijo), as a share of the slope.
 constexpr double kFalls = 1e-4;
+/// Most halvings of a step in the line search.
 constexpr int kMostHalvings = 40;
 
 template <class Real>
@@ -94,21 +95,21 @@ class GlobalLinks final : public Pass<Real> {
     double softness = 0;    ///< a [1/kg], of this substep
     double lambda = 0;      ///< kg m
     double excess = 0;      ///< C [m], at x
-    Vec3 u = Vec3::Zero();  ///< unit, at x; 0 where there is no direction
+    Vec3 u = Vec3::Zero();  ///< unit direction at x; 0 if there is none
   };
-  /// An entry of the matrix to which a vertex that two links share adds its mobility times u.u.
+  /// Entry of the matrix to which a vertex shared by two links adds its mobility times u.u.
   struct Shared {
     double* at;
     std::uint32_t one, other, vertex;
-    double sign;  ///< -1 where one link ends and the other begins, else 1
+    double sign;  ///< -1 where one link ends and the other begins, otherwise 1
   };
 
-  /// A vertex in contact, in kg and m: h^2 times forces and stiffnesses.
+  /// A vertex in contact, in kg and m: forces and stiffnesses are multiplied by h^2.
   struct Held {
     bool touches = false;
     Vec3 force = Vec3::Zero();              ///< kg m, at x
-    Matrix3d stiffness = Matrix3d::Zero();  ///< kg, minus its change with x
-    Matrix3d less = Matrix3d::Zero();       ///< 1/kg, of the mobility that it has without contact
+    Matrix3d stiffness = Matrix3d::Zero();  ///< kg, minus the derivative of the force by x
+    Matrix3d less = Matrix3d::Zero();       ///< 1/kg, mobility that the vertex loses by contact
   };
 
   void analyse(Simd simd) {
@@ -153,7 +154,7 @@ class GlobalLinks final : public Pass<Real> {
     contacts_.predict_new(p, h);
   }
 
-  /// What touches at x, and what it makes of the vertices' mobility.
+  /// Finds what touches at x, and how much mobility the vertices lose by it.
   void look_at_contacts(const Particles<Real>& p, const std::vector<Vec3>& x, double h) {
     contacts_.find(p);
     held_.assign(contacts_.touch() ? w_.size() : 0, {});
@@ -170,7 +171,7 @@ class GlobalLinks final : public Pass<Real> {
 
   bool touches(std::size_t v) const { return !held_.empty() && held_[v].touches; }
 
-  /// V f.
+  /// V f: the mobility of vertex v, less what contact takes, times f.
   Vec3 mobile(std::size_t v, const Vec3& f) const {
     const Vec3 free = mobility_[v] * f;
     return touches(v) ? Vec3(free - held_[v].less * f) : free;
@@ -200,7 +201,7 @@ class GlobalLinks final : public Pass<Real> {
         *s.at -= s.sign * links_[s.one].u.dot(at.less * links_[s.other].u);
   }
 
-  /// The masses of the primal step.
+  /// Sets the masses of the primal step.
   void resist_across() {
     std::vector<double> across(w_.size(), 0.0);  // kg
     for (std::size_t j = 0; j < links_.size(); ++j) {
@@ -214,7 +215,8 @@ class GlobalLinks final : public Pass<Real> {
       if (w_[i] > 0) mobility_[i] = 1 / (1 / w_[i] + across[i]);
   }
 
-  /// V M p, p: how far x is from where the forces, in the directions at x, take y [m].
+  /// V M p, where p [m] is the distance of x from the position to which the forces, in the
+  /// directions at x, take y.
   std::vector<Vec3> away_from_forces(const std::vector<Vec3>& x) const {
     std::vector<Vec3> p = x;
     for (std::size_t i = 0; i < p.size(); ++i) p[i] -= y_[i].template cast<double>();
@@ -232,7 +234,7 @@ class GlobalLinks final : public Pass<Real> {
     return p;
   }
 
-  /// right_ becomes dlambda, in the order of elimination.
+  /// Solves for dlambda in right_, in the order of elimination.
   void solve(const std::vector<Vec3>& astray) {
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const Linked& l = links_[j];
@@ -243,7 +245,7 @@ class GlobalLinks final : public Pass<Real> {
     factor_.solve_one(right_.data());
   }
 
-  /// V J^T dlambda, less `astray`.
+  /// V J^T dlambda, minus `astray`.
   std::vector<Vec3> way_of_solution(const std::vector<Vec3>& astray) const {
     std::vector<Vec3> way(w_.size(), Vec3::Zero());
     for (std::size_t j = 0; j < links_.size(); ++j) {
@@ -257,7 +259,7 @@ class GlobalLinks final : public Pass<Real> {
     return way;
   }
 
-  /// h^2 times implicit Euler's energy [kg m^2].
+  /// Implicit Euler's energy times h^2 [kg m^2].
   double energy(const std::vector<Vec3>& x, double h) const {
     double sum = 0;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -271,7 +273,7 @@ class GlobalLinks final : public Pass<Real> {
         x, [&](std::size_t, const AugmentedContacts::Part& part) { sum += h * h * part.energy; });
     return sum;
   }
-  /// Its gradient at x [kg m]; 0 for pins.
+  /// Gradient of energy() at x [kg m]; 0 for pins.
   std::vector<Vec3> gradient(const std::vector<Vec3>& x, double h) const {
     std::vector<Vec3> g(x.size(), Vec3::Zero());
     for (std::size_t j = 0; j < links_.size(); ++j) {
@@ -296,8 +298,8 @@ class GlobalLinks final : public Pass<Real> {
     return sum;
   }
 
-  /// 1 or the first of its halves with which the energy falls (Armijo); 0: rounding is all that is
-  /// left. left_ is the gradient there.
+  /// Step length: the first of 1, 1/2, 1/4, ... with which the energy falls (Armijo), or 0 if only
+  /// rounding is left. Sets left_ to the gradient there.
   double share_that_falls(const std::vector<Vec3>& x, const std::vector<Vec3>& way, double h) {
     const std::vector<Vec3> g = gradient(x, h);
     const double before = energy(x, h), slope = dot(g, way);
@@ -307,7 +309,7 @@ class GlobalLinks final : public Pass<Real> {
       for (std::size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + share * way[i];
       const double now = energy(trial, h);
       const bool falls = now <= before + kFalls * share * slope;
-      // near the minimum, differences of the energy are rounding: the gradient decides
+      // near the minimum, differences of the energy are mere rounding: the gradient decides
       if (!falls && now > before * (1 + 1e-12)) continue;
       if (falls && !contacts_.any()) return share;
       const std::vector<Vec3> g_now = gradient(trial, h);
@@ -320,7 +322,7 @@ class GlobalLinks final : public Pass<Real> {
 
   std::vector<Spring> springs_;
   std::vector<double> w_;         ///< [n] 1/kg
-  std::vector<double> mobility_;  ///< [n] 1/kg, of the matrix: V with primal=on, else W
+  std::vector<double> mobility_;  ///< [n] 1/kg, in the matrix: V with primal=on, otherwise W
   bool primal_;
   Points<Real> y_;  ///< m
   std::vector<Linked> links_;
@@ -329,9 +331,10 @@ class GlobalLinks final : public Pass<Real> {
   std::vector<std::size_t> rank_;  ///< [links] in the order of elimination
   std::vector<double*> diagonal_;  ///< [links]
   std::vector<Shared> beside_;
-  std::vector<double> right_;  ///< m, then kg m; in the order of elimination
+  /// Right-hand side [m], then solution [kg m], in the order of elimination.
+  std::vector<double> right_;
   AugmentedContacts contacts_;
-  double left_ = 0;         ///< N, the gradient after an iteration down the energy
+  double left_ = 0;         ///< N, the gradient after an iteration that descends the energy
   std::vector<Held> held_;  ///< [n]; empty: nothing touches
 };
 

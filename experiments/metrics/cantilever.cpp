@@ -6,11 +6,11 @@ namespace taut {
 
 namespace {
 
-/// A level sheet held by its first two rows alone, its clamp in the middle between them.
+/// A level sheet that is held by its first two rows alone; its clamp is midway between them.
 class Cantilever final : public Metric {
  public:
   static constexpr Unit kDegrees{"rad", "\u00B0", 180 / std::numbers::pi, false};
-  static constexpr double kMost = std::numbers::pi / 3;  ///< rad, of Peirce's formula
+  static constexpr double kMost = std::numbers::pi / 3;  ///< rad, limit of Peirce's formula
   static constexpr ValueSpec kValues[] = {
       {.name = "cantilever.angle",
        .unit = kDegrees,
@@ -52,7 +52,7 @@ class Cantilever final : public Metric {
   }
 
  private:
-  /// From the clamp.
+  /// Position of the middle of the last row, from the clamp.
   Vec3 end_of(const std::vector<Vec3>& x) const {
     const auto row = [&](int j) {
       Vec3 sum = Vec3::Zero();

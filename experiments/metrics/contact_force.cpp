@@ -4,13 +4,14 @@ namespace taut {
 
 namespace {
 
-/// What all colliders push and rub the cloth with: where nothing is pinned and no wind blows, the
-/// cloth's threads cancel, and its momentum changes by gravity, damping and contact alone,
+/// Total force of all colliders on the cloth, by push and friction. If nothing is pinned and no
+/// wind blows, forces between threads cancel, and the momentum changes by gravity, damping and
+/// contact alone,
 ///
 ///     F = m ((c_n+1 - c_n) - e^(-damping dt) (c_n - c_n-1)) / dt^2 - m g,   c the centre of mass.
 ///
-/// Of a cloth at rest it is the weight. In substeps velocities are those of the ways between step
-/// boundaries, so the first step counts for none.
+/// For a cloth at rest this is the weight. With substeps, velocities are displacements between step
+/// boundaries, so the first step does not count.
 class ContactForce final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {

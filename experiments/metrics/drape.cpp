@@ -10,8 +10,8 @@ namespace taut {
 namespace {
 
 /// Faces whose corners are all pinned lie on the support, in a plane across gravity. A round cloth
-/// lies on a disc, as the standard has it: through the outermost of its pinned vertices, for the
-/// pinned faces leave gaps at the disc's edge.
+/// lies on a disc, as in the standard: the disc reaches to the outermost pinned vertex, because the
+/// pinned faces leave gaps at its edge.
 class Drape final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
@@ -59,7 +59,7 @@ class Drape final : public Metric {
       if (chosen(t)) sum += doubled_area(scene, t).norm() / 2;
     return sum;
   }
-  /// 0 if one of them does not lie across gravity.
+  /// Area of the pinned faces; 0 if one of them does not lie across gravity.
   static double area_of_pinned(const Scene& scene) {
     bool level = true;
     const double area = area_if(scene, [&](const Triangle& t) {
@@ -75,7 +75,7 @@ class Drape final : public Metric {
   static double area_of_support(const Scene& scene) {
     const std::vector<Vec3>& x = scene.mesh.rest;
     const Vec3 centre = centre_of(scene);
-    double near = Summary::kInfinity, far = 0;  // from the centre to the cloth's own edge
+    double near = Summary::kInfinity, far = 0;  // distances of the cloth's own edge from the centre
     for (const int v : rim_of(scene.mesh)) {
       const double distance = (x[to_index(v)] - centre).norm();
       near = std::min(near, distance);
@@ -87,7 +87,7 @@ class Drape final : public Metric {
     return std::numbers::pi * radius * radius;
   }
 
-  /// Of the area of the cloth at rest.
+  /// Centre of the cloth's area at rest.
   static Vec3 centre_of(const Scene& scene) {
     Vec3 sum = Vec3::Zero();
     for (const Triangle& t : scene.mesh.triangles)
@@ -95,7 +95,7 @@ class Drape final : public Metric {
     return sum / area_if(scene, kAll);
   }
 
-  /// The vertices of edges that belong to one face.
+  /// The vertices of edges with a single face.
   static std::set<int> rim_of(const Mesh& mesh) {
     std::map<std::pair<int, int>, int> faces;
     for (const Triangle& t : mesh.triangles)
@@ -106,8 +106,7 @@ class Drape final : public Metric {
     return rim;
   }
 
-  /// Union of the projected faces [m^2]: exact along each of kLines lines, which are equally far
-  /// from each other.
+  /// Area of the union of the projected faces [m^2]: exact along each of kLines equidistant lines.
   double shadow(const std::vector<Vec3>& x) const {
     double low = Summary::kInfinity, high = -Summary::kInfinity;
     std::vector<std::pair<double, double>> p;  // along lines, across them
@@ -132,7 +131,7 @@ class Drape final : public Metric {
     return sum * width;
   }
 
-  /// Adds to each line, `width` apart from `low` on, what a face covers of it.
+  /// Adds to each line, `width` apart from `low` on, the part that a face covers.
   static void cover(const Triangle& t, const std::vector<std::pair<double, double>>& p, double low,
                     double width, std::vector<std::vector<std::pair<double, double>>>& covered) {
     const auto [first, last] =
@@ -157,7 +156,7 @@ class Drape final : public Metric {
   static constexpr int kLines = 1000;
   std::vector<Triangle> faces_;
   double support_, cloth_;  ///< m^2
-  Vec3 across_, other_;     ///< of the plane across gravity
+  Vec3 across_, other_;     ///< axes in the plane across gravity
   LastSecond end_;
   Summary coefficient_;
 };

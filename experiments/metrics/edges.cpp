@@ -15,8 +15,8 @@ struct StraightEdge {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< m
 };
 
-/// The edges of a solid in its own frame: what a thread has to pass to get through it between two
-/// of its vertices.
+/// The edges of a solid in its own frame. To get through the solid between two of its vertices, a
+/// thread must pass through one of them.
 std::vector<StraightEdge> solid_edges(const Shape& shape) {
   if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return {{capsule->from, capsule->to}};
   std::vector<StraightEdge> edges;
@@ -42,9 +42,8 @@ std::vector<StraightEdge> solid_edges(const Shape& shape) {
   return edges;
 }
 
-/// Whether the places where the lines of two edges are nearest belong to both, their first ends
-/// included: `a` leads from the first end of the one, which goes along `along`, to that of the
-/// other, which goes along `b`.
+/// Whether the nearest points of the lines of two edges lie on both edges, first ends included. `a`
+/// leads from the first end of one edge, along `along`, to the first end of the other, along `b`.
 bool meet(const Vec3& along, const Vec3& a, const Vec3& b) {
   const Vec3 normal = along.cross(b);
   const double twice_area2 = normal.squaredNorm();
@@ -54,9 +53,9 @@ bool meet(const Vec3& along, const Vec3& a, const Vec3& b) {
   return on_one >= 0 && on_one < 1 && on_other >= 0 && on_other < 1;
 }
 
-/// How often an edge, whose ends go straight from one place to another, passes through one that
-/// does not move: the volume of the tetrahedron between them is a polynomial of second degree in
-/// the share of the way, and where it is 0 they are in one plane.
+/// How often an edge whose ends move straight passes through a fixed edge. The volume of the
+/// tetrahedron between them is a polynomial of second degree in the share of the path, and 0 where
+/// they are in one plane.
 int times_through(const StraightEdge& before, const StraightEdge& now, const StraightEdge& fixed) {
   const Vec3 along = fixed.to - fixed.from;
   const Vec3 a0 = before.from - fixed.from, a1 = now.from - before.from;
@@ -74,7 +73,7 @@ int times_through(const StraightEdge& before, const StraightEdge& now, const Str
   return meet_at(half / e) + (half == 0 ? 0 : meet_at(c / half));
 }
 
-/// The same of two edges that both move.
+/// How often an edge passes through another one that moves, too.
 int times_through(const MovingEdge& cloth, const MovingEdge& body) {
   int times = 0;
   for (const auto& [share, rises] : passes(cloth, body)) {
@@ -84,7 +83,8 @@ int times_through(const MovingEdge& cloth, const MovingEdge& body) {
   return times;
 }
 
-/// Links that are no shortcut across faces, and sides of faces, of which one vertex is free.
+/// Edges of the cloth: structural links except seams, and sides of faces, with at least one free
+/// vertex.
 std::vector<std::pair<int, int>> cloth_edges(const Scene& scene) {
   std::set<std::pair<int, int>> edges;
   for (const Link& link : scene.links)
@@ -141,8 +141,8 @@ class Edges final : public Metric {
            std::holds_alternative<MeshBody>(c.shape);
   }
 
-  /// A collider in the frame in which it does not move as a whole, and the cloth there at the last
-  /// time.
+  /// A collider in the frame in which it does not move as a whole, and the cloth in that frame at
+  /// the last time.
   struct Followed {
     explicit Followed(const Collider& c) : collider(c) {
       if (c.frames) {
@@ -152,8 +152,7 @@ class Edges final : public Metric {
       edges = solid_edges(c.shape);
       for (const StraightEdge& edge : edges) box.extend(edge.from).extend(edge.to);
     }
-    /// Where the collider's points would be at the start: x without its motion and, of boxes and
-    /// bodies, their place.
+    /// x in that frame: without the collider's motion and, for boxes and bodies, their position.
     Vec3 local(const Vec3& x, double t) const {
       const Motion& motion = collider.motion;
       const Vec3 start =
@@ -166,10 +165,11 @@ class Edges final : public Metric {
       return start;
     }
     Collider collider;
-    std::optional<DeformingBody> body;  ///< that deforms; else
+    /// Set for a body that deforms; otherwise edges and box are.
+    std::optional<DeformingBody> body;
     std::vector<StraightEdge> edges;
     Eigen::AlignedBox3d box;
-    std::vector<Vec3> last;  ///< empty: nothing yet
+    std::vector<Vec3> last;  ///< empty: none yet
     double last_t = 0;       ///< s
   };
 
@@ -193,7 +193,7 @@ class Edges final : public Metric {
     body.move(collider.last_t, t);
     const TriangleMesh &mesh = body.after(), &before = body.before();
     const Vec3 wider = Vec3::Constant(body.longest_way());
-    std::set<int> near;  // 3 triangle + side, of the first of its triangles
+    std::set<int> near;  // 3 triangle + side, in the first of the side's triangles
     for (const auto& [a, b] : edges_) {
       const MovingEdge edge{{collider.last[to_index(a)], collider.last[to_index(b)]},
                             {now[to_index(a)], now[to_index(b)]}};

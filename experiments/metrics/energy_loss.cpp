@@ -5,11 +5,12 @@ namespace taut {
 
 namespace {
 
-/// A turning point is a least kinetic energy that is at most this share of the largest before it
-/// and of the largest after it: no ripple of a swing counts.
+/// Largest kinetic energy at a turning point, as a share of the maximum before it and of the
+/// maximum after it, so that no ripple of a swing counts.
 constexpr double kTurn = 0.25;
 
-/// If all swings together exchange less, in units of m g L, the cloth trembles at rest.
+/// Least energy that all swings together exchange, in units of m g L. Below it the cloth trembles
+/// at rest.
 constexpr double kSwing = 1e-3;
 
 class EnergyLoss final : public Metric {
@@ -70,11 +71,11 @@ class EnergyLoss final : public Metric {
   }
 
   MechanicalEnergy energy_;
-  Moment least_;                 ///< since the largest kinetic energy after the last turning point
-  double largest_ = 0;           ///< J, kinetic, since the last turning point
-  bool turned_ = false;          ///< there was a turning point
+  Moment least_;         ///< since the maximum of the kinetic energy after the last turning point
+  double largest_ = 0;   ///< J, maximum of the kinetic energy since the last turning point
+  bool turned_ = false;  ///< there was a turning point
   double first_ = 0, last_ = 0;  ///< J, at turning points
-  double exchanged_ = 0;         ///< J, sum of the largest kinetic energies between them
+  double exchanged_ = 0;         ///< J, sum of the maxima of the kinetic energy between them
 };
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace taut {
 namespace {
 
 /// Depth of the deepest point of a triangle in a solid body, to 1 % of its longest side; `at_least`
-/// where it is no deeper. Both in the body's frame. A depth changes by no more than the way, so
-/// that a part which cannot be deeper than what is known needs no closer look.
+/// if it is no deeper. Both are in the body's frame. Depth changes by no more than distance, so a
+/// part that cannot be deeper than the known maximum is not examined further.
 double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_least) {
   double longest = 0;
   Eigen::AlignedBox3d around;
@@ -155,9 +155,9 @@ class Faces final : public Metric {
     return depths;
   }
 
-  /// A point with barycentric weights b of a face whose corners are at least `hover` from it is at
-  /// least sqrt(hover^2 - r^2) from a centre, r being the face's enclosing radius: from a ball's,
-  /// and from that of an axis which is nearest to the point.
+  /// Adds a face. A point with barycentric weights b of a face whose corners are at least `hover`
+  /// from it is at least sqrt(hover^2 - r^2) from a centre, where r is the enclosing radius of the
+  /// face. The centre is a ball's, or the point of an axis that is nearest.
   template <class Round>
   void add(const Round& shape, const State& state, double& deepest, Depths& depths) const {
     const double hover = shape.radius + thickness_;
@@ -178,7 +178,7 @@ class Faces final : public Metric {
       depths.box = std::max(depths.box, deepest_in(box, corners(face, state), depths.box).depth);
   }
 
-  /// Places of a solid that a face cannot be on both sides of without having been pierced.
+  /// Points of a solid that a face cannot pass without being pierced by them.
   static std::vector<Vec3> places_of(const Shape& shape) {
     if (const Ball* ball = std::get_if<Ball>(&shape)) return {ball->center};
     std::vector<Vec3> places;
@@ -193,7 +193,7 @@ class Faces final : public Metric {
                              box->rotation * Vec3(x, y, z).cwiseProduct(box->half_extents));
     return places;
   }
-  /// Of three corners as seen from a place in one plane with them.
+  /// Whether three corners surround a point in their plane; corners are relative to the point.
   static bool surround(const Corners& t) {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
     const auto side = [&](std::size_t a, std::size_t b) {
@@ -216,7 +216,8 @@ class Faces final : public Metric {
     last_ = m.state;
     last_t_ = m.t;
   }
-  /// Of the vertices that are in the box around a face's way, in the body's frame.
+  /// Counts passages of those vertices, in the body's frame, that are in the box around a face's
+  /// path.
   void count_passages(const Collider& collider, const Snapshot& m) {
     const auto was_there = std::get<MeshBody>(shape_at(collider, last_t_)),
                is_there = std::get<MeshBody>(shape_at(collider, m.t));
@@ -240,15 +241,15 @@ class Faces final : public Metric {
       }
     }
   }
-  /// Of a vertex in the body's frame [m]; 0: it is rigid.
+  /// Longest displacement of a vertex in the body's frame [m]; 0: the body is rigid.
   static double longest_way(const TriangleMesh& from, const TriangleMesh& to) {
     double longest = 0;
     for (std::size_t v = 0; &from != &to && v < to.vertices().size(); ++v)
       longest = std::max(longest, (to.vertices()[v] - from.vertices()[v]).norm());
     return longest;
   }
-  /// How often the place goes through the face while all go straight: six times the volume between
-  /// them is a cubic in the share of the way, and 0 where they are in one plane.
+  /// How often a point passes through a face while all move straight. Six times the volume between
+  /// them is a cubic in the share of the path, and 0 where they are in one plane.
   static int passes(Corners before, Corners now, const Vec3& from, const Vec3& to) {
     Eigen::AlignedBox3d way;
     Corners d;
@@ -268,7 +269,7 @@ class Faces final : public Metric {
                  k2 = volume(d[0], d[1], c) + volume(d[0], b, d[2]) + volume(a, d[1], d[2]),
                  k3 = volume(d[0], d[1], d[2]);
     const auto above = [&](double s) { return k0 + s * (k1 + s * (k2 + s * k3)) > 0; };
-    std::array<double, 4> turns{0, 1, 1, 1};  // between them it rises, or falls
+    std::array<double, 4> turns{0, 1, 1, 1};  // it is monotone between these
     const double discriminant = k2 * k2 - 3 * k3 * k1;
     if (discriminant > 0) {
       const double root = -(k2 + std::copysign(std::sqrt(discriminant), k2));
@@ -296,7 +297,8 @@ class Faces final : public Metric {
     return {s.x[to_index(t[0])], s.x[to_index(t[1])], s.x[to_index(t[2])]};
   }
 
-  /// No planes: on those faces add nothing to vertices. Bodies of triangles are seen for passages.
+  /// Colliders without planes, on which faces add nothing to vertices. Bodies of triangles count
+  /// for passages.
   std::vector<Collider> colliders_, bodies_;
   std::vector<Triangle> faces_;
   double thickness_;

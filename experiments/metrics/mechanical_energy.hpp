@@ -7,15 +7,17 @@
 
 namespace taut {
 
-/// Energies of a scene's cloth [J]: what moves, and what gravity, bending and the links that the
-/// scene makes elastic have stored, K/2 (length - rest length)^2 each. Rigid links store nothing.
+/// Energies of a scene's cloth [J]: kinetic energy, and potential energy of gravity, bending and
+/// the links that the scene makes elastic, K/2 (length - rest length)^2 each. Rigid links store no
+/// energy.
 class MechanicalEnergy {
  public:
   explicit MechanicalEnergy(const Scene&);
 
   double kinetic(const State&) const;
   double potential(const State&) const;  ///< 0 at the start
-  double unit() const { return unit_; }  ///< m g L, L the diagonal of the rest shape's bounding box
+  /// M g L, where L is the diagonal of the rest shape's bounding box.
+  double unit() const { return unit_; }
 
  private:
   double stored(const std::vector<Vec3>& x) const;

@@ -16,27 +16,26 @@
 
 namespace taut {
 
-/// One step boundary as a metric sees it: the scene's time and the state, never the solver that
-/// made it.
+/// A step boundary as seen by a metric: the scene's time and the state, but never the solver.
 struct Snapshot {
   int step = 0;  ///< 0: the start
   double t = 0;  ///< s
   const State& state;
 };
 
-/// In which unit a value is stored, and how people are shown it: `shown = scale * stored`.
+/// The unit in which a value is stored, and how it is shown: `shown = scale * stored`.
 struct Unit {
   std::string_view si;     ///< "1" if dimensionless
   std::string_view shown;  ///< "%", "mm", ...
   double scale = 1;
-  bool logarithmic = true;      ///< which axis suits it
-  bool less_is_better = false;  ///< of an error: the distance from what must hold
+  bool logarithmic = true;      ///< whether a logarithmic axis suits it
+  bool less_is_better = false;  ///< for an error: a distance from what must hold
 };
 inline constexpr Unit kNumber{"1", ""}, kCount{"1", "", 1, false}, kShare{"1", "%", 100},
     kSignedShare{"1", "%", 100, false}, kLength{"m", "mm", 1e3},
     kSignedLength{"m", "mm", 1e3, false}, kTime{"s", "s", 1, false}, kSpeed{"m/s", "m/s"},
     kAcceleration{"m/s^2", "m/s\u00B2"}, kForce{"N", "N", 1, false};
-/// The same of errors, which are never below 0.
+/// Units of errors, which are never below 0.
 inline constexpr Unit kErrorCount{"1", "", 1, false, true}, kErrorShare{"1", "%", 100, true, true},
     kErrorLength{"m", "mm", 1e3, true, true}, kErrorSpeed{"m/s", "m/s", 1, true, true},
     kErrorAcceleration{"m/s^2", "m/s\u00B2", 1, true, true};
@@ -51,85 +50,94 @@ constexpr std::string_view to_string(Window w) {
                                   : "";
 }
 
-/// What a report makes of a value beside listing it: over what its charts draw it, and what
-/// sentences say of it. Reports show the roles in this order.
+/// How a report uses a value besides listing it: what its charts draw it over, and what sentences
+/// say of it. Reports show the roles in this order.
 enum class Role {
-  none,    ///< drawn on demand alone
-  error,   ///< of something that a solver must keep; over sweeps; its mean over scenes is compared
-  motion,  ///< what a motion loses or lags behind; over sweeps; strain alone does not show it
-  vertex_depth,     ///< of a vertex below a surface; over sweeps and time steps; the deepest counts
-  face_depth,       ///< the same of a face
-  passages,         ///< of vertices through colliders; drawn as depths; the sum over scenes counts
+  none,  ///< only drawn on demand
+  /// Error of something that a solver must keep; over sweeps; its mean over scenes is compared.
+  error,
+  /// What a motion loses or lags behind, which strain alone does not show; over sweeps.
+  motion,
+  /// Depth of a vertex below a surface; over sweeps and time steps; the deepest counts.
+  vertex_depth,
+  face_depth,  ///< depth of a face, otherwise like vertex_depth
+  /// Passages of vertices through colliders; drawn like depths; the sum over scenes counts.
+  passages,
   reference_error,  ///< distance from the scene's reference; over sweeps
   step_error,       ///< distance from the exact step; over sweeps
   contact_error,    ///< distance from a law of contact; over sweeps and time steps
 };
 
-/// Cloth that goes less than this share of its way is not compared by strain: links keep their
-/// lengths where nothing moves.
+/// Least motion, as a share of the full motion, at which cloths are compared by strain: links keep
+/// their lengths if nothing moves.
 inline constexpr double kLeastMotion = 0.5;
-/// Whose way where there is no dynamic reference: that of exact steps, else by what steps miss.
+/// Values for the share of the motion without a dynamic reference: share of the motion of exact
+/// steps, or else estimated from what steps miss.
 inline constexpr std::string_view kShareOfWay = "way.share", kShareBySteps = "step.share";
 
-/// RMS strain at the moment of a run at which it is largest: what the last second hides.
+/// RMS strain at the moment at which it is largest in a run; the last second hides it.
 inline constexpr std::string_view kRmsStretchPeak = "stretch.rms.peak";
-/// Distance from the dynamic reference over the way: 1 of a cloth that stands still.
+/// Distance from the dynamic reference over the displacement: 1 for a cloth that stands still.
 inline constexpr std::string_view kMotionError = "motion.error";
-/// RMS strain that the rounding of a file of positions makes: the number of the resolved setting of
-/// this name, which cases have that play such a file. No metric returns it.
+/// RMS strain caused by the rounding of a file of positions. It is the number of the resolved
+/// setting of this name, which cases that play such a file have. No metric returns it.
 inline constexpr std::string_view kStrainFloor = "strain.floor";
 
-/// A number that a metric yields.
+/// A number that a metric returns.
 struct ValueSpec {
-  /// Below it a value says nothing about the solver: another value of the case, and what it is.
+  /// Limit below which a value says nothing about the solver: another value of the case, and its
+  /// meaning.
   struct Floor {
     std::string_view value, text;
   };
   std::string_view name;  ///< "stretch.rms"; unique over all metrics
   Unit unit;
-  std::string_view help;   ///< its definition, one sentence
-  bool in_series = false;  ///< also meaningful at each moment: recorded over time as well
+  std::string_view help;   ///< definition in one sentence
+  bool in_series = false;  ///< also meaningful at each moment, and then recorded over time
   Window window = Window::last_second;
   std::string_view title = "";  ///< a few words; "": made from the name
   Role role = Role::none;
-  double negligible = 0;         ///< of an error, SI, > 0: what is less counts as this in means
-  bool shown_over_time = false;  ///< beside the scene's film; needs in_series
-  bool kept = false;             ///< an answer that `taut require` keeps unless asked otherwise
+  double negligible = 0;         ///< of an error, SI, > 0: smaller values count as this in means
+  bool shown_over_time = false;  ///< next to the scene's film; needs in_series
+  bool kept = false;             ///< an answer that `taut require` keeps unless told otherwise
   Floor floor = {};
-  bool falls_with_sweeps = false;  ///< as 1 / sweeps, where theory has the links' stretch do so
+  /// As 1 / sweeps, where theory predicts this of the links' stretch.
+  bool falls_with_sweeps = false;
 };
 
-/// Watches one run. `observe` sees every step boundary in order, the start included, and must be
-/// cheap or choose its own moments; `finish` is called once and returns the values in the entry's
-/// order. A value that has no meaning for this run is NaN (stored as null, drawn as absent).
+/// Watches one run. `observe` gets every step boundary in order, including the start, and must be
+/// cheap or choose its own moments. `finish` is called once and returns the values in the entry's
+/// order. A value without meaning for this run is NaN (stored as null, drawn as absent).
 class Metric {
  public:
   virtual ~Metric() = default;
-  /// Whether the scene has what is measured; a metric that asks for something hides it.
+  /// Whether the scene has what the metric measures; a metric with requirements hides this
+  /// function.
   static bool measures(const Scene&) { return true; }
-  /// Whether it needs the path between step boundaries, too: see observe_within.
+  /// Whether the metric also needs the path between step boundaries: see observe_within.
   static constexpr bool kFollowsPath = false;
-  /// Before a run: which step its solver declares, and nothing else of it.
+  /// Called before a run with the step that its solver declares, and nothing else about it.
   virtual void declare(const DeclaredStep&) {}
   virtual void observe(const Snapshot&) = 0;
-  /// The ends of the substeps between two boundaries, in order: the moment's step is the one that
-  /// they lead to. Only called if `kFollowsPath`.
+  /// Gets the ends of the substeps between two boundaries, in order; the snapshot's step is the one
+  /// to which they lead. Only called if `kFollowsPath`.
   virtual void observe_within(const Snapshot&) {}
-  virtual bool follows(int) const { return true; }  ///< whether within the step that leads to it
+  /// Whether observe_within() is needed within the step that leads to this one.
+  virtual bool follows(int) const { return true; }
   virtual std::vector<double> finish() = 0;
-  /// The values of this very moment, for series; same order, NaN where `in_series` is false.
+  /// The values at this moment, for series, in the same order; NaN where `in_series` is false.
   virtual std::vector<double> now(const Snapshot&) const = 0;
-  /// After a run: what its values are of, or why there are none; "": the entry says it all.
+  /// After a run: what its values refer to, or why there are none; "": the entry says it all.
   virtual std::string remark() const { return ""; }
 };
 
-/// How a metric introduces itself: one per file, found by its TAUT_METRIC line.
+/// Description of a metric: one per file, found by its TAUT_METRIC line.
 struct MetricEntry {
   std::string_view name;     ///< "stretch"
   std::string_view summary;  ///< one sentence
-  std::string_view source;   ///< definition: paper, closed form
+  std::string_view source;   ///< definition: paper or closed form
   std::span<const ValueSpec> values;
-  /// nullptr if the scene lacks what is measured (penetration without colliders).
+  /// Returns nullptr if the scene lacks what is measured (penetration without colliders).
   std::unique_ptr<Metric> (*make)(const Scene&);
   bool follows_path = false;  ///< Metric::kFollowsPath
 };
@@ -137,7 +145,7 @@ struct MetricEntry {
 /// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).
 std::span<const MetricEntry* const> metrics();
 
-/// What yields the value of this name: its metric and itself; nulls: nothing does.
+/// The value of this name and its metric; nulls if there is none.
 inline std::pair<const MetricEntry*, const ValueSpec*> find_value(std::string_view name) {
   for (const MetricEntry* metric : metrics())
     for (const ValueSpec& value : metric->values)
@@ -145,7 +153,7 @@ inline std::pair<const MetricEntry*, const ValueSpec*> find_value(std::string_vi
   return {};
 }
 
-/// The names of all values of all metrics.
+/// Names of all values of all metrics.
 inline std::vector<std::string> value_names() {
   std::vector<std::string> names;
   for (const MetricEntry* metric : metrics())
@@ -153,7 +161,7 @@ inline std::vector<std::string> value_names() {
   return names;
 }
 
-/// The values that have a role, in the order of roles.
+/// Values that have a role, in the order of roles.
 inline std::vector<const ValueSpec*> values_with_role() {
   std::vector<const ValueSpec*> values;
   for (const MetricEntry* metric : metrics())
@@ -163,14 +171,14 @@ inline std::vector<const ValueSpec*> values_with_role() {
   return values;
 }
 
-/// For MetricEntry::make.
+/// Function for MetricEntry::make.
 template <class M>
 std::unique_ptr<Metric> make_metric(const Scene& scene) {
   return M::measures(scene) ? std::make_unique<M>(scene) : nullptr;
 }
 
-/// The part of a run by which it is judged "at the end": the last second of simulated time, or all
-/// of it after the start if it is shorter. Its last moment is the end of the run.
+/// The part of a run that counts as its end: the last second of simulated time, or the whole run
+/// after the start if it is shorter. Its last moment is the end of the run.
 class LastSecond {
  public:
   explicit LastSecond(const Scene& scene)
@@ -180,8 +188,8 @@ class LastSecond {
 
   bool contains(int step) const { return step > last_ - length_; }
 
-  /// At most kSamples moments, evenly spread and the last one among them: for what is too dear to
-  /// be computed at every step.
+  /// Whether the step is one of at most kSamples moments, evenly spread and including the last: for
+  /// values that are too expensive to compute at every step.
   bool samples(int step) const {
     return contains(step) && (last_ - step) % std::max(1, length_ / kSamples) == 0 &&
            (last_ - step) / std::max(1, length_ / kSamples) < kSamples;
@@ -193,9 +201,9 @@ class LastSecond {
   int length_;
 };
 
-/// What is left of a quantity that is known at every step: its mean and its maximum over the last
-/// second, and its maximum over the run. The start is not counted: it is the scene's doing. NaN if
-/// the run did not get that far.
+/// Summary of a quantity that is known at every step: its mean and maximum over the last second,
+/// and its maximum over the run. The start does not count, since it is the scene's. NaN if the run
+/// did not get that far.
 class Summary {
  public:
   void add(int step, bool in_last_second, double value) {
@@ -220,7 +228,7 @@ class Summary {
   double max_ = kNone, peak_ = kNone;
 };
 
-/// The vertices that a solver moves, those that a pin lets go among them, ascending.
+/// The vertices that a solver moves, in ascending order, including those that a pin releases.
 inline std::vector<std::size_t> free_vertices(const Scene& scene) {
   std::vector<std::size_t> free;
   for (int i = 0; i < scene.mesh.size(); ++i)
@@ -235,7 +243,7 @@ inline double mean_square_speed(const State& state, const std::vector<std::size_
   return sum / static_cast<double>(vertices.size());
 }
 
-/// Mean of a quantity of the vertices, weighted by their masses.
+/// Mean of a quantity over the vertices, weighted by their masses.
 inline Vec3 mean(const std::vector<double>& mass, const std::vector<Vec3>& vectors) {
   Vec3 sum = Vec3::Zero();
   double total = 0;
@@ -246,7 +254,7 @@ inline Vec3 mean(const std::vector<double>& mass, const std::vector<Vec3>& vecto
   return sum / total;
 }
 
-/// Whether there is a collider with another side: any but a plane.
+/// Whether any collider has another side, that is, is not a plane.
 inline bool has_solid(const Scene& scene) {
   return std::ranges::any_of(
       scene.colliders, [](const Collider& c) { return !std::holds_alternative<Plane>(c.shape); });
@@ -254,8 +262,8 @@ inline bool has_solid(const Scene& scene) {
 
 }  // namespace taut
 
-/// A metric within namespace taut, from its class, which has a constructor from a Scene and `static
-/// constexpr ValueSpec kValues[]`; then the entry's summary and source.
+/// Defines a metric within namespace taut from its class, which has a constructor from a Scene and
+/// `static constexpr ValueSpec kValues[]`; then follow the entry's summary and source.
 #define TAUT_METRIC(id, Class, summary, source)                                     \
   extern const MetricEntry metric_##id;                                             \
   const MetricEntry metric_##id {                                                   \

@@ -8,20 +8,20 @@ namespace taut {
 
 namespace {
 
-/// Rows of a grid that hang one below the other from the first one, which is pinned.
+/// Rows of a grid that hang one below another from the first, which is pinned.
 struct Rows {
-  std::vector<double> mass;    ///< [rows] kg, from the first free one down
-  std::vector<double> length;  ///< [rows] m, of the links above each
+  std::vector<double> mass;    ///< [rows] kg, from the first free row down
+  std::vector<double> length;  ///< [rows] m, of the links above each row
 };
 
-/// The lowest mode of small swings, scaled to 1 at the lowest row.
+/// Lowest mode of small swings, scaled to 1 at the lowest row.
 struct LowestMode {
   std::vector<double> shape;
   double frequency = 0;  ///< rad/s
 };
 
-/// Inverse iteration: a sideways force tilts every link above it by force / tension, so that
-/// K^-1 M needs sums alone.
+/// Computes the mode by inverse iteration: a sideways force tilts every link above it by
+/// force / tension, so K^-1 M only needs sums.
 LowestMode lowest_mode(const Rows& rows, double g) {
   const std::size_t n = rows.mass.size();
   LowestMode mode{std::vector<double>(n, 1.0), 0};
@@ -44,8 +44,10 @@ LowestMode lowest_mode(const Rows& rows, double g) {
 
 class Mode final : public Metric {
  public:
-  static constexpr double kSmall = 0.1;   ///< rad, to the lowest row: the period is 0.06 % longer
-  static constexpr double kLeast = 0.01;  ///< of the first amplitude: less is not counted
+  /// rad, to the lowest row; lengthens the period by 0.06 %.
+  static constexpr double kSmall = 0.1;
+  /// Share of the first amplitude below which amplitudes do not count.
+  static constexpr double kLeast = 0.01;
 
   static constexpr ValueSpec kValues[] = {
       {.name = "mode.damping",
@@ -102,7 +104,7 @@ class Mode final : public Metric {
       last = n;
     }
     if (peaks.size() < 2) return {Summary::kNone, Summary::kNone};
-    const auto swings = static_cast<double>(peaks.size());  // half periods
+    const auto swings = static_cast<double>(peaks.size());  // number of half periods
     const double decrement = 2 * std::log(peaks.front() / peaks.back()) / (swings - 1),
                  turn = 2 * std::numbers::pi,
                  period = 2 * (passes[peaks.size()] - passes[0]) / swings;
@@ -127,7 +129,7 @@ class Mode final : public Metric {
             scene.mesh.rest[0])
         .norm();
   }
-  /// How far the middle of the lowest row is from below that of the first [m].
+  /// Horizontal displacement of the middle of the lowest row from that of the first [m].
   static Vec3 sideways(const Scene& scene, const State& state) {
     const Grid& grid = *scene.mesh.grid;
     Vec3 way = Vec3::Zero();
@@ -137,7 +139,7 @@ class Mode final : public Metric {
     return (way - down.dot(way) * down) / grid.nu;
   }
 
-  /// The mode's share of the motion.
+  /// Projection of the motion on the mode.
   double displacement(const std::vector<Vec3>& x) const {
     double sum = 0;
     for (int j = 1; j < grid_.nv; ++j)
@@ -147,8 +149,8 @@ class Mode final : public Metric {
       }
     return sum;
   }
-  /// Of |swing| between two boundaries, the first included: the top of the parabola through the
-  /// largest value and its neighbours.
+  /// Maximum of |swing| between two boundaries, the first included: the top of the parabola through
+  /// the largest value and its neighbours.
   double largest(std::size_t first, std::size_t end) const {
     std::size_t top = first;
     for (std::size_t n = first; n < end; ++n)
@@ -162,7 +164,7 @@ class Mode final : public Metric {
   std::vector<double> mass_;
   double dt_;
   LowestMode mode_;
-  Vec3 along_;                 ///< unit, horizontal: where it is let go
+  Vec3 along_;                 ///< unit, horizontal: direction in which it is released
   std::vector<double> swing_;  ///< kg m, of each boundary
 };
 

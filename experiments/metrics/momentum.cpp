@@ -52,7 +52,7 @@ class Momentum final : public Metric {
       sum += mass_[i] * (s.x[i] - center).cross(s.v[i]);
     return sum;
   }
-  /// What rounding of it is a share of.
+  /// Sum of the parts of the angular momentum, which scales its rounding [kg m^2/s].
   double spin_of_parts(const State& s) const {
     const Vec3 center = mean(mass_, s.x);
     double sum = 0;
@@ -63,7 +63,7 @@ class Momentum final : public Metric {
 
   std::vector<double> mass_;
   Vec3 gravity_;
-  Vec3 velocity_ = Vec3::Zero();  ///< m/s, of the centre of mass at the start
+  Vec3 velocity_ = Vec3::Zero();  ///< m/s, velocity of the centre of mass at the start
   Vec3 spin_ = Vec3::Zero();      ///< kg m^2/s, at the start
   bool spinning_ = false;
   Summary linear_, angular_;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kKinds = std::variant_size_v<Shape>;  // order of Shape's alternatives
 
-/// Vertices below the surfaces of one kind at one moment.
+/// Depths of vertices below the surfaces of one kind of collider at one moment.
 struct Depths {
   double max = 0, sum = 0;
   int count = 0;
@@ -107,9 +107,9 @@ class Penetration final : public Metric {
 
  private:
   struct Contact {
-    Depths any;  ///< the deepest collider of each vertex
+    Depths any;  ///< in the deepest collider of each vertex
     std::array<Depths, kKinds> kinds;
-    double least = std::numeric_limits<double>::infinity();  ///< m, signed distance
+    double least = std::numeric_limits<double>::infinity();  ///< m, least signed distance
   };
   Contact measure(const Snapshot& m) const {
     Contact contact;

@@ -53,7 +53,7 @@ class Pins final : public Metric {
   double dt_, keep_;
   LastSecond end_;
   Vec3 momentum_ = Vec3::Zero();   ///< kg m/s, a step ago
-  double force_ = Summary::kNone;  ///< of this step, over the weight
+  double force_ = Summary::kNone;  ///< force in this step over the weight
   Summary summary_;
 };
 

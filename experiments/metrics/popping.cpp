@@ -37,7 +37,7 @@ class Popping final : public Metric {
   std::vector<std::size_t> free_;
   double dt_, g_;
   LastSecond end_;
-  std::vector<Vec3> last_, before_;  ///< one and two steps ago
+  std::vector<Vec3> last_, before_;  ///< positions one and two steps ago
   Summary pop_;
 };
 

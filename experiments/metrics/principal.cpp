@@ -10,12 +10,12 @@ namespace {
 
 using Gradient = Eigen::Matrix<double, 3, 2>;
 
-/// A face at rest, in coordinates of its own plane.
+/// A face at rest, in coordinates of its plane.
 struct RestFace {
   Triangle corners;
-  Eigen::Matrix2d inverse;                ///< 1/m, of the two edges from the first corner
+  Eigen::Matrix2d inverse;                ///< 1/m, inverse of the two edges from the first corner
   Eigen::Vector2d weft, warp;             ///< unit: along u, along v; zero without a grid
-  std::array<Eigen::Vector2d, 2> biases;  ///< unit, halfway between them
+  std::array<Eigen::Vector2d, 2> biases;  ///< unit, halfway between weft and warp
 };
 
 struct Kind {
@@ -114,7 +114,8 @@ class Principal final : public Metric {
             std::max(along(face.biases[0]), along(face.biases[1]))};
   }
 
-  /// Nearest rank: the least that at least so many percent do not exceed.
+  /// Percentile by nearest rank: the smallest value that at least this percentage of the values
+  /// does not exceed.
   static double percentile(std::vector<double>& values, std::size_t percent) {
     const auto nth =
         values.begin() + static_cast<std::ptrdiff_t>((values.size() * percent + 99) / 100 - 1);

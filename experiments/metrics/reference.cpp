@@ -134,7 +134,7 @@ class Distance final : public Metric {
 
 }  // namespace
 
-/// The references are read once.
+/// Reads the references once.
 template <>
 std::unique_ptr<Metric> make_metric<Distance>(const Scene& scene) {
   References known = known_references(scene);

@@ -63,7 +63,8 @@ double ReferencePath::error() const {
   return moves() ? std::sqrt(apart_ / from_start_) : Summary::kNone;
 }
 
-/// On a straight piece of the path the square is a parabola of the time.
+/// Sum of squares for a time shift. On a straight piece of the path the square is a parabola in
+/// time.
 double ReferencePath::square_of(double shift) const {
   double sum = 0;
   for (const Moment& moment : moments_) {

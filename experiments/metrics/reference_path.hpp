@@ -7,30 +7,32 @@
 
 namespace taut {
 
-/// A run's motion beside states of a converged one. Between step boundaries positions are
-/// interpolated linearly; products and squares are summed over the free vertices. Everything is NaN
-/// if the run reaches no moment, or if the reference hardly leaves the start (kLeastWay): then it
-/// is judged by where it rests.
+/// Compares a run's motion with states of a converged one. Positions are interpolated linearly
+/// between step boundaries; products and squares are summed over the free vertices. Everything is
+/// NaN if the run reaches no moment, or if the reference hardly leaves the start (kLeastWay), in
+/// which case the run is judged by where it rests.
 class ReferencePath {
  public:
   /// `moments` ascending in time.
   ReferencePath(const Scene&, std::vector<Reference> moments);
-  /// Of the distance from the start, RMS over vertices and moments, over the cloth's extent.
+  /// Least distance of the reference from the start, RMS over vertices and moments, as a share of
+  /// the cloth's extent.
   static constexpr double kLeastWay = 0.05;
 
   void observe(const Snapshot&);
 
   /// The last moment that the run reached [s].
   double horizon() const;
-  /// Of the ways from each moment to the next: sum of (cloth's . reference's) over sum of
-  /// reference's squared. 1 of the reference itself, 0 of a cloth that stands still.
+  /// Share of the reference's motion: sum of (cloth's displacement . reference's) over sum of
+  /// reference's squared, for displacements from each moment to the next. 1 for the reference
+  /// itself, 0 for a cloth that stands still.
   double share() const;
-  /// sqrt(sum |x - r|^2 / sum |r - start|^2) over the moments. 0 of the reference itself, 1 of a
+  /// sqrt(sum |x - r|^2 / sum |r - start|^2) over the moments. 0 for the reference itself, 1 for a
   /// cloth that stands still.
   double error() const;
-  /// The shift s [s] that minimises the sum of |x(t + s) - r(t)|^2; positive: the cloth is late.
-  /// |s| is at most the time of the first moment, and only moments count that the run outlasts by
-  /// as much. NaN: there are none, or no shift matters, because nothing moves.
+  /// Time shift s [s] that minimises the sum of |x(t + s) - r(t)|^2; positive if the cloth is late.
+  /// |s| is at most the time of the first moment, and a moment only counts if the run outlasts it
+  /// by as much. NaN if no moment counts, or if no shift matters because nothing moves.
   double phase() const;
 
  private:
@@ -48,9 +50,9 @@ class ReferencePath {
   std::vector<std::size_t> free_;
   double dt_, extent_, longest_shift_ = 0;
   std::vector<Moment> moments_;
-  std::size_t next_ = 0;                                     ///< moment to be reached
-  std::vector<Vec3> start_, last_;                           ///< x at the start, x a step ago
-  std::vector<Vec3> left_, reference_left_;                  ///< at the moment before
+  std::size_t next_ = 0;                                     ///< next moment to be reached
+  std::vector<Vec3> start_, last_;                           ///< x at the start, and one step ago
+  std::vector<Vec3> left_, reference_left_;                  ///< at the last moment
   double along_ = 0, way_ = 0, apart_ = 0, from_start_ = 0;  ///< m^2
 };
 

@@ -4,7 +4,8 @@ namespace taut {
 
 namespace {
 
-/// Seams have no strain, for their rest length is 0: a length in metres is what is left open.
+/// Gap of seams. They have no strain, because their rest length is 0, so the open length is given
+/// in metres.
 class Seam final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {

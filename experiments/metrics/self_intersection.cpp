@@ -57,7 +57,8 @@ class SelfIntersection final : public Metric {
 
  private:
   struct Crossings {
-    double pairs = Summary::kNone, length = Summary::kNone;  ///< coincident ones have no length; m
+    /// Length [m]: coincident pairs have none.
+    double pairs = Summary::kNone, length = Summary::kNone;
   };
   Crossings crossed(const std::vector<Vec3>& x) const {
     const auto crossing = crossings(faces_, x);

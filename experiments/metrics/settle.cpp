@@ -22,7 +22,7 @@ class Settle final : public Metric {
   explicit Settle(const Scene& scene) : free_(free_vertices(scene)) {}
 
   void observe(const Snapshot& m) override {
-    // The speed of the start is the scene's, often 0 by construction.
+    // The speed at the start is the scene's, often 0 by construction.
     if (m.step > 0 && rests(m.state)) return;
     since_ = m.t;
     place_ = m.state.x;
@@ -40,7 +40,7 @@ class Settle final : public Metric {
 
   std::vector<std::size_t> free_;
   double since_ = 0;         ///< s
-  std::vector<Vec3> place_;  ///< where the vertices were then
+  std::vector<Vec3> place_;  ///< positions of the vertices at that time
 };
 
 }  // namespace

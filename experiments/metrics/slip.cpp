@@ -7,7 +7,7 @@ namespace taut {
 
 namespace {
 
-/// Outward normal of a plane, and of a body all of whose triangles lie in one.
+/// Outward normal of a plane, or of a body whose triangles are all in one plane.
 std::optional<Vec3> flat_normal(const Shape& shape) {
   if (const Plane* plane = std::get_if<Plane>(&shape)) return plane->normal;
   const MeshBody* body = std::get_if<MeshBody>(&shape);
@@ -22,20 +22,19 @@ std::optional<Vec3> flat_normal(const Shape& shape) {
   return body->rotation * normal;
 }
 
-/// The cloth against one plane, as a whole: what its threads do to each other cancels, so that
-/// gravity, damping and the plane alone move its centre of mass c. A step's contact impulse per
-/// mass is
+/// Friction of the whole cloth on one plane. Forces between its threads cancel, so gravity, damping
+/// and the plane alone move its centre of mass c. The contact impulse of a step per mass is
 ///
 ///     j = v' - keep v - g dt,   v = (c_n - c_(n-1))/dt - velocity of the plane, keep = e^(-d dt),
 ///
-/// and Coulomb's law, implicit in the velocity as a block on the plane obeys it, lets friction take
-/// mu n . j off the tangential velocity that would be without it, and no more than all of it. A
-/// part of a cloth may slide while another sticks; then the law's bound is all that it can be held
-/// to, and a cloth that deforms while it lies still shows some error.
+/// Coulomb's law, implicit in the velocity as for a block on the plane, lets friction take mu n . j
+/// off the tangential velocity that the cloth would have without it, and at most all of it. A part
+/// of a cloth may slide while another sticks. The cloth can then only be held to the law's bound,
+/// and a cloth that deforms while it lies still shows some error.
 ///
-/// The velocity is that of the way between two step boundaries: in the first step a solver with n
-/// substeps goes v0 dt + a dt^2 (1 + 1/n)/2, and later ones gain a dt each, whatever n. So the
-/// block starts with the cloth's velocity in the first step.
+/// The velocity is the displacement between two step boundaries over dt. In the first step a solver
+/// with n substeps moves by v0 dt + a dt^2 (1 + 1/n)/2, and later steps gain a dt each, whatever n.
+/// The block therefore starts with the cloth's velocity in the first step.
 class Slip final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
@@ -53,7 +52,7 @@ class Slip final : public Metric {
        .role = Role::contact_error,
        .shown_over_time = true},
   };
-  /// Nothing but gravity and one plane that does not turn may act on the cloth.
+  /// Whether only gravity and one plane that does not turn act on the cloth.
   static bool measures(const Scene& scene) {
     if (scene.colliders.size() != 1 || !scene.pins.empty() || scene.wind) return false;
     const Collider& collider = scene.colliders[0];
@@ -91,16 +90,17 @@ class Slip final : public Metric {
   }
 
  private:
-  /// A body with two sides may be met from behind.
+  /// Sign of the side of a body with two sides on which the cloth is.
   static double side_of(const Scene& scene) {
     const Shape& shape = scene.colliders[0].shape;
     const Vec3 center = mean(scene.mesh.mass, scene.start.x);
     return surface(shape, center).normal.dot(*flat_normal(shape)) < 0 ? -1 : 1;
   }
-  /// What v becomes in a step without contact.
+  /// v after a step without contact.
   Vec3 drift(const Vec3& v) const { return keep_ * v + g_dt_; }
 
-  /// v after friction under the normal impulse `press` [m/s]; only its part along the plane counts.
+  /// v after friction under the normal impulse `press` [m/s]; only the part of v along the plane
+  /// counts.
   Vec3 rubbed(const Vec3& v, double press) const {
     const Vec3 slides = along(v - plane_velocity_);
     const double speed = slides.norm(), most = friction_ * press;
@@ -115,7 +115,7 @@ class Slip final : public Metric {
   LastSecond end_;
   Vec3 center_ = Vec3::Zero(), velocity_ = Vec3::Zero();  ///< of the cloth
   Vec3 block_ = Vec3::Zero();                             ///< velocity of the block
-  Vec3 apart_ = Vec3::Zero();                             ///< m, along the plane
+  Vec3 apart_ = Vec3::Zero();                             ///< m, distance along the plane
   Summary error_;
 };
 

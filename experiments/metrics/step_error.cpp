@@ -12,21 +12,23 @@ namespace taut {
 
 namespace {
 
-/// Every kEvery-th step is judged, kMostSamples at most, the last one among them; of no more
-/// vertices than kMostVertices: each takes as long as some forty steps of Jakobsen's solver.
+/// Every kEvery-th step is judged, at most kMostSamples of them including the last, and only for at
+/// most kMostVertices vertices: each judgement takes as long as some forty steps of Jakobsen's
+/// solver.
 constexpr int kEvery = 16, kMostSamples = 8;
 constexpr std::size_t kMostVertices = 2500;
-/// Of the steps judged, those that must be believed.
+/// Least share of the judged steps that must be believed.
 constexpr double kEnough = 0.5;
-/// Of the scene's extent, what the cloth has to move at least.
+/// Least displacement of the cloth, as a share of the scene's extent.
 constexpr double kLeastWay = 0.05;
-/// Of the way that a cloth would have gone, what rounding may seem to miss at most.
+/// Largest share of the expected displacement that rounding may seem to miss.
 constexpr double kMostRounding = 0.1;
-/// In how many of the first steps that is looked at.
+/// Number of the first steps in which the displacement is judged.
 constexpr int kFirstSamples = 8;
 
-/// The rounding of a place over the place, RMS of what is uniform in half a unit in the last place
-/// to either side: of what was computed in single precision all coordinates are floats.
+/// RMS rounding of a coordinate relative to it, for an error that is uniform within half a unit in
+/// the last place on either side. A state that was computed in single precision has only float
+/// coordinates.
 double relative_rounding(const std::vector<Vec3>& x) {
   const auto is_float = [](double a) { return static_cast<double>(static_cast<float>(a)) == a; };
   const bool all = std::ranges::all_of(
@@ -34,9 +36,9 @@ double relative_rounding(const std::vector<Vec3>& x) {
   return (all ? 0x1p-24 : 0x1p-53) / std::sqrt(3.0);
 }
 
-/// No cloth goes farther [m] in these seconds than twice a fall from its start. Where hundreds of
-/// substeps in single precision have rounded in contact, what they seem to miss is more; without
-/// gravity nothing is known.
+/// Upper bound of a cloth's displacement [m] in these seconds: twice a fall from its start. Where
+/// hundreds of substeps in single precision have rounded in contact, what they seem to miss is
+/// more. Infinite without gravity, where nothing is known.
 double farthest(const Scene& scene, double seconds) {
   const double g = scene.gravity.norm();
   if (g == 0) return std::numeric_limits<double>::infinity();
@@ -45,8 +47,8 @@ double farthest(const Scene& scene, double seconds) {
   return 2 * (g * seconds / 2 + fastest) * seconds;
 }
 
-/// From which step a case is off, is what its solver declares, and nothing else of it is known: the
-/// state before a step, or before its last substep, and the one behind it.
+/// Error of single steps, from the step that the solver declares and the states alone: the state
+/// before a step, or before its last substep, and the state after it.
 class StepErrors final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
@@ -139,7 +141,7 @@ class StepErrors final : public Metric {
   }
 
  private:
-  /// Between releases of pins the exact step is that of what is left of them.
+  /// Between releases of pins, the exact step is that of the remaining pins.
   void enter(std::size_t stage) {
     stage_ = stage;
     error_.reset();
@@ -158,7 +160,7 @@ class StepErrors final : public Metric {
     if (missed.empty()) return;
     ++first_believed_;
     const double left = first_ * scene_.dt - m.t;
-    // as much in each substep of these steps
+    // assume as much in each substep of these steps
     const double times = left * first_every_ * declared_.substeps / h;
     const double rounding = relative_rounding(m.state.x);
     for (std::size_t i = 0; i < missed.size(); ++i) {
@@ -166,8 +168,9 @@ class StepErrors final : public Metric {
       rounded_[i] += times * rounding * m.state.x[i].norm();
     }
   }
-  /// What the step from `before` misses of the exact one along the exact one's own way: what it
-  /// does across that keeps no cloth back. Empty: it cannot be believed.
+  /// Part of the exact step's displacement that the step from `before` misses, along that
+  /// displacement; a deviation across it does not keep a cloth back. Empty if it cannot be
+  /// believed.
   std::vector<Vec3> along_the_way(const State& before, const Snapshot& m, double h) {
     std::vector<Vec3> missed = error_->missed(before, m.t - h, h, m.state.x);
     if (missed.empty()) return missed;
@@ -220,16 +223,17 @@ class StepErrors final : public Metric {
     peak_ = std::max(peak_, error.distance);
   }
 
-  const Scene& scene_;  ///< of the run, which outlives its metrics
+  const Scene& scene_;  ///< the run's scene, which outlives its metrics
   std::vector<Scene> stages_;
   std::size_t stage_ = 0;
-  int every_, first_, first_every_;  ///< steps; first_ 0: way.share says how far the cloth goes
+  /// Steps; first_ is 0 if way.share already measures the displacement.
+  int every_, first_, first_every_;
   DeclaredStep declared_{.none = "no step is declared"};
-  std::optional<reference::StepError> error_;  ///< none: no value
+  std::optional<reference::StepError> error_;  ///< empty: no value
   State before_;
   int step_before_ = -1;
-  std::vector<Vec3> lost_, end_;  ///< m; the places after the first steps
-  std::vector<double> rounded_;   ///< m, what of lost_ may be rounding
+  std::vector<Vec3> lost_, end_;  ///< m; end_: positions after the first steps
+  std::vector<double> rounded_;   ///< m, part of lost_ that may be rounding
   double first_count_ = 0, first_believed_ = 0;
   int count_ = 0;
   double believed_ = 0, sum_ = 0, peak_ = 0;  ///< steps, m, m

@@ -7,10 +7,10 @@ namespace taut {
 
 namespace {
 
-/// A group of links at one moment.
+/// Strain e of a group of links at one moment.
 struct Strain {
   double square = 0;   ///< sum of e^2
-  double tension = 0;  ///< max of e, at least 0
+  double tension = 0;  ///< maximum of e, at least 0
   double shortening = 0;
   std::size_t count = 0;
 
@@ -31,7 +31,7 @@ struct Strain {
   }
 };
 
-/// A group of links over the run.
+/// A group of links over the whole run.
 struct Group {
   bool exists = false;
   Summary square, tension, shortening, p95;
@@ -43,7 +43,8 @@ struct Group {
     tension.add(step, at_end, s.tension);
     shortening.add(step, at_end, s.shortening);
   }
-  /// Nearest rank: the smallest magnitude that at least 95 % of the links do not exceed.
+  /// Samples the 95th percentile by nearest rank: the smallest magnitude that at least 95 % of the
+  /// links do not exceed.
   void sample(int step) {
     if (!exists) return;
     const auto rank = (magnitudes.size() * 95 + 99) / 100 - 1;
@@ -56,7 +57,7 @@ struct Group {
   double rms_peak() const { return std::sqrt(square.peak()); }
 };
 
-/// The links that have a strain which a solver can change: no seams, nor those between two pins.
+/// The links whose strain a solver can change: no seams, and no links between two pins.
 std::vector<Link> movable_links(const Scene& scene) {
   std::vector<Link> links;
   for (const Link& link : scene.links)
@@ -177,7 +178,8 @@ class Stretch final : public Metric {
     const Vec3& b = state.x[to_index(l.b)];
     return ((b - a).norm() - l.rest) / l.rest;
   }
-  /// A bend link shortens when the cloth folds, which is no strain of the cloth: left out.
+  /// Strain of structural and shear links. Bend links are left out: they shorten when the cloth
+  /// folds, which is no strain of the cloth.
   static Strain in_plane(const std::array<Strain, kFamilies.size()>& strains) {
     Strain sum = strains[static_cast<std::size_t>(Family::structural)];
     sum.add(strains[static_cast<std::size_t>(Family::shear)]);

@@ -7,7 +7,7 @@ namespace taut {
 
 namespace {
 
-/// Where a straight path enters and leaves a solid, as outward unit normals.
+/// Where a straight path enters and leaves a solid, and the outward unit normals there.
 struct Passage {
   bool hit = false;
   double in_at = 0, out_at = 1;  ///< shares of the path
@@ -16,9 +16,9 @@ struct Passage {
 
 /// A solid at the origin of its own frame, in which it does not move.
 struct Solid {
-  double radius = 0;                 ///< > 0: a ball, or a capsule along y
+  double radius = 0;                 ///< > 0: a ball, or a capsule along y; 0: a box
   double half_length = 0;            ///< of the capsule's axis
-  Vec3 half_extents = Vec3::Zero();  ///< else a box
+  Vec3 half_extents = Vec3::Zero();  ///< of a box
 
   bool contains(const Vec3& p) const {
     if (radius > 0) return (p - on_axis(p.y())).squaredNorm() < radius * radius;
@@ -33,15 +33,16 @@ struct Solid {
   Passage pass(const Vec3& a, const Vec3& b) const { return radius > 0 ? round(a, b) : box(a, b); }
 
  private:
-  /// The point of the axis at that height, or its end.
+  /// The point of the axis at that height, or the nearer end.
   Vec3 on_axis(double y) const { return {0, std::clamp(y, -half_length, half_length), 0}; }
-  /// Where the line a + s d first meets the round solid: on the sphere about the point of the axis
-  /// at whose height it enters the endless cylinder, or about the end to that side. None: infinite.
+  /// Share of the line a + s d where it first meets the round solid; infinite if it does not. It
+  /// meets the sphere about the point of the axis at whose height it enters the infinite cylinder,
+  /// or about the end on that side.
   double first(const Vec3& a, const Vec3& d) const {
     const double across2 = d.x() * d.x() + d.z() * d.z(), toward = a.x() * d.x() + a.z() * d.z(),
                  above = a.x() * a.x() + a.z() * a.z() - radius * radius,
                  within = toward * toward - across2 * above;
-    double height = d.y() > 0 ? -half_length : half_length;  // of a line along the axis
+    double height = d.y() > 0 ? -half_length : half_length;  // for a line along the axis
     if (across2 > 0)
       height = a.y() + (-toward - std::sqrt(std::max(within, 0.0))) / across2 * d.y();
     const Vec3 from = a - on_axis(height);
@@ -81,7 +82,7 @@ struct Solid {
   }
 };
 
-/// Follows every free vertex past one collider and remembers by which side it came in.
+/// Follows every free vertex past one collider and remembers the side on which it entered.
 class SideTracker {
  public:
   SideTracker(Collider collider, std::size_t vertices)
@@ -119,7 +120,7 @@ class SideTracker {
     inside_[k] = solid_.contains(last_[k]);
     in_[k] = solid_.nearest_normal(last_[k]);
   }
-  /// True if the vertex comes out on another side than that by which it went in.
+  /// Returns whether the vertex leaves on another side than the one on which it entered.
   bool move(std::size_t k, const Vec3& world) {
     const Vec3 from = last_[k], to = local(world);
     last_[k] = to;
@@ -150,7 +151,7 @@ class SideTracker {
   std::vector<bool> inside_, through_;
 };
 
-/// The same past a body of triangles, by the triangles that its way crosses.
+/// Like SideTracker for a body of triangles, by the triangles that a vertex' path crosses.
 class BodyTracker {
  public:
   BodyTracker(Collider collider, std::size_t vertices)
@@ -171,13 +172,13 @@ class BodyTracker {
     last_[k] = local(world);
     settle(k);
   }
-  /// How often the vertex comes out on another side than that by which it went in; of a thin body,
-  /// how often it goes through.
+  /// Returns how often the vertex leaves on another side than the one on which it entered or, for a
+  /// thin body, how often it passes through.
   int move(std::size_t k, const Vec3& world) {
     const Vec3 from = last_[k], to = local(world);
     last_[k] = to;
     int passages = 0;
-    double left_at = -1;  // of an edge, which belongs to two triangles
+    double left_at = -1;  // share at an edge, which belongs to two triangles
     for (const MeshHit& hit :
          deforming_ ? deforming_->hits(from, to) : body_.mesh->hits(from, to)) {
       const Vec3& normal = body_.mesh->normal(hit.triangle);
@@ -206,7 +207,7 @@ class BodyTracker {
   bool contains(const Vec3& p) const {
     return !is_thin() && body_.mesh->box().contains(p) && nearest(p).distance < 0;
   }
-  /// What rounding left out of its way.
+  /// Corrects the vertex' side if rounding lost a crossing.
   void settle(std::size_t k) {
     inside_[k] = contains(last_[k]);
     if (inside_[k]) entered_[k] = nearest(last_[k]).triangle;
@@ -222,10 +223,11 @@ class BodyTracker {
 
   Collider collider_;
   MeshBody body_;                             ///< at the last time
-  std::unique_ptr<DeformingBody> deforming_;  ///< null: it is rigid
-  double t_ = 0;                              ///< s, the last time
+  std::unique_ptr<DeformingBody> deforming_;  ///< null: the body is rigid
+  double t_ = 0;                              ///< s, last time
   std::vector<Vec3> last_;                    ///< [free vertices] in the body's frame
-  std::vector<int> entered_;  ///< [free vertices], of those inside: the triangle where they came in
+  /// [free vertices] for those inside, the triangle where they entered.
+  std::vector<int> entered_;
   std::vector<bool> inside_, through_;
 };
 

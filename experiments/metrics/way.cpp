@@ -9,16 +9,18 @@ namespace taut {
 
 namespace {
 
-constexpr int kSamples = 8;      ///< moments that are compared
-constexpr int kMostSteps = 64;   ///< of the exact path: it joins steps of a run that has more
-constexpr double kLeast = 0.01;  ///< of the scene's extent, what the cloth has to move
+constexpr int kSamples = 8;  ///< number of moments that are compared
+/// Most steps of the exact path: it joins steps of longer runs.
+constexpr int kMostSteps = 64;
+/// Least displacement of the cloth, as a share of the scene's extent.
+constexpr double kLeast = 0.01;
 constexpr std::size_t kMostFree = 2500;
-/// N/m. Links of 1e5 N/m go as far as those of 1e8 to 0.5 % on `drape` and to 0.1 % on `swing`;
-/// those of 1e3 N/m go 1.43 times as far on `drape`.
+/// Largest stiffness of links [N/m]. Links of 1e5 N/m move as far as those of 1e8 to 0.5 % on
+/// `drape` and to 0.1 % on `swing`; those of 1e3 N/m move 1.43 times as far on `drape`.
 constexpr double kMostStiffness = 1e5;
 
-/// How far a cloth goes in its first T, whatever its solver: where its steps lead is all that
-/// counts.
+/// How far a cloth moves in its first T. It does not depend on what the solver is, only on where
+/// its steps lead.
 class Way final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
@@ -77,15 +79,16 @@ class Way final : public Metric {
     const bool moves = std::sqrt(farthest2) >= kLeast * extent(scene_);
     return moves ? along / square : Summary::kNone;
   }
-  /// From the start to these places at time t [m], without what keeps the cloth's shape.
+  /// Displacements from the start to positions at time t [m], without the part that keeps the
+  /// cloth's shape.
   std::vector<Vec3> own_way(std::vector<Vec3> places, double t) const {
     for (std::size_t i = 0; i < places.size(); ++i) places[i] -= scene_.start.x[i];
     keep_own_way(scene_, t, places);
     return places;
   }
 
-  const Scene& scene_;                     ///< of the run, which outlives its metrics
-  int joined_, every_;                     ///< steps: of one exact step, between two moments
+  const Scene& scene_;                     ///< the run's scene, which outlives its metrics
+  int joined_, every_;                     ///< steps in one exact step, and between two moments
   std::vector<std::vector<Vec3>> places_;  ///< m, at these moments
 };
 

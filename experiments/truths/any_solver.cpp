@@ -1,5 +1,5 @@
-// What every solver keeps whatever its method: asked of those that `taut verify --solver` names, or
-// of all solvers of this program. Tolerances admit float32.
+// What every solver must keep, whatever its method: checked for the solvers that `taut verify
+// --solver` names, or for all solvers of this program. Tolerances allow for float32.
 #include <cmath>
 
 #include "core/model/index.hpp"
@@ -10,7 +10,7 @@ namespace taut {
 
 namespace {
 
-/// A free sheet of which every link is a fiftieth too long.
+/// A free sheet whose links are all a fiftieth too long.
 Scene stretched() {
   Scene s = bare::sheet(6, 5, {.shear = true});
   for (Vec3& x : s.start.x) x *= 1.02;
@@ -25,7 +25,7 @@ void momentum(Findings& findings, const std::string& solver) {
   for (Vec3& v : s.start.v) v = throw_;
   Simulation sim(s, solver, 64);
   const Vec3 way = mean(s.mesh.mass, sim.state().x) - mean(s.mesh.mass, s.start.x) - throw_;
-  // g t^2/2 (1 + c/n), -1 <= c <= 1 by the integrator
+  // g t^2/2 (1 + c/n), where the integrator decides -1 <= c <= 1
   findings.equal(solver, "fall of the centre of mass of a strained sheet over g t^2/2 at 1 s", "1",
                  -way.y() / (kG / 2), 1, 1.05 / 64);
   findings.below(solver, "its way across gravity, beyond v0 t", "m", std::hypot(way.x(), way.z()),
@@ -51,8 +51,9 @@ void pins(Findings& findings, const std::string& solver) {
   findings.below(solver, "way of two pinned vertices in 1 s", "m", way, 1e-6);
 }
 
-/// A name alone: in double, and with sweeps enough, for a descent that has not converged keeps no
-/// momentum, and float32 has a rounding that substeps multiply. A text is taken as it is.
+/// A solver given by name alone, in double and with enough sweeps: a descent that has not converged
+/// keeps no momentum, and float32 has a rounding that substeps multiply. A solver given with
+/// parameters is left as it is.
 std::string converged(const std::string& solver) {
   const SolverEntry* const entry = parse_solver(solver).entry;
   if (solver.find(':') != solver.npos || !entry->implementation.empty()) return solver;

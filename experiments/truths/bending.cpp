@@ -11,11 +11,12 @@ namespace taut {
 
 namespace {
 
-constexpr double kOverhang = 0.2, kAreaDensity = 2;  // m, kg/m^2: far above 1e-9 N of Newton
-const double kWeight = kAreaDensity * kG;            // N/m^2
+// m, kg/m^2: far above the 1e-9 N at which Newton ends.
+constexpr double kOverhang = 0.2, kAreaDensity = 2;
+const double kWeight = kAreaDensity * kG;  // N/m^2
 
-/// A level strip of two columns and square cells along -y, gravity along -z. Rows 0 and 1 are
-/// pinned: the clamp is in the middle between them, and the overhang ends at the last row.
+/// A level strip of two columns and square cells along -y, with gravity along -z. Rows 0 and 1 are
+/// pinned: the clamp is midway between them, and the overhang ends at the last row.
 Scene strip(int segments, double stiffness, double links) {
   const double l = kOverhang / (segments - 0.5);
   Scene s = bare::sheet(2, segments + 1, {.structural = true, .shear = true}, Lumping::area, l,
@@ -38,7 +39,7 @@ Tip tip(const Scene& s, const std::vector<Vec3>& x) {
   return {-out.y() / kOverhang, -out.z() / kOverhang};
 }
 
-/// Where it comes to rest: implicit Euler's steps are so long that inertia does not count.
+/// The state at rest, by steps of implicit Euler so long that inertia does not matter.
 State at_rest(Scene s) {
   s.dt = 1;
   s.damping = 0;
@@ -67,7 +68,8 @@ Scene loaded(int segments, double force) {
   return s;
 }
 
-/// From coarse to fine: how the end's distance from where it belongs shrinks, and the finest end.
+/// Refinement from coarse to fine: how the end's distance from its exact position shrinks, and the
+/// finest end.
 struct Refined {
   PowerLaw order;
   Tip finest;

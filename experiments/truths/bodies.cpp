@@ -1,4 +1,4 @@
-// Section 7: bodies of triangles, and what faces=edges keeps out of colliders.
+// Section 7: bodies of triangles, and what faces=edges keeps outside of colliders.
 #include "experiments/truths/bodies.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ class Random {
   std::mt19937_64 engine_{20};
 };
 
-/// A level sheet of 13 x 13 that is about to fall on what is below y = 0.2, moving sideways.
+/// A level sheet of 13 x 13, about to fall on something below y = 0.2 while moving sideways.
 Scene falling_sheet() {
   Scene s = under_gravity(bare::sheet(13, 13, {.structural = true, .shear = true}));
   for (std::size_t i = 0; i < s.start.x.size(); ++i) {
@@ -37,7 +37,7 @@ Scene falling_sheet() {
   return s;
 }
 
-/// Along x above y = 0, vertices `spacing` apart, none of them at x = 0 [m].
+/// A thread along x above y = 0, with vertices `spacing` apart, none of them at x = 0 [m].
 Scene thread(int n, double spacing, double height, double offset) {
   std::vector<Vec3> x;
   std::vector<Link> links;
@@ -48,7 +48,8 @@ Scene thread(int n, double spacing, double height, double offset) {
   return under_gravity(bare::scene(x, std::vector<double>(to_index(n), 1e-3), links));
 }
 
-/// Of the highest chord of the thread over x = 0 [m]; it may hang down on both sides, and swing.
+/// Height of the thread's highest chord over x = 0 [m]; the thread may hang down on both sides, and
+/// swing.
 double height_over_origin(const State& state) {
   double highest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < state.x.size(); ++i) {
@@ -84,7 +85,7 @@ TAUT_TRUTH(box_of_triangles, 7, 11,
         normal = std::max(normal, (got.normal - want.normal).norm());
       const auto first = body.mesh->first_hit(from, to);
       if (!first || want.distance < 0) continue;
-      // where it says that the path comes in, the path is on the box
+      // its entry point is on the box
       hit = std::max(hit, std::abs(surface(box, p + first->share * (q - p)).distance));
     }
     findings.below("closed form", "distance on a million segments from the box's", "m", distance,
@@ -180,7 +181,7 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
   });
   findings.slope("closed form", "order in the link angle of exp(mu phi) - T2/T1 of links", order, 2,
                  0.01);
-  // Sides whose middles are on the circle. With few of them more is held: a vertex that slides
+  // Middles of the sides are on the circle. With few sides, more is held: a vertex that slides
   // along one comes to where the rope pulls it back.
   std::vector<Vec3> polygon;
   constexpr int kSides = 960;
@@ -207,7 +208,7 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
                    speed(scene(solver, rope, std::stod(beyond) * ratio), solver, 4) > 3e-3);
   };
   const Capstan on_vertices;
-  // avbd's links start with k-min, 1 N/m: too little for 25 N on a few sweeps
+  // avbd's links start with k-min, 1 N/m: too little for 25 N in a few sweeps
   const std::string stiff_at_once = "avbd:iterations=100,k-min=1e4";
   for (const std::string& solver :
        {std::string("implicit"), std::string("mass-spring:substeps=64"), stiff_at_once})
@@ -222,7 +223,7 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
                       "carry 25 N");
   const Capstan on_links{.out = 1 / std::cos(on_vertices.angle() / 2)};
   check("mass-spring:substeps=64,faces=edges", on_links, on_links.ratio_of_links(), "1.01");
-  // at 1.01 implicit creeps by 0.5 mm/s, by 6 mm/s with 200 iterations
+  // at 1.01 implicit creeps by 0.5 mm/s, and by 6 mm/s with 200 iterations
   for (const std::string& solver : {std::string("implicit"), std::string("pd"), std::string("admm"),
                                     std::string("vbd:iterations=40"), stiff_at_once,
                                     std::string("xpbd:substeps=16,precision=double")})

@@ -24,8 +24,8 @@ inline std::shared_ptr<const TriangleMesh> box_of_triangles(const Vec3& half) {
   return std::make_shared<const TriangleMesh>(corners, triangles);
 }
 
-/// A prism along z of the polygon through these points of the x-y plane, counter-clockwise; half:
-/// of its length [m]. Convex.
+/// A convex prism along z over the polygon through these points of the x-y plane,
+/// counter-clockwise. half: half of its length [m].
 inline std::shared_ptr<const TriangleMesh> prism(const std::vector<Vec3>& polygon, double half) {
   std::vector<Vec3> corners;
   std::vector<Triangle> triangles;

@@ -14,19 +14,19 @@ namespace taut {
 /// A light rope over half of a rough cylinder about z, with a load of 1 kg at one end and a heavier
 /// one at the other.
 struct Capstan {
-  static constexpr double kFriction = 0.3, kRadius = 0.5;  ///< m
+  static constexpr double kFriction = 0.3, kRadius = 0.5;  ///< kRadius in m
   int links = 24;                                          ///< around the cylinder
-  double out = 1;  ///< of its vertices' radius, the cylinder's
+  double out = 1;  ///< radius of its vertices over that of the cylinder
 
   double angle() const { return std::numbers::pi / links; }
-  /// Of the tensions at both ends where it is about to slip: its vertices touch the cylinder, or
-  /// the middles of its links.
+  /// Ratio of the tensions at both ends on the verge of slipping, if the vertices touch the
+  /// cylinder or if the middles of the links do.
   double ratio() const { return reference::capstan_ratio(kFriction, std::numbers::pi, angle()); }
   double ratio_of_links() const {
     return reference::capstan_ratio_of_links(kFriction, std::numbers::pi, angle());
   }
 
-  /// heavy: kg.
+  /// heavy: mass of the heavier load [kg].
   Scene scene(const Shape& cylinder, double heavy) const {
     constexpr int kBelow = 4;  // links that hang on either side
     const double radius = kRadius * out, l = 2 * radius * std::sin(angle() / 2);
@@ -48,7 +48,7 @@ struct Capstan {
     s.dt = 1.0 / 128;
     return s;
   }
-  /// Of the heavy end [m/s].
+  /// Speed of the heavy end [m/s].
   double speed(const std::string& solver, const Shape& cylinder, double heavy,
                int seconds = 2) const {
     const Scene s = scene(cylinder, heavy);

@@ -185,8 +185,8 @@ TAUT_TRUTH(discrete_catenary, 4, 9,
     const auto e = reference::static_equilibrium(s);
     findings.equal(kStatic, "sag", "m", e.unique ? sag(e.x) : std::nan(""), exact, 5e-13);
   }
-  // However many sweeps, they start g dt^2 below: their directions, hence the shape at rest, are
-  // off in second order.
+  // However many sweeps there are, they start g dt^2 below. Their directions, and hence the shape
+  // at rest, are off in second order.
   for (const std::string& solver : {jakobsen(1200), jakobsen(1200, "sqrt-free"), bullet(1200)}) {
     if (!can_run(findings, solver, s)) continue;
     double off = 0;
@@ -207,7 +207,7 @@ TAUT_TRUTH(discrete_catenary, 4, 9,
   elastic.stiffness = {stiffness, stiffness, stiffness};
   const double stretched =
       reference::discrete_catenary(n, 0.8, 1.0 / n, mass * kG, stiffness).sag();
-  // Those that stop short of the step's equilibrium start g dt^2 below: off in second order, as
+  // Solvers that stop short of the step's equilibrium start g dt^2 below: off in second order, as
   // above.
   for (const auto& [solver, tolerance] :
        {std::pair("xpbd:iterations=100,substeps=1,precision=double", 1e-5),
@@ -251,7 +251,8 @@ TAUT_TRUTH(hanging_chain_sweeps, 4, 10,
     findings.equal(subject, "k = 1: strain of the top link, (N-1) g dt^2", "m", once[0],
                    15 * kG / 4096, 1e-9);
   }
-  // Bullet and XPBD leave their square-root-free or substep form in the linear range: small g.
+  // Small g keeps the square-root-free form of Bullet and the substep form of XPBD in the linear
+  // range.
   const double g = 1e-3;
   for (const int k : {1, 4, 16}) {
     const std::string sweeps = "k = " + std::to_string(k);
@@ -264,7 +265,7 @@ TAUT_TRUTH(hanging_chain_sweeps, 4, 10,
                                       Sweep::gauss_seidel, k, g / 4096),
                        2e-4);
   }
-  // n substeps of one sweep against one step of n sweeps: a factor n.
+  // n substeps of one sweep and one step of n sweeps differ by a factor n.
   const std::string substeps = jakobsen(1, "exact", "substeps=16");
   if (!can_run(findings, substeps, hanging(4, 1, 1.0 / 64))) return;
   Scene s = hanging(16, 0.1, 1.0 / 64);
@@ -309,7 +310,7 @@ TAUT_TRUTH(hanging_chain_slopes, 4, 11,
                  [&](double dt) { return largest(settled_strains(solver, 16, 4, dt, 1e-3)); });
     findings.slope(solver, "slope in dt", slope, 2, 5e-4);
   }
-  // One curve in k/dt^2: the large-N sum, within O(1/N).
+  // All lie on one curve in k/dt^2: the large-N sum, within O(1/N).
   for (const int n : {64, 128}) {
     double worst = 0;
     for (const int k : {16, 64, 256, 1024, 4096}) {

@@ -12,16 +12,17 @@ namespace taut {
 
 namespace {
 
-/// A sheet of n x n vertices and unit sides whose upper corners are `span` apart.
+/// A sheet of n x n vertices with unit sides, whose upper corners are `span` apart.
 Scene two_corners(int n, double span, const LinkChoice& links = {}) {
   Scene s = under_gravity(bare::sheet(n, n, links));
   s.pins = {0, n - 1};
-  for (int j = 0; j < n; ++j)  // planar, narrower, stretched downwards: on the way to rest
+  for (int j = 0; j < n; ++j)  // planar, narrower, stretched downwards: towards the shape at rest
     for (int i = 0; i < n; ++i) s.start.x[to_index(s.mesh.grid->index(i, j))].x() *= span;
   return s;
 }
 
-/// x(i, j) = top(i) - j l y, top the discrete catenary that carries a column at every joint.
+/// Positions x(i, j) = top(i) - j l y, where top is the discrete catenary that carries a column at
+/// every joint.
 std::vector<Vec3> columns_below_a_catenary(const Scene& s, double span) {
   const Grid grid = *s.mesh.grid;
   const double l = s.links[0].rest;
@@ -48,7 +49,7 @@ double asymmetry_of(const Simulation& sim) {
   return worst;
 }
 
-/// Slopes in k, 8 to 64 sweeps, of a sheet on corners one width apart, at rest.
+/// Slopes in k, from 8 to 64 sweeps, for a sheet at rest on corners one width apart.
 struct SquareSlopes {
   PowerLaw strain, distance, asymmetry;
 };
@@ -141,7 +142,7 @@ TAUT_TRUTH(draped_sheet, 6, 1,
     s.damping = 4;
     if (!can_run(findings, solver, s)) continue;
     const auto exact = columns_below_a_catenary(s, span);
-    s.start.x = exact;  // other starts end in other shapes: links that must not buckle do
+    s.start.x = exact;  // other starts end in other shapes, in which links that must not buckle do
     double distance = 0;
     const PowerLaw order = fit_over({1.0 / 64, 1.0 / 128, 1.0 / 256}, [&](double dt) {
       s.dt = dt;
@@ -186,7 +187,7 @@ TAUT_TRUTH(top_edge, 6, 3,
            "top edge pinned, structural links: every column is the chain under k sweeps",
            "rows stay unstrained") {
   const int n = 8, rows = n + 1;
-  const double g = 0.01;  // small, so that the square-root-free form is in its linear range
+  const double g = 0.01;  // small, to keep the square-root-free form in its linear range
   for (const int k : {1, 4, 16})
     for (const auto& [solver, tolerance] :
          {std::pair(jakobsen(k), 1e-6), {jakobsen(k, "sqrt-free"), 1e-3}, {bullet(k), 1e-3}}) {
@@ -220,8 +221,8 @@ TAUT_TRUTH(flat_square, 6, 4,
     const SquareSlopes slopes = square_slopes(s, solver);
     findings.slope(solver(8), "slope in k of the RMS strain, 8 to 64 sweeps", slopes.strain, -1,
                    0.1);
-    // Diagonals carry the middle of the upper edge, so that it sags with the strain itself:
-    // k^-1. An edge that only its own tension carries would sag with k^-1/2.
+    // Diagonals carry the middle of the upper edge, so it sags with the strain itself, k^-1. An
+    // edge that only its own tension carries would sag with k^-1/2.
     findings.slope(solver(8), "slope in k of the distance from the flat square", slopes.distance,
                    -1, 0.1);
     findings.slope(solver(8), "slope in k of the asymmetry at rest", slopes.asymmetry, -1, 0.25);
@@ -246,7 +247,7 @@ TAUT_TRUTH(locked_sheet, 6, 5,
 TAUT_TRUTH(small_strain, 6, 6,
            "e = dt^2 U f, U the strict upper part of J M^-1 J^T in processing order",
            "one Gauss-Seidel sweep at rest, linearised") {
-  // One sweep: what link i is left with is what the links after it undo, e = dt^2 U f.
+  // One sweep leaves in link i what the links after it undo: e = dt^2 U f.
   Scene s = two_corners(20, 0.8);
   s.mesh.mass.assign(s.mesh.mass.size(), 0.2 / 400);
   s.start.x = columns_below_a_catenary(s, 0.8);
@@ -267,8 +268,8 @@ TAUT_TRUTH(ball_drape, 6, 7,
            "geometry; not solver error") {
   const double radius = 0.5, l = 0.05;
   const Ball ball{Vec3(1, 2, 3), radius};
-  // Two vertices on the ball, l apart, and a right triangle with legs l: its deepest point is the
-  // middle of the hypotenuse.
+  // Two vertices on the ball, l apart, are corners of a right triangle with legs l, whose deepest
+  // point is the middle of the hypotenuse.
   const auto depth_of_middle = [&](double chord) {
     const double half = std::asin(chord / 2 / radius);
     const Vec3 a = ball.center + radius * Vec3(std::sin(half), std::cos(half), 0);
@@ -300,8 +301,8 @@ TAUT_TRUTH(mirror_symmetry, 6, 8,
       findings.below(solver, "asymmetry after 2 s", "m", asymmetry(solver), 1e-11);
   if (const std::string springs = mass_spring("verlet", 0.1); can_run(findings, springs, s))
     findings.below(springs, "asymmetry after 2 s", "m", asymmetry(springs), 1e-11);
-  // Gauss-Seidel: at rest the asymmetry follows the residual (flat-square measures its slope). In
-  // motion it does not: converged sweeps still pick one of many sets of redundant multipliers.
+  // With Gauss-Seidel at rest the asymmetry follows the residual (flat-square measures its slope).
+  // In motion it does not: converged sweeps still pick one of many sets of redundant multipliers.
   if (const std::string many = jakobsen(1024); can_run(findings, many, s))
     findings.holds(many, "in motion converged Gauss-Seidel stays asymmetric",
                    asymmetry(many) > 1e-4);

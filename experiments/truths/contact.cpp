@@ -22,7 +22,7 @@ Scene above_plane(double height, const Vec3& normal, double friction) {
   return s;
 }
 
-/// Share of particles, evenly spread over one step's travel, that cross a solid without being seen.
+/// Share of particles, evenly spread over one step's displacement, that cross a solid unseen.
 double missed(const std::string& solver, const Collider& collider, double travel) {
   const int count = 400;
   std::vector<Vec3> x;
@@ -90,7 +90,7 @@ TAUT_TRUTH(incline_friction, 7, 2,
           solver, factor < 1 ? "slides at mu = 0.99 tan(slope)" : "sticks at mu = 1.01 tan(slope)",
           moved == (factor < 1));
     }
-    // On the level: v falls by mu g dt a step, so the distance is v0^2/(2 mu g) to first order.
+    // On a level plane v falls by mu g dt a step, so the distance is v0^2/(2 mu g) to first order.
     Scene level = above_plane(0, Vec3::UnitY(), mu);
     level.start.v.assign(2, Vec3(2, 0, 0));
     Simulation skid(level, solver, 128);
@@ -159,8 +159,8 @@ TAUT_TRUTH(capstan, 7, 4, "T2/T1 -> exp(mu phi) around a rough cylinder, order 2
   findings.slope("closed form", "order in the link angle of T2/T1 - exp(mu phi)", order, 2, 0.02);
   findings.equal("closed form", "T2/T1 for half a turn at mu = 0.3, 128 links", "1",
                  reference::capstan_ratio(mu, wrap, wrap / 128), std::exp(mu * wrap), 2e-4);
-  // Over a ball, and over a cylinder across the rope: a light rope of 24 links over its top,
-  // heavier at one end; held below the ratio.
+  // A light rope of 24 links over the top of a ball, and of a cylinder across the rope. It is
+  // heavier at one end, and held below the ratio.
   const int n = 24;
   const double radius = 0.5, angle = wrap / n, l = 2 * radius * std::sin(angle / 2);
   const auto slip = [&](const std::string& solver, const Shape& shape, double ratio) {

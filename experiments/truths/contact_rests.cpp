@@ -1,4 +1,4 @@
-// Section 7, cloth in contact: where it rests, and what one step in contact has to be.
+// Section 7, cloth in contact: where it rests, and what a step in contact must be.
 #include <cmath>
 
 #include "core/model/angle.hpp"
@@ -10,7 +10,7 @@ namespace taut {
 
 namespace {
 
-/// A string of two columns, pinned on top of a smooth cylinder, over which it hangs to one side.
+/// A string of two columns, pinned on top of a smooth cylinder, that hangs over one side of it.
 Scene string_over_cylinder() {
   const int n = 13;
   Scene s = under_gravity(
@@ -25,8 +25,8 @@ Scene string_over_cylinder() {
   return s;
 }
 
-/// The minimum of weight and strain outside of the colliders: implicit Euler's step where inertia
-/// is nothing, its contact an active set.
+/// The minimum of weight and strain outside the colliders: a step of implicit Euler so long that
+/// inertia does not matter, with contact as an active set.
 std::vector<Vec3> rest_near(Scene s, const std::vector<Vec3>& x) {
   s.dt = 1000;
   s.damping = 0;
@@ -34,7 +34,7 @@ std::vector<Vec3> rest_near(Scene s, const std::vector<Vec3>& x) {
   return reference::ImplicitStep(s, state, 0, s.stiffness).minimum(x).x;
 }
 
-/// With `sweeps` for those whose iterations are dear.
+/// Elastic solvers, with `sweeps` for those whose iterations are expensive.
 std::vector<std::string> elastic_solvers(int sweeps) {
   const std::string n = std::to_string(sweeps);
   return {"implicit", "pd:iterations=" + n, "admm:iterations=" + n,
@@ -92,7 +92,7 @@ TAUT_TRUTH(strip_over_an_edge, 7, 7,
            "a heavy strip lifts off sqrt(2) a behind an edge; its end, a beyond it, is "
            "(sqrt(2)/12 + 1/8) w a^4/B lower",
            "linear beam: no moment and no slope where it lifts off") {
-  // 0.2 m on the table, 0.1 m beyond: rows carry, and one lies just behind the edge.
+  // 0.2 m on the table, 0.1 m beyond: rows carry, and one is just behind the edge.
   const double l = 0.01, overhang = 0.1, width = 0.02, density = 0.3, stiffness = 7e-3;
   const int rows = 31;
   Scene s = under_gravity(bare::sheet(3, rows, {.structural = true, .shear = true}, Lumping::area,

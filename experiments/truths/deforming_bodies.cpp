@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kQuarterSecond = 16;
 
-/// A ring about the y axis with a hexagon for its section.
+/// A ring about the y axis with a hexagonal section.
 std::shared_ptr<const TriangleMesh> ring() {
   constexpr int kAround = 10, kAcross = 6;
   std::vector<Vec3> x;
@@ -29,7 +29,7 @@ std::shared_ptr<const TriangleMesh> ring() {
   return std::make_shared<const TriangleMesh>(std::move(x), std::move(triangles));
 }
 
-/// A level sheet that falls on a ring, which goes as `motion` says.
+/// A level sheet that falls on a ring, which moves by `motion`.
 Scene sheet_on_ring(const Motion& motion) {
   Scene s = under_gravity(bare::sheet(13, 13, {.structural = true, .shear = true}));
   for (Vec3& x : s.start.x) x = {x.x() - 0.47, 0.2, x.y() + 0.52};
@@ -40,7 +40,7 @@ Scene sheet_on_ring(const Motion& motion) {
   return s;
 }
 
-/// By a fifth in a quarter of a second.
+/// Frames in which the body grows by a fifth in a quarter of a second.
 std::shared_ptr<const BodyFrames> swelling(const Collider& collider) {
   auto frames = std::make_shared<BodyFrames>();
   frames->fps = 20;
@@ -51,7 +51,7 @@ std::shared_ptr<const BodyFrames> swelling(const Collider& collider) {
   return frames;
 }
 
-/// The same with the motion told by frames.
+/// The same scene with the collider's motion given by frames.
 Scene by_frames(Scene s, double fps) {
   Collider& collider = s.colliders[0];
   auto& body = std::get<MeshBody>(collider.shape);
@@ -68,8 +68,9 @@ Scene by_frames(Scene s, double fps) {
   return s;
 }
 
-/// Their substeps divide a step into 1, 2, 4, ..., 64. `implicit` needs as many iterations to
-/// converge in contact: after 30 rounding still chooses who touches, and makes 1e-15 m 1e-4.
+/// A setting of every solver, whose substeps divide a step into 1, 2, 4, ..., 64. `implicit` needs
+/// 200 iterations to converge in contact: after 30, rounding still decides which vertices touch,
+/// and turns 1e-15 m into 1e-4.
 std::vector<std::string> every_solver() {
   return {jakobsen(8),
           "xpbd:substeps=4,iterations=2,precision=double",
@@ -112,7 +113,7 @@ TAUT_TRUTH(body_in_a_moving_frame, 7, 15,
       Scene moves = at_rest;
       moves.colliders[0].motion.velocity = speed;
       for (Vec3& v : moves.start.v) v += speed;
-      // As it swells, 200 iterations do not converge, either.
+      // While the ring swells, 200 iterations do not converge, either.
       const int steps = swells && solver_name(solver) == "implicit" ? 3 : kQuarterSecond;
       State seen = Simulation(moves, solver, steps).state();
       for (Vec3& x : seen.x) x -= steps * moves.dt * speed;

@@ -21,7 +21,7 @@ inline Scene hung_sheet(int side) {
   return s;
 }
 
-/// Pinned by its top edge, it begins 45 degrees aside.
+/// A sheet pinned by its top edge, which starts 45 degrees aside.
 inline Scene swinging_sheet(int side) {
   Scene s = hung_sheet(side);
   s.pins.clear();
@@ -30,22 +30,24 @@ inline Scene swinging_sheet(int side) {
   return s;
 }
 
-/// The first step of a scene, and how far from its exact end iterations leave it.
+/// The first step of a scene, and how far iterations stay from its exact end.
 class FirstStep {
  public:
   explicit FirstStep(const Scene& s)
       : scene_(s), step_(s, s.start, 0, s.stiffness), exact_(step_.minimum(s.start.x).x) {}
 
-  double distance(std::string_view solver, int iterations) const {  ///< RMS [m]
+  /// RMS [m].
+  double distance(std::string_view solver, int iterations) const {
     return step_.distance(end(solver, iterations), exact_);
   }
-  double farthest(std::string_view solver, int iterations) const {  ///< the worst vertex [m]
+  /// Worst vertex [m].
+  double farthest(std::string_view solver, int iterations) const {
     return max_distance(end(solver, iterations), exact_);
   }
   double residual(std::string_view solver, int iterations) const {  ///< N
     return step_.residual(end(solver, iterations));
   }
-  /// From where the vertices would go without links [m].
+  /// Distance of the exact end from where the vertices would go without links [m].
   double way() const { return step_.distance(step_.prediction(), exact_); }
 
  private:

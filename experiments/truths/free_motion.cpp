@@ -12,7 +12,7 @@ namespace {
 const Vec3 kGravity(0, -kG, 0);
 const Vec3 kThrow(3, 4, -1);  // m/s
 
-/// Two free particles far apart, thrown together.
+/// Two free particles far apart, thrown with the same velocity.
 Scene thrown() {
   Scene s = bare::scene({Vec3::Zero(), Vec3(1, 0, 0)}, {0.3, 2.0}, {});
   s.gravity = kGravity;
@@ -20,13 +20,13 @@ Scene thrown() {
   return s;
 }
 
-/// Settings that step as Verlet does.
+/// Settings that step like Verlet.
 std::vector<std::string> verlet_like() {
   return {jakobsen(1), bullet(1), xpbd(1), mass_spring("verlet", 1),
           mass_spring("symplectic-euler", 1)};
 }
 
-/// One horizontal face of equal masses, wind of strength c, nothing else.
+/// One horizontal face of equal masses in wind of strength c, and nothing else.
 Scene face(double strength, Wind::Law law) {
   Scene s = bare::scene({Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 0, -0.5)}, {0.1, 0.1, 0.1}, {});
   s.mesh.triangles = {{0, 1, 2}};
@@ -38,7 +38,7 @@ Scene face(double strength, Wind::Law law) {
 constexpr double kArea = 0.25, kMass = 0.3;
 
 /// A strip hung by its top edge. Each quad is covered twice, once per diagonal, at half the
-/// strength: the only triangulation that loads the vertices of a row alike.
+/// strength: only this triangulation loads the vertices of a row equally.
 Scene strip(double wind_speed, double strength, double area_density) {
   const int rows = 9;
   const double width = 0.125, height = 1;
@@ -129,7 +129,8 @@ TAUT_TRUTH(wind_face, 3, 6, "v_n = (m g/cA)(1 - (1 - cA dt/m)^n); stable iff cA 
     sim.step(1000);
     findings.equal(solver, "terminal speed m g/(cA)", "m/s", -sim.v(0).y(), terminal, 1e-11);
 
-    // Stable while cA dt/m < 2: the factor 1 - rate per step is measured on both sides.
+    // Stable while cA dt/m < 2: the factor 1 - rate per step is measured on both sides of this
+    // limit.
     double factors[2];
     for (const bool above : {false, true}) {
       Scene edge = face((above ? 2.001 : 1.999) * kMass / (kArea * s.dt), Wind::Law::relative);
@@ -193,8 +194,9 @@ TAUT_TRUTH(wind_tilt, 3, 8,
   check(xpbd(64));
 }
 
-/// In float, x + (x - x') is a whole number of units in the last place of x, so that every step
-/// adds gravity's g dt^2 rounded to such units: not noise, but another gravity in each binade.
+/// In float, x + (x - x') is a whole number of units in the last place of x, so every step adds
+/// gravity's g dt^2 rounded to such units. This is not noise but a different gravity in each
+/// binade.
 TAUT_TRUTH(float_gravity, 3, 9,
            "in float a step adds g dt^2 rounded to units in the last place of the coordinates",
            "x - x' is exact (Sterbenz 1974), so only the sum is rounded") {
@@ -219,9 +221,8 @@ TAUT_TRUTH(free_spin, 3, 11,
   const double spin = 6;
   const auto check = [&](const std::string& solver, double angular, double tolerance) {
     Scene s = bare::pair(1, 1, 1, 1);
-    const Vec3 throws(1, 2, -0.5),
-        center = (s.start.x[0] + s.start.x[1]) / 2,
-        axis = Vec3(1, -2, 0).normalized();  // at a right angle to the link
+    const Vec3 throws(1, 2, -0.5), center = (s.start.x[0] + s.start.x[1]) / 2,
+                                   axis = Vec3(1, -2, 0).normalized();  // perpendicular to the link
     for (const std::size_t i : {0u, 1u})
       s.start.v[i] = throws + spin * axis.cross(s.start.x[i] - center);
     if (!can_run(findings, solver, s)) return;

@@ -1,4 +1,4 @@
-// Section 8, third part: what papers claim of methods for one step, and of integrators.
+// Section 8, third part: claims of papers about methods for a single step, and about integrators.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -82,7 +82,7 @@ TAUT_TRUTH(fast_projection, 8, 29, "a sheet whose links are projected all at onc
 
 namespace {
 
-/// Iterations of the first step until the strain is a ten-thousandth of what it is without any.
+/// Number of iterations of the first step until the strain is a ten-thousandth of that without any.
 double needed(const Scene& s, const std::string& solver) {
   const auto left = [&](int iterations) {
     const State end =
@@ -102,7 +102,7 @@ double needed(const Scene& s, const std::string& solver) {
 }
 
 /// A metre of rigid links at 45 degrees, held by its upper end. In the first step it turns there by
-/// h^2 g/l, which the pull of all N links takes across: steps of h^4 N^3 are alike.
+/// h^2 g/l, and the pull of all N links acts across this angle: steps with equal h^4 N^3 are alike.
 Scene chain_let_go(int links, double dt) {
   Scene s = under_gravity(bare::chain(links, 1, 1.0 / links, Vec3(0, -1, -1).normalized()));
   s.dt = dt;
@@ -142,7 +142,7 @@ TAUT_TRUTH(solutions_and_sweeps, 8, 30,
 
 namespace {
 
-/// A mass on a spring along its axis, of one step a time `angle` [rad] of its swing.
+/// A mass on a spring along its axis; a step advances its swing by `angle` [rad].
 struct Oscillator {
   Oscillator(double angle, double stiffness = 10) : scene(bare::pair(1.05, 1, 1, 1)), k(stiffness) {
     scene.pins = {0};

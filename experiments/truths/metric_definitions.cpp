@@ -1,4 +1,4 @@
-// Section 10: metrics on states whose values are known by construction.
+// Section 10: metrics of states whose values are known by construction.
 #include <cmath>
 #include <numbers>
 
@@ -13,7 +13,7 @@ namespace taut {
 
 namespace {
 
-/// A metric's value for a run through these states; NaN: it has none for this scene.
+/// A metric's value for a run through these states; NaN if it has none for this scene.
 double measured(std::string_view value, Scene scene, const std::vector<State>& states) {
   scene.steps = static_cast<int>(states.size()) - 1;
   const auto [entry, spec] = find_value(value);
@@ -150,7 +150,7 @@ TAUT_TRUTH(metric_tunnelling, 10, 6,
   Scene s = under_gravity(bare::scene({Vec3(0, 1, 0), Vec3(3, 1, 0)}, {1, 1}, {}));
   s.colliders.push_back({Ball{Vec3::Zero(), 0.3}, {}, 0});
   std::vector<State> states(2, s.start);
-  for (Vec3& x : states[1].x) x.y() = -1;  // one through the middle, one past it
+  for (Vec3& x : states[1].x) x.y() = -1;  // one vertex through the middle, one past the ball
   findings.equal("metric:tunnelling", "tunnelling.count of one vertex through and one past", "1",
                  measured("tunnelling.count", s, states), 1, 0);
   s.colliders = {{Capsule{Vec3(-1, 0, 0), Vec3(1, 0, 0), 0.3}, {}, 0}};
@@ -223,7 +223,7 @@ TAUT_TRUTH(metric_energy_loss, 10, 10,
            "a body on prescribed energies") {
   const Scene s = sheet();
   std::vector<State> states;
-  for (int n = 0; n <= 130; ++n) {  // three swings of 40 steps, and a part of a fourth
+  for (int n = 0; n <= 130; ++n) {  // three swings of 40 steps, and part of a fourth
     const double moves = std::pow(std::sin(std::numbers::pi * n / 40), 2);  // J/kg
     State state = s.start;
     for (Vec3& v : state.v) v.x() = std::sqrt(2 * moves);

@@ -1,4 +1,4 @@
-// Section 1: what one projection of one link does, in closed form.
+// Section 1: effect of one projection of one link, in closed form.
 #include <cmath>
 
 #include "experiments/truths/truth.hpp"
@@ -7,9 +7,10 @@ namespace taut {
 
 namespace {
 
-/// Vasilovici's second listing ("the algorithm then becomes") as printed, a test double that must
-/// never be used to simulate: its first line belongs to the square-root-free form and its last two
-/// to the exact one, so `diff` is undefined there and, whatever it may mean, the signs push apart.
+/// Vasilovici's second listing ("the algorithm then becomes") as printed. This is a test double
+/// that must never be used to simulate: its first line belongs to the square-root-free form and its
+/// last two to the exact one. `diff` is therefore undefined there and, whatever it may mean, the
+/// signs push apart.
 ///
 ///     Delta *= restlength * restlength / (delta * delta + restlength * restlength) - 0.5
 ///     x1 += delta * 0.5 * diff;
@@ -19,7 +20,8 @@ enum class PrintedReading {
   literal         ///< diff = (d - r)/d, from Vasilovici's first listing
 };
 
-/// Strain after one application to a link of unit rest length and strain e, equal masses.
+/// Strain after one application of the listing to a link of unit rest length and strain e, with
+/// equal masses.
 double printed_strain(PrintedReading reading, double e) {
   const double rest = 1, d = rest + e;
   double x1 = 0, x2 = d;
@@ -36,8 +38,8 @@ constexpr double kRest = 0.7;
 constexpr double kEpsilon = 2.3e-16, kFloatEpsilon = 1.2e-7;
 const char* const kFloat = ",precision=float";
 
-/// Strain of a link after one step from rest, which is nothing but the sweeps; below -1 if its ends
-/// have changed sides.
+/// Strain of a link after one step from rest, which consists of the sweeps alone; below -1 if its
+/// ends have changed sides.
 double projected(std::string_view solver, double strain, double mass1 = 1, double mass2 = 3) {
   Simulation sim(bare::pair(kRest * (1 + strain), kRest, mass1, mass2), solver);
   const Vec3 before = (sim.x(1) - sim.x(0)).normalized();
@@ -117,7 +119,7 @@ TAUT_TRUTH(relative_correction, 1, 4, "sqrt-free / exact correction = 1 + e/(2 +
                    const double ratio = (e - projected(approximate, e)) / (e - projected(exact, e));
                    return ratio - (1 + e / (2 + 2 * e + e * e));
                  }),
-                 1e-12);  // at e = 1e-3 the strains carry three digits less
+                 1e-12);  // at e = 1e-3 the strains have three digits fewer
 }
 
 TAUT_TRUTH(far_overshoot, 1, 5,
@@ -148,7 +150,7 @@ TAUT_TRUTH(wrong_signs, 1, 6,
   findings.below(literal, "distance from e + e^2 (2 + e)/(2 (2 + 2e + e^2)) = e + e^2/2 + ...", "1",
                  worst_literal, 1e-14);
   findings.equal(flipped, "least growth of a stretch per pass", "1", least_growth, 2, 0.01);
-  // Where the corrected form leaves nothing of a stretch of 1 % after three passes, both grow.
+  // The corrected form leaves nothing of a stretch of 1 % after three passes; both of these grow.
   double corrected = 0.01, a = 0.01, b = 0.01;
   for (int pass = 0; pass < 10; ++pass) {
     corrected = sqrt_free(corrected);

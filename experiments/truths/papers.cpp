@@ -1,4 +1,4 @@
-// Section 8, second part: what papers claim of the solvers of this tree.
+// Section 8, second part: claims of papers about the solvers of this tree.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,8 +13,8 @@ namespace taut {
 
 namespace {
 
-/// Section 6.1 of Small Steps: 20 particles of 1 kg with the fixed one, g = 10 m/s^2. The paper
-/// prints no frame time: 0.03 s gives both of its numbers to their last digits.
+/// Section 6.1 of Small Steps: 20 particles of 1 kg including the fixed one, g = 10 m/s^2. The
+/// paper prints no frame time: 0.03 s reproduces both of its numbers to their last digits.
 Scene small_steps_chain(double last_mass) {
   Scene s = bare::chain(19, 19, 1);
   s.gravity = {0, -10, 0};
@@ -24,7 +24,7 @@ Scene small_steps_chain(double last_mass) {
   return s;
 }
 
-/// Root of the sum of the squares of |x_b - x_a| - r [m].
+/// Root of the sum of squares of |x_b - x_a| - r [m].
 double constraint_error(const Scene& s, const State& state) {
   double sum = 0;
   for (const double e : strains(s, state)) sum += e * e;
@@ -101,9 +101,9 @@ TAUT_TRUTH(vbd_bounded, 8, 20,
     const Scene s = elastic(swinging_sheet(16), k);
     const std::string solver = "vbd:iterations=1,substeps=1,order=coloured";
     if (!can_run(findings, solver, s)) return;
-    // Far from converged, what it does hangs on last digits: eight masses that differ in the tenth.
-    // At 1e8 N/m one or another start in twenty throws a vertex up to 30 m away, however the
-    // vertex' system is solved: there the median is bounded, below all are.
+    // Far from convergence, the result depends on last digits: so eight runs have masses that
+    // differ in the tenth digit. At 1e8 N/m about one start in twenty throws a vertex up to 30 m
+    // away, however the vertex' system is solved. There the median is bounded; below, all are.
     double gained = 0;
     std::vector<double> farthest;
     for (int start = 0; start < 8; ++start) {

@@ -22,8 +22,8 @@ Scene pendulum(double amplitude, double dt) {
   return s;
 }
 
-/// When the mass first passes below the pivot [s]; there its speed is constant to first order, so
-/// that a straight line between two steps is exact to dt^3.
+/// Time at which the mass first passes below the pivot [s]. Its speed is constant there to first
+/// order, so a straight line between two steps is exact to dt^3.
 double quarter_period(const std::function<Vec3()>& next, double dt) {
   double before = 1;
   for (int n = 1; n < 1000000; ++n) {
@@ -113,8 +113,8 @@ TAUT_TRUTH(pendulum_period, 4, 1,
       const Convergence quarter = converge(
           [&](double dt) { return solver_quarter(solver, amplitude, dt); }, exact, 8, 12, 1);
       findings.equal(solver, "quarter period for dt -> 0" + at, "s", quarter.limit, exact, 1e-5);
-      // Small swings lose height in first order but keep time in second; near the top the height
-      // is not yet asymptotic at these steps, the time is.
+      // Small swings lose height in first order but keep time in second. Near the top the height is
+      // not yet asymptotic at these steps, but the time is.
       const bool small = degrees < 100;
       const PowerLaw order =
           small ? converge([&](double dt) { return turning_angle(solver, amplitude, dt); },
@@ -149,8 +149,8 @@ TAUT_TRUTH(small_swings, 4, 2,
     check(solver, "pendulum", pendulum(1e-5, dt), 1, std::sqrt(kG), 1e-6);
 }
 
-/// The chain's modes: implicit Euler exactly for one link only. In a chain the corrections of a
-/// step act along links that are still turning while the sweeps go on.
+/// Modes of a chain. Sweeps are exactly implicit Euler for one link only: in a chain the
+/// corrections of a step act along links that still turn while the sweeps go on.
 TAUT_TRUTH(chain_swings, 4, 3,
            "transverse modes of a chain obey z^2 - 2 mu z + mu = 0 with mu of the sweeps, "
            "within 1 % of 1/(1 + w^2 dt^2) for the low ones",

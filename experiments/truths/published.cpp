@@ -1,4 +1,4 @@
-// Section 8: numbers that papers print, and how near to them the same set-up comes here.
+// Section 8: numbers that papers print, and how closely the same set-up reproduces them here.
 #include <cmath>
 
 #include "core/reference/fit.hpp"
@@ -9,8 +9,8 @@ namespace taut {
 
 namespace {
 
-/// Largest stretch [m] over 30 s of a chain of 20 free particles, 1 cm apart, the last 1e5 times
-/// heavier than the others, released unstrained.
+/// Largest stretch [m] over 30 s of a chain of 20 free particles, 1 cm apart and released
+/// unstrained, whose last one is 1e5 times as heavy as the others.
 double peak_stretch(const Scene& s, const std::string& solver) {
   Simulation sim(s, solver);
   const int n = static_cast<int>(s.links.size());
@@ -27,8 +27,8 @@ TAUT_TRUTH(small_steps, 8, 1,
   s.mesh.mass.back() = 1e5;
   s.dt = 1.0 / 64;
   s.steps = 64 * 30;
-  // The paper prints 322.1 m and 3.2 m, so a ratio of 99.1 to 102.3 by the rounding of its digits,
-  // and no frame time: 1/64 s here.
+  // The paper prints 322.1 m and 3.2 m, hence a ratio of 99.1 to 102.3 by the rounding of its
+  // digits, and no frame time: 1/64 s here.
   constexpr double kPrinted = 322.1 / 3.2, kDigits = 322.15 / 3.15 - kPrinted;
   constexpr double kHere = 99.6;  // what Jakobsen's exact projection and XPBD both give here
   const auto ratio = [&](const std::string& iterations, const std::string& substeps) {
@@ -82,7 +82,7 @@ TAUT_TRUTH(xpbd_chain_force, 8, 3,
       "xpbd",
       "force error of 6 / 2 / 0.5 % at 50 / 100 / 1000 iterations (figure 3a): the "
       "chain's link length, start and time of comparison are not in the paper");
-  // What can be held: at rest the corrections carry the exact weight, for any number of sweeps.
+  // What can be checked: at rest the corrections carry the exact weight, for any number of sweeps.
   for (const int k : {1, 50}) {
     const std::string solver =
         "xpbd:order=mesh,iterations=" + std::to_string(k) + ",substeps=1,precision=double";
@@ -99,8 +99,8 @@ TAUT_TRUTH(xpbd_chain_force, 8, 3,
 
 TAUT_TRUTH(tetrahedron, 8, 4, "three to four passes are enough for a tetrahedron",
            "Jakobsen 2001, section 5") {
-  // "3 or 4 iterations should be enough": six links, a vertex pushed out by a fifth. Enough is a
-  // tenth of the strain: the paper gives no number.
+  // "3 or 4 iterations should be enough": six links, with a vertex pushed out by a fifth. The paper
+  // gives no number; here a tenth of the strain is enough.
   const std::vector<Vec3> x{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   std::vector<Link> links;
   for (int i = 0; i < 4; ++i)
@@ -121,7 +121,7 @@ TAUT_TRUTH(tetrahedron, 8, 4, "three to four passes are enough for a tetrahedron
 
 TAUT_TRUTH(three_sweeps, 8, 5, "three sweeps suffice for a good result",
            "Vasilovici, Cloth Simulation Report, section 4.1") {
-  // "3 iterations suffice": by how much, on the sheet that Vasilovici shows.
+  // "3 iterations suffice": to what accuracy, on the sheet that Vasilovici shows.
   for (const std::string& solver : {jakobsen(3, "sqrt-free"), bullet(3)}) {
     Scene s = under_gravity(bare::sheet(16, 16, {.shear = true}));
     s.pins = {0, 15};

@@ -1,4 +1,4 @@
-// Section 9: the reference solvers' own order and floor.
+// Section 9: order and floor of the reference solvers themselves.
 #include <cmath>
 
 #include "core/model/angle.hpp"
@@ -12,13 +12,13 @@ namespace taut {
 
 namespace {
 
-const std::vector<double> kOrderSteps{1.0 / 256, 1.0 / 512,
-                                      1.0 / 1024};  ///< s, to fit an order in dt
+/// Steps to fit an order in dt [s].
+const std::vector<double> kOrderSteps{1.0 / 256, 1.0 / 512, 1.0 / 1024};
 
-/// The same below the periods of springs [s].
+/// Steps to fit an order, below the periods of springs [s].
 const std::vector<double> kElasticSteps{1.0 / 4096, 1.0 / 8192, 1.0 / 16384};
 
-/// A draped sheet at its equilibrium, turned about its pin line and let go.
+/// A draped sheet at its equilibrium, turned about its pin line and released.
 Scene swung(int n, double degrees) {
   Scene s = under_gravity(bare::sheet(n, n));
   s.pins = {0, n - 1};
@@ -29,7 +29,7 @@ Scene swung(int n, double degrees) {
   return s;
 }
 
-/// A flat sheet with shear links, hung by its top row and let go: its rows stay straight.
+/// A flat sheet with shear links, hung by its top row and released: its rows stay straight.
 Scene let_go(int n, double degrees) {
   Scene s = under_gravity(bare::sheet(n, n, {.shear = true}));
   for (int i = 0; i < n; ++i) s.pins.push_back(i);
@@ -38,8 +38,8 @@ Scene let_go(int n, double degrees) {
   return s;
 }
 
-/// Order in dt of the distance after 0.25 s between a solver and where the motion was found to
-/// converge to; NaN if it does not converge.
+/// Order in dt of the distance after 0.25 s between a solver and the converged motion; NaN if there
+/// is none.
 PowerLaw order_from(const reference::Trajectory& converged, const std::vector<double>& steps,
                     const Scene& s, const std::string& solver) {
   return fit_over(steps, [&](double dt) {

@@ -1,4 +1,4 @@
-// Section 3: what is let go falls freely from the state that it had.
+// Section 3: released pins fall freely from the state that they had.
 #include <numeric>
 
 #include "experiments/truths/truth.hpp"
@@ -9,12 +9,12 @@ namespace {
 
 constexpr int kHeld = 16, kFree = 48;  // steps
 
-/// Verlet's, symplectic Euler's and implicit Euler's way in n steps from the velocity v.
+/// Displacement in n steps of Verlet, symplectic Euler or implicit Euler from the velocity v.
 Vec3 fallen(const Scene& s, const Vec3& v, int n) {
   return n * s.dt * v + n * (n + 1) / 2.0 * s.dt * s.dt * s.gravity;
 }
 
-/// One step of each with a single substep, in double.
+/// A setting of each solver with a single substep, in double.
 std::vector<std::string> steppers() {
   return {jakobsen(4),
           bullet(4),
@@ -29,8 +29,9 @@ std::vector<std::string> steppers() {
           "bullet-deformable:substeps=1"};
 }
 
-/// Vertex descent and a step of conjugate gradients end before what is inside the cloth has
-/// cancelled: their centre of mass is pulled along.
+/// Whether a step of the solver leaves the centre of mass alone. Vertex descent and a step of
+/// conjugate gradients end before forces inside the cloth have cancelled, which pulls the centre
+/// along.
 bool balances(const std::string& solver) {
   const std::string name = solver_name(solver);
   return name != "vbd" && name != "avbd" && name != "bullet-deformable";

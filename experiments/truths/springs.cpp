@@ -23,7 +23,7 @@ Scene oscillator(double dt, double out) {
 
 double displacement(const Simulation& sim) { return -sim.x(1).y() - 1; }
 
-/// The dominant multiplier per step of small displacements; negative when they alternate.
+/// Dominant multiplier per step of small displacements; negative if they alternate.
 double multiplier(const std::string& solver, double dt) {
   Simulation sim(oscillator(dt, 1e-6), solver, 24);
   const double before = displacement(sim);
@@ -31,7 +31,7 @@ double multiplier(const std::string& solver, double dt) {
   return displacement(sim) / before;
 }
 
-/// Largest displacement of a perturbed flat grid after 600 steps, over the first.
+/// Largest displacement of a perturbed flat grid after 600 steps, relative to the initial one.
 double growth(const std::string& solver, double dt, const LinkChoice& links) {
   Scene s = bare::sheet(20, 20, links, Lumping::equal, 19, 19, 400);  // 1 kg, 1 m
   for (std::size_t i = 0; i < s.start.x.size(); ++i)
@@ -46,7 +46,7 @@ constexpr int kLinks = 8;            // from the pinned row to the last
 constexpr double kVertexMass = 0.1;  // kg, of every vertex
 constexpr double kHeight = 1;        // m
 
-/// Columns of 8 links that hang from their first vertices; the links along the rows carry nothing.
+/// Columns of 8 links that hang from their first vertices; links along the rows carry nothing.
 Scene hung(int columns) {
   Scene s = under_gravity(bare::sheet(columns, kLinks + 1, {.structural = true}, Lumping::equal,
                                       kHeight, kHeight, kVertexMass * columns * (kLinks + 1)));
@@ -55,7 +55,7 @@ Scene hung(int columns) {
   return s;
 }
 
-/// How far off the extension of a column's link is at worst, over the least extension.
+/// Largest error in the extension of a column's link, relative to the least extension.
 double worst_extension(const Scene& s, const State& state, double stiffness) {
   const std::vector<double> extension = strains(s, state);
   double most = 0;

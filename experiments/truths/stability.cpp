@@ -1,4 +1,4 @@
-// Section 5: what relaxation does to Verlet's stability.
+// Section 5: effect of relaxation on Verlet's stability.
 #include <cmath>
 #include <numbers>
 
@@ -23,7 +23,7 @@ Scene strained_chain(const Eigen::VectorXd& strain) {
   return s;
 }
 
-/// p, q of the recurrence of the first link's strain after `skip` steps.
+/// Coefficients p and q of the recurrence of the first link's strain after `skip` steps.
 std::array<double, 2> measured_recurrence(const Scene& s, const std::string& solver, int skip,
                                           int steps) {
   Simulation sim(s, solver);
@@ -42,7 +42,7 @@ TAUT_TRUTH(sweep_eigenvalue, 5, 1,
            "a mode that the sweeps multiply by mu obeys z^2 - 2 mu z + mu = 0: stable iff "
            "-1/3 <= mu <= 1",
            "e' = G^k (2e - e'')") {
-  // Every real eigenvalue of a sweep, started in its eigenvector: e'' = 2 mu e' - mu e.
+  // Starts in the eigenvector of every real eigenvalue of a sweep: e'' = 2 mu e' - mu e.
   const int n = 7;
   for (const bool jacobi : {false, true}) {
     const std::string solver = with(jakobsen(1), jacobi ? "method=jacobi" : "");
@@ -149,7 +149,7 @@ TAUT_TRUTH(over_relaxation, 5, 4, "one sweep with omega > 4/3 is unstable",
     const Scene s = strained_chain(Eigen::VectorXd::Constant(1, 1e-9));
     if (!can_run(findings, solver("1.33"), s)) continue;
     for (const char* omega : {"1.33", "1.34"}) {
-      // |strain| alternates within its envelope where the roots are complex; here both are real.
+      // Where the roots are complex, |strain| alternates within its envelope; here both are real.
       const double expected = std::abs(reference::verlet_root(1 - std::stod(omega)));
       findings.equal(solver(omega), "growth per step", "1", growth(solver(omega)), expected, 2e-3);
     }

@@ -54,7 +54,7 @@ void Findings::add(Finding f) {
 
 namespace {
 
-/// NaN is never within any tolerance.
+/// Whether the number is within the tolerance; NaN never is.
 bool within(double measured, double expected, double tolerance) {
   return std::abs(measured - expected) <= tolerance;
 }
@@ -137,7 +137,7 @@ bool can_run(Findings& findings, std::string_view solver, const Scene& scene) {
     const SolverChoice choice = parse_solver(solver);
     reasons = choice.entry->unsupported(scene, choice.params);
     if (reasons.empty()) choice.entry->make(scene, choice.params);
-  } catch (const InputError& error) {  // a solver or a precision that this program does not have
+  } catch (const InputError& error) {  // the program does not have this solver or precision
     reasons = {error.what()};
   }
   if (!reasons.empty()) findings.not_applicable(solver, reasons.front());

@@ -13,7 +13,7 @@
 
 namespace taut {
 
-/// How a measured number compares with what is known.
+/// Verdict on a measured number compared with a known one.
 enum class TruthVerdict {
   passed,          ///< agrees within the tolerance
   deviates,        ///< differs for a known reason, by as much as that reason explains
@@ -21,45 +21,47 @@ enum class TruthVerdict {
   broken           ///< differs: the testbed or the solver is wrong
 };
 std::string_view to_string(TruthVerdict);
-TruthVerdict verdict_of(std::string_view);  ///< the inverse; `broken` of anything else
+/// Inverse of to_string(); `broken` for any other text.
+TruthVerdict verdict_of(std::string_view);
 
-/// One number of one subject against the truth.
+/// A number of a subject, compared with the truth.
 struct Finding {
   std::string subject;   ///< "jakobsen:projection=exact,...", "static reference", "closed form"
   std::string quantity;  ///< what was measured
   std::string unit;      ///< "1" if dimensionless
   double measured = 0;
   double expected = 0;     ///< what the truth says
-  double tolerance = 0;    ///< |measured - expected| may be this large; for `deviates` too
-  double uncertainty = 0;  ///< one standard error of a fitted slope; 0: not fitted
+  double tolerance = 0;    ///< largest |measured - expected|; also for `deviates`
+  double uncertainty = 0;  ///< standard error of a fitted slope; 0: not fitted
   TruthVerdict verdict = TruthVerdict::passed;
-  std::string why;  ///< of a deviation or of what the solver does not offer
+  std::string why;  ///< reason for a deviation, or what the solver does not offer
 };
 
-/// Collects the findings of one truth and knows which solvers were asked for.
+/// Collects the findings of one truth, and knows which solvers were asked for.
 class Findings {
  public:
-  /// `only`: names or texts of solvers; empty: all subjects. References count as "reference".
+  /// only: names or texts of solvers; empty: all subjects. References count as "reference".
   explicit Findings(std::vector<std::string> only = {}) : only_(std::move(only)) {}
 
-  /// Whether this subject's solver was asked for: spares the work if not.
+  /// Whether this subject's solver was asked for; if not, its work can be skipped.
   bool wants(std::string_view subject) const;
-  /// What was asked for: names, and whole texts of solvers from outside. Empty: all.
+  /// The solvers that were asked for: names, and whole texts for external solvers. Empty: all.
   const std::vector<std::string>& asked() const { return only_; }
 
-  /// |measured - expected| <= tolerance (absolute, in the quantity's unit).
+  /// Requires |measured - expected| <= tolerance (absolute, in the quantity's unit).
   void equal(std::string_view subject, std::string_view quantity, std::string_view unit,
              double measured, double expected, double tolerance);
-  /// What is so or not.
+  /// Requires a statement to be true.
   void holds(std::string_view subject, std::string_view quantity, bool measured);
-  /// 0 <= measured <= limit: an error that has to be small.
+  /// Requires 0 <= measured <= limit, for an error that has to be small.
   void below(std::string_view subject, std::string_view quantity, std::string_view unit,
              double measured, double limit);
-  /// A fitted exponent with its standard error.
+  /// Compares a fitted exponent that has a standard error.
   void slope(std::string_view subject, std::string_view quantity, const PowerLaw& fitted,
              double expected, double tolerance);
-  /// The truth says `expected`; this subject legitimately has `explained` (within tolerance).
-  /// Where both are within the tolerance it passes: nobody could tell them apart.
+  /// The truth says `expected`, but this subject legitimately has `explained` (within tolerance).
+  /// It passes if both are within the tolerance of the measured number, since they cannot be told
+  /// apart.
   void deviates(std::string_view subject, std::string_view quantity, std::string_view unit,
                 double measured, double expected, double explained, double tolerance,
                 std::string_view why);
@@ -73,18 +75,19 @@ class Findings {
   std::vector<Finding> findings_;
 };
 
-/// How a truth introduces itself: found by its TAUT_TRUTH line.
+/// Description of a truth, found by its TAUT_TRUTH line.
 struct TruthEntry {
   std::string_view name;  ///< "hanging-chain-sweeps"
-  int section = 0;        ///< 1 constraint, 2 twin, 3 free motion, 4 pendulum and chain,
-                    ///< 5 stability, 6 cloth, 7 contact, 8 published, 9 references, 10 metrics
+  /// 1 constraint, 2 twin, 3 free motion, 4 pendulum and chain, 5 stability, 6 cloth, 7 contact, 8
+  /// published, 9 references, 10 metrics.
+  int section = 0;
   int row = 0;                 ///< within the section, from 1
   std::string_view statement;  ///< what must hold, one sentence with the formula
   std::string_view source;     ///< paper, book or derivation
   void (*check)(Findings&);
 };
 
-/// "hanging-chain-sweeps" of hanging_chain_sweeps.
+/// An identifier with hyphens: "hanging-chain-sweeps" for hanging_chain_sweeps.
 template <std::size_t length>
 struct Hyphenated {
   consteval Hyphenated(const char (&id)[length]) {
@@ -96,17 +99,17 @@ struct Hyphenated {
 /// All truths (generated; see cmake/registry.cmake).
 std::span<const TruthEntry* const> truths();
 
-/// The title of a section of the list.
+/// Title of a section of the list.
 std::string_view section_title(int section);
 
-/// A solver on a scene, stepped by hand. Solvers that offer a link order get the mesh order, which
-/// the recurrences of the truths assume, unless the text chooses one.
+/// A solver on a scene, stepped by hand. Solvers with a link order use the mesh order, which the
+/// recurrences of the truths assume, unless the text chooses another.
 class Simulation {
  public:
-  /// After so many steps.
+  /// Starts the scene and makes this many steps.
   Simulation(const Scene&, std::string_view solver, int steps = 0);
   void step(int n = 1);
-  /// What `value()` returns after each of so many steps.
+  /// The values that `value()` returns after each of `steps` steps.
   template <class Value>
   std::vector<double> record(int steps, const Value& value) {
     std::vector<double> all;
@@ -116,7 +119,7 @@ class Simulation {
     }
     return all;
   }
-  /// The largest of what `error(n)` returns after the steps n = 1, 2, ... `steps`.
+  /// The largest value that `error(n)` returns after the steps n = 1, 2, ... `steps`.
   template <class Error>
   double worst(int steps, const Error& error) {
     double most = 0;
@@ -138,31 +141,32 @@ class Simulation {
   int n_ = 0;
 };
 
-/// Whether the solver was asked for, exists in this program and can do the scene; if it was asked
+/// Whether the solver was asked for, exists in this program and can run the scene. If it was asked
 /// for but cannot, the findings get "not applicable" with the reasons.
 bool can_run(Findings&, std::string_view solver, const Scene&);
 
 constexpr const char* kStatic = "reference:static";  ///< core/reference/static_equilibrium
 constexpr const char* kShake = "reference:shake";    ///< core/reference/shake
 
-/// The settings that the truths hold to rounding: ours as published, one substep, the links in the
-/// scene's own order, unless `more` says otherwise; and those of the others.
+/// Settings that the truths hold to rounding: jakobsen as published, with one substep and the links
+/// in the scene's own order unless `more` says otherwise, and the corresponding ones of other
+/// solvers.
 std::string jakobsen(int iterations, std::string_view projection = "exact",
                      std::string_view more = "");
 std::string bullet(int iterations);
 std::string xpbd(int substeps, std::string_view more = "");
 std::string mass_spring(std::string_view integrator, double stiffness, double drag = 0);
 
-/// Scenes without gravity, damping, wind or contact, dt = 1/64 s, that truths complete.
+/// Scenes without gravity, damping, wind or contact, with dt = 1/64 s, which truths complete.
 namespace bare {
 
-/// From vertices, masses and links alone.
+/// A scene of only vertices, masses and links.
 Scene scene(std::vector<Vec3> x, std::vector<double> mass, std::vector<Link> links,
             std::vector<int> pins = {});
 /// Two vertices `distance` apart on a link of length `rest`.
 Scene pair(double distance, double rest, double mass1 = 1, double mass2 = 1);
-/// `n` free vertices of `mass` on links of length/n, hung straight from the pinned vertex 0 at the
-/// origin along `direction`.
+/// `n` free vertices of `mass` on links of length/n, hung straight along `direction` from the
+/// pinned vertex 0 at the origin.
 Scene chain(int n, double length, double mass, const Vec3& direction = -Vec3::UnitY());
 /// A flat sheet in the x-y plane, not pinned.
 Scene sheet(int nu, int nv, const LinkChoice& = {}, Lumping = Lumping::area, double width = 1,
@@ -170,7 +174,8 @@ Scene sheet(int nu, int nv, const LinkChoice& = {}, Lumping = Lumping::area, dou
 
 }  // namespace bare
 
-Scene under_gravity(Scene);  ///< the same with gravity, downwards in y
+/// The scene with gravity downwards in y.
+Scene under_gravity(Scene);
 
 /// (length - rest) [m] of every link.
 std::vector<double> strains(const Scene&, const State&);
@@ -180,11 +185,11 @@ double rms_strain(const Scene&, const State&);
 /// Largest distance between corresponding vertices [m].
 double max_distance(const std::vector<Vec3>&, const std::vector<Vec3>&);
 
-/// Runs until the fastest vertex is slower than `speed` [m/s] in 10 successive looks, `every` steps
-/// apart, or for at most `limit` steps; true if it came to rest.
+/// Runs until the fastest vertex is slower than `speed` [m/s] at 10 successive looks, `every` steps
+/// apart, or for at most `limit` steps. Returns whether it came to rest.
 bool settle(Simulation&, double speed, int every, int limit);
 
-/// The power law through y(x) at these x.
+/// The power law through y(x) at the given x.
 template <class Y>
 PowerLaw fit_over(const std::vector<double>& x, const Y& y) {
   std::vector<double> values;
@@ -196,8 +201,9 @@ inline constexpr double kG = 9.81;  ///< m/s^2
 
 }  // namespace taut
 
-/// A truth within namespace taut: its name with underscores, section and row of the list (as in
-/// `taut verify --section 4`), what must hold, and its source; then the function that checks it:
+/// Defines a truth within namespace taut: its name with underscores, section and row of the list
+/// (as in `taut verify --section 4`), what must hold, and its source; then follows the function
+/// that checks it:
 ///     TAUT_TRUTH(weightless, 3, 99, "Without forces ...", "Newton") { findings.below(...); }
 #define TAUT_TRUTH(id, section, row, statement, source)                                     \
   static void check_##id(Findings&);                                                        \

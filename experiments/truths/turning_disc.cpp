@@ -10,14 +10,14 @@ namespace taut {
 
 namespace {
 
-/// Of an annulus that slips everywhere [rad/s^2].
+/// Angular acceleration of an annulus that slips everywhere [rad/s^2].
 double turning(double mu, double r1, double r2) {
   return 4.0 / 3 * mu * kG * (std::pow(r2, 3) - std::pow(r1, 3)) /
          ((r2 * r2 - r1 * r1) * (r2 * r2 + r1 * r1));
 }
 
-/// Rings of vertices in the middle of `rings` strips of a disc of that radius [m], linked to their
-/// neighbours; masses by area.
+/// Rings of vertices in the middle of `rings` strips of a disc of this radius [m], linked to their
+/// neighbours, with masses by area.
 Scene disc_of_rings(int rings, int around, double radius) {
   std::vector<Vec3> x;
   std::vector<double> mass;
@@ -73,7 +73,7 @@ TAUT_TRUTH(turning_disc, 7, 10,
   s.dt = 1.0 / 256;
   const int slipping = static_cast<int>(0.5 * in_step / s.dt),
             stuck = static_cast<int>(1.5 * in_step / s.dt) - slipping;
-  // on a disc that is a plane, and on the top of a box of 12 triangles
+  // on a disc that is a plane, and on top of a box of 12 triangles
   const MeshBody box{.mesh = box_of_triangles({1, 0.1, 1}), .center = {0, -0.1, 0}};
   const auto on = [&](const Shape& shape, const std::string& solver, const std::string& where) {
     s.colliders = {{shape, turn, mu}};

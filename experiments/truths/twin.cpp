@@ -1,4 +1,5 @@
-// Section 2: btSoftBody with its Positions solver takes our path, vertex by vertex.
+// Section 2: btSoftBody with its Positions solver takes the same path as jakobsen, vertex by
+// vertex.
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -14,7 +15,7 @@ Scene hanging_sheet(double dt) {
   return s;
 }
 
-/// Distance after the first step and the largest one over 600 steps.
+/// Distance after the first step, and the largest one over 600 steps.
 struct Gap {
   double first = 0, largest = 0;
 };

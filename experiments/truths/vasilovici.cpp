@@ -1,4 +1,4 @@
-// Section 8, what Vasilovici's report says of springs, steps, sweeps, boxes and self-collision.
+// Section 8: statements of Vasilovici's report on springs, steps, sweeps, boxes and self-collision.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -11,12 +11,12 @@ namespace taut {
 
 namespace {
 
-/// Three sweeps in the scene's order, as the report has it, with this response to the box.
+/// Three sweeps in the scene's order, as in the report, with this response to the box.
 std::string answering(const std::string& contact) {
   return "jakobsen:iterations=3,substeps=1,order=mesh,contact=" + contact;
 }
 
-/// Values of a shipped scene under a solver; nothing if it was not asked for or cannot.
+/// Values of a shipped scene under a solver; empty if it was not asked for or cannot run.
 std::map<std::string, double> values_of(Findings& findings, const CaseSpec& spec) {
   if (!findings.wants(spec.solver)) return {};
   const Case one = make_case(spec);
@@ -144,7 +144,7 @@ TAUT_TRUTH(verlet_fixed_step, 8, 11,
                  "1", x / t, 4.0 / 3, 1e-12);
 }
 
-/// A square hung by two corners on its structural links alone, and with the others.
+/// A square hung by two corners, on its structural links alone and with the others.
 TAUT_TRUTH(spring_families, 8, 12,
            "without shear links a square hung by two corners sags; bend links do little",
            "Vasilovici, Cloth Simulation Report, section 3") {
@@ -165,7 +165,7 @@ TAUT_TRUTH(spring_families, 8, 12,
                  no_bend / all, 2, 1);
 }
 
-/// Divisions of one frame, one in each projection.
+/// Number of divisions in a frame, one in each projection.
 TAUT_TRUTH(divisions, 8, 13, "without the root a sweep takes N divisions, k sweeps k N",
            "Vasilovici, Cloth Simulation Report, section 4") {
   for (const int sweeps : {1, 3}) {

@@ -14,7 +14,7 @@ std::string value(double v) {
   return number_text(v, std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
 }
 
-/// A number beside what it is held to.
+/// A finding as text: its number and what that must be.
 std::string text_of(const Finding& f) {
   if (f.verdict == TruthVerdict::not_applicable) return f.subject + ": " + f.why;
   std::string text = f.subject + ": " + f.quantity + " " + value(f.measured);
@@ -27,13 +27,14 @@ std::string text_of(const Finding& f) {
   return f.why.empty() ? text : text + ": " + f.why;
 }
 
-/// The worst comes last.
+/// Sort key of a finding by which the worst comes last.
 std::pair<TruthVerdict, double> badness(const Finding& f) {
   const double share = share_of_tolerance(f);
   return {f.verdict, std::isnan(share) ? 1e300 : share};
 }
 
-/// A row a truth, with the number that is worst or comes nearest to its tolerance.
+/// Table with a row for each truth, which shows the number that is worst or nearest to its
+/// tolerance.
 Table truths_table(const std::vector<CheckedTruth>& truths) {
   Table table{"truths",
               "",
@@ -120,7 +121,7 @@ JudgedAssertion assertion_in(const Table& table, const std::vector<Cell>& row) {
           table.at(row, "figure").text()};
 }
 
-/// The numbers that are not as they must be, last, where they are read.
+/// Table of the broken numbers, shown last, where they are read.
 Table broken_table(const std::vector<CheckedTruth>& truths) {
   Table table{"broken", "broken", {{"truth"}, {"number"}}};
   for (const CheckedTruth& truth : truths)

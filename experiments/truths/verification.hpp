@@ -10,7 +10,7 @@
 
 namespace taut {
 
-/// A truth with what it found.
+/// A truth and its findings.
 struct CheckedTruth {
   std::string name, place;  ///< "hanging-chain-sweeps", "4.2"
   std::string section_title, statement, source;
@@ -22,13 +22,13 @@ struct CheckedTruth {
   CheckedTruth(const TruthEntry&, std::vector<Finding>, double seconds);
 };
 
-/// What `taut verify` finds. It is written to an answer and read back from one, which may come from
-/// another process or from a results file.
+/// The result of `taut verify`. It is written to an answer and read back from one, which may come
+/// from another process or from a results file.
 struct Verification {
   std::vector<CheckedTruth> truths;
   std::vector<JudgedAssertion> assertions;
 };
-/// How many findings there are of each verdict.
+/// Number of findings of each verdict.
 struct VerdictCounts {
   std::size_t truths = 0, findings = 0, broken_truths = 0;
   std::array<std::size_t, 4> of{};  ///< by TruthVerdict
@@ -40,14 +40,14 @@ struct VerdictCounts {
 };
 VerdictCounts verdicts_of(const std::vector<CheckedTruth>&);
 
-/// `assertions_first`: people see these, not the truths.
+/// assertions_first: the text shows the assertions and not the truths.
 Answer answer_of(const Verification&, bool assertions_first = false);
-/// Throws InputError: it is no such answer.
+/// Throws InputError if it is no such answer.
 Verification verification_in(const Answer&);
 
-/// "4.2"
+/// Place of a truth in the list: "4.2".
 std::string place_of(const TruthEntry&);
-/// How far a finding is on the way to its tolerance; 1: at it.
+/// Deviation of a finding as a share of its tolerance; 1: at the tolerance.
 double share_of_tolerance(const Finding&);
 
 }  // namespace taut

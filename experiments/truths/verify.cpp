@@ -18,13 +18,13 @@ namespace taut {
 
 namespace {
 
-/// Exit code of a verb that was given bad input (command_line/verb.hpp).
+/// Exit code of a verb with bad input (command_line/verb.hpp).
 constexpr int kBadInput = 2;
-/// What one truth may use: it costs a second or two.
+/// Limits of one truth, which normally takes a second or two.
 constexpr ProcessLimits kLimits{.cpu_seconds = 600, .memory = std::size_t{4} << 30};
 
-/// A truth in a process of its own: whatever its solver does costs this truth alone. Throws
-/// InputError of a shipped scene that is missing.
+/// Checks a truth in its own process, so that whatever its solver does only affects this truth.
+/// Throws InputError if a shipped scene is missing.
 std::vector<Finding> findings_of(const TruthEntry& truth, const VerifyRequest& request) {
   const Scratch scratch;
   std::vector<std::string> words{sibling_program(""), "verify", std::string(truth.name), "--here",

@@ -9,10 +9,10 @@
 
 #include "core/io/positions/positions.hpp"
 
-/// What the formats share: for the sources of this folder, and for taut's own .traj.
+/// Code that the formats share, for the sources of this folder and for taut's own .traj.
 namespace taut {
 
-/// A number at these bytes. `order` is the file's.
+/// The number at these bytes, in the file's byte order.
 template <class T>
 T number_at(const char* from, std::endian order) {
   char bytes[sizeof(T)];
@@ -37,7 +37,7 @@ void append_vectors(std::string& out, const std::vector<Vec3>& vectors, std::end
     for (const double c : v) append_number(out, static_cast<Real>(c), order);
 }
 
-/// The vectors at these bytes, as many as there are already.
+/// Fills `vectors` from these bytes.
 template <class Real>
 void read_vectors(const char* from, std::vector<Vec3>& vectors, std::endian order) {
   for (Vec3& v : vectors)
@@ -47,7 +47,7 @@ void read_vectors(const char* from, std::vector<Vec3>& vectors, std::endian orde
     }
 }
 
-/// A file that is being written. Throws InputError with the system's reason.
+/// A file being written. Throws InputError with the system's reason.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path);
@@ -58,7 +58,7 @@ class OutputFile {
   std::ofstream out_;
 };
 
-/// A file for each frame.
+/// Sequences with one file per frame.
 std::unique_ptr<PositionReader> open_sequence(const std::filesystem::path&);
 std::unique_ptr<PositionWriter> create_sequence(const std::filesystem::path&, const Mesh&);
 

@@ -1,6 +1,6 @@
 #include "core/io/positions/positions.hpp"
 
-// All frames in one file: NumPy arrays (versions 1 to 3,
+// Formats with all frames in one file: NumPy arrays (versions 1 to 3,
 // https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html), and PC2, the point cache
 // of animation programs.
 #include <algorithm>
@@ -31,7 +31,7 @@ void OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
 
 namespace {
 
-/// The first bytes of a file, as many as it has of them.
+/// The first `most` bytes of a file, or all of them if it is shorter.
 std::string first_bytes(const std::filesystem::path& path, std::size_t most) {
   std::ifstream in = open_file(path);
   std::string bytes(most, '\0');
@@ -40,12 +40,12 @@ std::string first_bytes(const std::filesystem::path& path, std::size_t most) {
   return bytes;
 }
 
-/// Frames of equal size one after the other: what all formats of one file are after their header.
+/// Frames of equal size, one after another: what follows the header in every single-file format.
 struct FrameBlock {
   std::uint64_t first = 0;          ///< byte of the first frame
-  std::uint64_t frames = 0, n = 0;  ///< as the header says
+  std::uint64_t frames = 0, n = 0;  ///< from the header
   std::endian order = std::endian::little;
-  bool single = true;  ///< float32, else float64
+  bool single = true;  ///< float32, otherwise float64
 };
 
 class BlockReader final : public PositionReader {
@@ -82,7 +82,7 @@ class BlockReader final : public PositionReader {
   std::string bytes_;
 };
 
-/// Throws InputError if the file does not end where the block does.
+/// Opens a block. Throws InputError if the file does not end with it.
 std::unique_ptr<PositionReader> read_block(const std::filesystem::path& path,
                                            const FrameBlock& block, PositionsHeader header) {
   const std::string counts =
@@ -112,7 +112,7 @@ constexpr std::size_t kWritten = 128;  ///< bytes of the header that this progra
   fail_in(path, "byte " + std::to_string(byte) + ": " + why);
 }
 
-/// What follows 'key': in the dictionary of the header, up to `end`; "" if it has no such key.
+/// Text after 'key': in the header's dictionary, up to `end`; "" if there is no such key.
 std::string_view value_of(std::string_view dictionary, std::string_view key, char end) {
   const auto at = dictionary.find("'" + std::string(key) + "':");
   if (at == dictionary.npos) return {};
@@ -121,7 +121,7 @@ std::string_view value_of(std::string_view dictionary, std::string_view key, cha
   return rest.substr(0, rest.find(end));
 }
 
-/// "(10, 4, 3" -> 10, 4, 3; nothing if there is anything but numbers.
+/// The numbers in "(10, 4, 3"; empty if there is anything else.
 std::vector<std::uint64_t> numbers_of(std::string_view tuple) {
   std::string text(tuple);
   std::ranges::replace_if(
@@ -148,7 +148,7 @@ class NpyWriter final : public PositionWriter {
     header += "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(frames_) +
               ", " + std::to_string(x.size()) + ", 3), }";
     header.resize(kWritten - 1, ' ');
-    out_.write_at(0, header + '\n');  // last: it never promises what is not there
+    out_.write_at(0, header + '\n');  // last, so that it never promises frames that are not there
   }
 
  private:
@@ -222,7 +222,7 @@ class Pc2Writer final : public PositionWriter {
     put(++frames_);  // first frame, rate, frames
     append_vectors<float>(frame, x, endian::little);
     out_.write_at(kPc2Header + static_cast<std::uint64_t>(frames_ - 1) * frame.size(), frame);
-    out_.write_at(0, header);  // last: it never promises what is not there
+    out_.write_at(0, header);  // last, so that it never promises frames that are not there
   }
 
  private:

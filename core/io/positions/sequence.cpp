@@ -1,4 +1,4 @@
-// A file for each frame: OBJ.
+// Format with a file for each frame: OBJ.
 #include <algorithm>
 #include <cassert>
 
@@ -21,8 +21,8 @@ struct Numbered {
   fs::path file;
 };
 
-/// The files beside `path` that have its extension and, before it, `prefix` (ending in one of _.-
-/// or not) and digits.
+/// The files beside `path` that have its extension and whose name is `prefix`, optionally one of
+/// _.-, and digits.
 std::vector<Numbered> numbered_files(const fs::path& path, const std::string& prefix) {
   std::vector<Numbered> found;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
@@ -48,7 +48,7 @@ std::vector<fs::path> files_of(const fs::path& path) {
   const bool numbered = end + 1 < prefix.size(), exists = fs::exists(path);
   if (!numbered && exists) return {path};
   if (numbered && exists) prefix.resize(end + 1);  // npos + 1 is 0
-  if (numbered && !exists) prefix += '_';          // "run2" of run2_00000.obj
+  if (numbered && !exists) prefix += '_';          // "run2" names run2_00000.obj
   const std::vector<Numbered> all = numbered_files(path, prefix);
   if (all.empty()) fail_in(path, "no such file, and no frames of that name");
   std::vector<fs::path> files;
@@ -128,7 +128,7 @@ class SequenceReader final : public PositionReader {
 
 class SequenceWriter final : public PositionWriter {
  public:
-  /// Frames of a longer sequence that was there would be read as the end of this one.
+  /// Removes the frames of an earlier sequence, which would be read as the end of this one.
   SequenceWriter(const fs::path& path, const Mesh& mesh) : path_(path), mesh_(mesh) {
     std::error_code error;
     for (int k = 0; fs::remove(frame(k), error); ++k) {

@@ -10,7 +10,7 @@ namespace taut {
 
 namespace {
 
-/// Pins and a greedy independent set, in the order of the vertices.
+/// Coarse vertices: the pins and a greedy independent set in the order of the vertices.
 std::vector<bool> choose(const std::vector<int>& vertices, const Adjacency& neighbours,
                          std::span<const double> w) {
   std::vector<bool> coarse(w.size());
@@ -25,9 +25,9 @@ std::vector<bool> choose(const std::vector<int>& vertices, const Adjacency& neig
   return coarse;
 }
 
-/// Links between coarse vertices that are linked or share a finer neighbour. They are straight
-/// where a sheet keeps flat distances; elsewhere the way through the neighbour counts, which a fold
-/// can only shorten.
+/// Links between coarse vertices that are linked or share a finer neighbour. On a sheet that keeps
+/// flat distances the rest length is the straight distance; elsewhere it is the length of the path
+/// through the neighbour, which a fold can only shorten.
 std::vector<Link> coarse_links(const Scene& scene, std::span<const Link> links,
                                const Adjacency& neighbours, const std::vector<bool>& coarse,
                                const std::vector<int>& vertices) {

@@ -8,14 +8,15 @@
 
 namespace taut {
 
-/// One level of a hierarchy of coarser and coarser cloths.
+/// One level of a hierarchy of ever coarser cloths.
 struct Level {
-  std::vector<int> vertices;                      ///< of this level; about half of the finer one's
+  std::vector<int> vertices;  ///< of this level; about half as many as in the finer one
   std::vector<DistanceConstraint<double>> links;  ///< between vertices that were two links apart
-  /// A vertex of the next finer level only: it moves with the weighted mean of `parents`.
+  /// A vertex that exists on the next finer level only; it moves with the weighted mean of its
+  /// parents.
   struct Child {
     int vertex = 0;
-    int first = 0, end = 0;  ///< in `parents`
+    int first = 0, end = 0;  ///< range in `parents`
   };
   std::vector<Child> children;
   struct Parent {
@@ -25,14 +26,15 @@ struct Level {
   std::vector<Parent> parents;
 };
 
-/// Mueller, Hierarchical Position Based Dynamics (VRIPHYS 2008): each level takes every pin and a
-/// greedy independent set of the finer level, so that every other vertex has a neighbour in it.
-/// The first is the coarsest. At most `levels`; fewer when nothing is left to make coarser.
+/// Builds the hierarchy of Mueller, Hierarchical Position Based Dynamics (VRIPHYS 2008). Each level
+/// has every pin and a greedy independent set of the finer level, so that every other vertex has a
+/// neighbour in it. Coarsest level first; at most `levels` levels, fewer when nothing is left to
+/// coarsen.
 std::vector<Level> make_hierarchy(const Scene&, std::span<const double> w, int levels);
 
-/// Relaxes the coarse levels before the sweep over all links: from the coarsest to the finest, each
-/// hands what it moved down to the next. Coarse links only resist stretching, for between their
-/// ends the cloth may fold.
+/// Relaxes the coarse levels before the sweep over all links, from the coarsest to the finest. Each
+/// level hands its displacements down to the next. Coarse links only resist stretching, because the
+/// cloth may fold between their ends.
 template <class Real, Projection kind>
 class HierarchyPass final : public Pass<Real> {
  public:
@@ -85,7 +87,7 @@ class HierarchyPass final : public Pass<Real> {
   }
 
   std::vector<Level> levels_;
-  Points<Real> start_;  ///< where the coarse vertices were
+  Points<Real> start_;  ///< positions of the coarse vertices before the pass
 };
 
 }  // namespace taut

@@ -72,7 +72,8 @@ class LinesPass final : public Pass<Real> {
     std::size_t a, b;
     double rest, wa, wb;  ///< m, 1/kg
   };
-  /// A row of the system: off, from the one before, and the pivot [1/kg]; what is left of C [m].
+  /// A row of the system: link direction, off-diagonal entry to the row before [1/kg], pivot
+  /// [1/kg], and the right-hand side that is left [m].
   struct Row {
     Vec3 u;
     double off, pivot, right;
@@ -95,7 +96,7 @@ class LinesPass final : public Pass<Real> {
       row.pivot -= share * row.off;
       row.right -= share * before.right;
     }
-    double next = 0;  // off of the row after, times its multiplier
+    double next = 0;  // off-diagonal entry times multiplier of the next row
     for (std::size_t i = line.size(); i-- > 0;) {
       const LineLink& link = line[i];
       const Row& row = rows_[i];

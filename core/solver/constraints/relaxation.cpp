@@ -13,7 +13,8 @@ namespace taut {
 
 namespace {
 
-/// A cost line for each family that has links; their memory is shared out evenly.
+/// One cost entry for each family with links that move; `bytes` is divided in proportion to their
+/// number.
 std::vector<PassCost> family_costs(std::span<const Link> links, std::span<const double> w,
                                    std::size_t bytes) {
   std::array<std::size_t, kFamilies.size()> items{};
@@ -33,7 +34,7 @@ std::vector<PassCost> family_costs(std::span<const Link> links, std::span<const 
   return costs;
 }
 
-/// One Gauss-Seidel sweep over the links, one after the other.
+/// One Gauss-Seidel sweep over the links, one after another.
 template <class Real, Projection kind>
 class GaussSeidelPass final : public Pass<Real> {
  public:
@@ -60,7 +61,7 @@ class GaussSeidelPass final : public Pass<Real> {
   std::vector<PassCost> costs_;
 };
 
-/// The same with multipliers: XPBD's Algorithm 1.
+/// One Gauss-Seidel sweep with multipliers: XPBD's Algorithm 1.
 template <class Real>
 class CompliantGaussSeidelPass final : public Pass<Real> {
  public:
@@ -145,7 +146,7 @@ class JacobiPass final : public Pass<Real> {
   std::vector<Real> factor_;
 };
 
-/// One Gauss-Seidel sweep over InterleavedSheet or ColourBatches, which threads share.
+/// One Gauss-Seidel sweep over an InterleavedSheet or ColourBatches, shared among threads.
 template <class Real, template <class> class Links>
 class ColouredPass final : public Pass<Real> {
  public:
@@ -212,12 +213,14 @@ class ColouredPass final : public Pass<Real> {
   std::vector<PassCost> costs_;
   Projection projection_;
   bool compliant_;  ///< some links have multipliers
-  Real keep_ = 0;   ///< what the next sweep multiplies the multipliers by
+  /// Factor on the multipliers at the start of the next sweep: 0 in the first, then 1.
+  Real keep_ = 0;
   const Kernels<Real>& kernels_;
   ThreadPool& pool_;
 };
 
-/// The regular links of the scene if an interleaved sheet is to hold them.
+/// The scene's regular links if an interleaved sheet is to hold them. Throws InputError if
+/// layout=interleaved was asked for and the scene has no such links.
 std::optional<RegularLinks> regular(const Scene& scene, LinkLayout layout) {
   if (layout == LinkLayout::batches) return {};
   auto links = regular_links(scene.mesh, scene.links);
@@ -248,7 +251,7 @@ std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const 
   return std::make_unique<GaussSeidelPass<Real, kind>>(std::move(constraints), std::move(costs));
 }
 
-/// Null: no link can move.
+/// The pass that visits the links one after another, or null if no link can move.
 template <class Real>
 std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
                                             const RelaxationSettings& settings) {

@@ -15,7 +15,7 @@
 
 namespace taut {
 
-/// What a particle makes of the corrections that all its links ask for at the same time.
+/// How a particle combines the corrections that all its links ask for at the same time.
 enum class Jacobi {
   plain,        ///< their sum: diverges where many links meet (truths: 2.4 per step on a chain)
   averaged,     ///< their mean: stable, does not conserve momentum
@@ -25,12 +25,12 @@ enum class Jacobi {
 
 /// How the links of Order::coloured are laid out.
 enum class LinkLayout {
-  automatic,    ///< interleaved if the scene is a regular sheet, else batches
-  interleaved,  ///< for any other scene make_relaxation throws InputError
+  automatic,    ///< interleaved if the scene is a regular sheet, otherwise batches
+  interleaved,  ///< make_relaxation throws InputError unless the scene is a regular sheet
   batches       ///< any mesh
 };
 
-// How solvers let their links be ordered and laid out.
+// Parameters for the order and the layout of the links.
 inline constexpr ParamSpec kOrderParam =
     ParamSpec::choice("order", "coloured", "mesh|coloured|reversed|random|jolt",
                       "in which Gauss-Seidel visits the links; mesh is the scene's own order, as "
@@ -54,27 +54,27 @@ struct RelaxationSettings {
   std::optional<Jacobi> jacobi;  ///< empty: Gauss-Seidel
   bool lines = false;            ///< structural links of a grid line by line (lines.hpp)
   Order order = Order::coloured;
-  std::uint32_t seed = 1;  ///< of Order::random
+  std::uint32_t seed = 1;  ///< for Order::random
   LinkLayout layout = LinkLayout::automatic;
   double omega = 1;         ///< relaxation factor: the share of a correction that is made
-  int levels = 1;           ///< of the hierarchy; 1: the cloth alone
-  Compliances compliances;  ///< XPBD's: projected exactly; not with `jacobi`
+  int levels = 1;           ///< number of levels of the hierarchy; 1: the cloth alone
+  Compliances compliances;  ///< of XPBD, whose links are projected exactly; not with `jacobi`
   Simd simd = Simd::scalar;
 };
 
-/// The sweep over all links, and where it wants the particles to be.
+/// The sweep over all links, and the layout that it needs the particles in.
 template <class Real>
 struct Relaxation {
   Layout layout;
   std::unique_ptr<Pass<Real>> pass;  ///< null: no link can move
 };
 
-/// Chooses by method, order and layout. w: inverse masses.
+/// Makes the sweep for the settings' method, order and layout. w: inverse masses [1/kg].
 template <class Real>
 Relaxation<Real> make_relaxation(const Scene&, std::span<const double> w, const RelaxationSettings&,
                                  ThreadPool&);
 
-/// The coarse levels to relax before each sweep; none if there are none.
+/// The coarse levels to relax before each sweep; empty if levels is 1.
 template <class Real>
 std::vector<std::unique_ptr<Pass<Real>>> make_levels(const Scene&, std::span<const double> w,
                                                      const RelaxationSettings&);

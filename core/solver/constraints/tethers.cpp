@@ -9,9 +9,10 @@ namespace taut {
 
 namespace {
 
+/// Most tethers of one vertex.
 constexpr int kMostGroups = 4;
 
-/// Pins that links join, group by group.
+/// Pins, grouped by whether links join them.
 std::vector<std::vector<int>> pin_groups(const Scene& scene, const Adjacency& neighbours) {
   std::vector<bool> open(to_index(scene.mesh.size()));
   for (const int pin : scene.pins) open[to_index(pin)] = true;

@@ -12,22 +12,23 @@
 
 namespace taut {
 
-/// No vertex may be farther from a pin than along the cloth at rest.
+/// Keeps a vertex no farther from a pin than it is along the cloth at rest.
 struct Tether {
   int vertex = 0, pin = 0;
   double length = 0;  ///< m
 };
 
-/// Long-range attachments (Kim, Chentanez, Mueller-Fischer: Long Range Attachments, SCA 2012): for
-/// every vertex that can move, one to the nearest pin of each group of linked pins, at most
-/// four. Length: the straight line on a sheet that keeps flat distances, else the shortest way
-/// along structural and shear links, an upper bound of the geodesic.
+/// Long-range attachments (Kim, Chentanez, Mueller-Fischer: Long Range Attachments, SCA 2012).
+/// Every vertex that can move gets one to the nearest pin of each group of linked pins, at most
+/// four in all. The length is the straight distance on a sheet that keeps flat distances. Elsewhere
+/// it is the shortest path along structural and shear links, an upper bound of the geodesic.
 std::vector<Tether> make_tethers(const Scene&);
 
-/// Pulls back what is beyond its tether; does nothing to a slack one. One-sided and without mass:
-/// the pin does not move. It carries a hanging sheet's weight to the pins in one sweep instead of
-/// one row per sweep, and stiffens what hangs in folds: see core/README.md. Each particle's k-th
-/// tether lies where the particle does, so that lanes take them as they take particles.
+/// Pulls back particles that are beyond their tether and leaves slack tethers alone. The limit is
+/// one-sided and ignores masses: the pin does not move. It carries the weight of a hanging sheet to
+/// the pins in one sweep instead of one row per sweep, and stiffens cloth that hangs in folds: see
+/// core/README.md. The k-th tethers of all particles are stored in the particles' own layout, so
+/// that lanes process them as they process particles.
 template <class Real>
 class TetherPass final : public Pass<Real> {
  public:
@@ -71,10 +72,10 @@ class TetherPass final : public Pass<Real> {
   }
 
  private:
-  std::vector<Tether> tethers_;  ///< vertex after vertex
+  std::vector<Tether> tethers_;  ///< sorted by vertex
   bool pins_move_, placed_ = false;
   void (*pull_)(const ParticleSpan<Real>&, std::span<const TetherTable<Real>>);
-  std::vector<Points<Real>> pins_, lengths_;  ///< [tethers of a particle], as TetherTable has them
+  std::vector<Points<Real>> pins_, lengths_;  ///< [tethers of a particle]; TetherTable's data
   std::vector<TetherTable<Real>> tables_;
 };
 

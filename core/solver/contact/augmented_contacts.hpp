@@ -11,16 +11,16 @@
 
 namespace taut {
 
-/// A point of a face or an edge of the cloth at a collider, and the force that has held it.
+/// A point of a face or an edge of the cloth that touches a collider, and its last contact force.
 struct TouchingPiece {
   const void* found_by = nullptr;
-  std::size_t number = 0;  ///< of the piece, by its finder
+  std::size_t number = 0;  ///< number of the piece at its finder
   Triangle corners;
-  Vec3 weights = Vec3::Zero();  ///< of the corners, sum 1
+  Vec3 weights = Vec3::Zero();  ///< of the corners; their sum is 1
   TouchingVertex at;
   ContactForce force;
 
-  /// x: places by vertex [m].
+  /// The point's position. x: positions by vertex [m].
   template <class Places>
   Vec3 place(const Places& x) const {
     Vec3 sum = Vec3::Zero();
@@ -31,14 +31,16 @@ struct TouchingPiece {
   }
 };
 
-/// Those of all colliders, which FaceContactPass finds after each iteration for the next one.
+/// The touching pieces of all colliders, which FaceContactPass finds after each iteration for the
+/// next.
 struct TouchingPieces {
   std::vector<TouchingPiece> all;
-  /// The solver leaves the forces as contact asks for; else they follow after each iteration.
+  /// Whether the solver itself solves for the forces; otherwise they are updated after each
+  /// iteration.
   bool solved = false;
-  std::span<const double> stiffness;  ///< [n] N/m, of contact at each vertex
+  std::span<const double> stiffness;  ///< [n] N/m, stiffness of contact at each vertex
   double left = 0, rounding = 0;      ///< N, as in AugmentedContacts::update()
-  bool changed = false;               ///< a force has, by more than that
+  bool changed = false;               ///< a force has changed by more than `rounding`
 
   double stiffness_of(const TouchingPiece& piece) const {
     double k = 0;
@@ -48,13 +50,13 @@ struct TouchingPieces {
   }
 };
 
-/// Of the stiffness of all else at a vertex, that of its contact.
+/// Stiffness of contact at a vertex, as a multiple of all other stiffness there.
 inline constexpr double kOfElsewhere = 3;
 
-/// Of a change of the forces of contact, the gradient that is left before they take it.
+/// Largest gradient at which the contact forces are updated, as a share of their change.
 inline constexpr double kSettled = 0.3;
 
-/// push' and rub' below at x.
+/// The forces push' and rub' (see AugmentedContacts) at x.
 inline ContactForce augmented(const TouchingVertex& at, const ContactForce& held, double k,
                               const Vec3& x) {
   ContactForce now{std::max(0.0, held.push - k * at.gap(x)), held.rub - k * at.slip(x)};
@@ -63,70 +65,71 @@ inline ContactForce augmented(const TouchingVertex& at, const ContactForce& held
   return now;
 }
 
-/// Contact as an augmented Lagrangian at each vertex that touches (Alart, Curnier, Computer Methods
-/// in Applied Mechanics and Engineering 92, 1991): with the force of the last iteration, push along
-/// the normal n and rub across it, and a stiffness k,
+/// Contact as an augmented Lagrangian at each touching vertex (Alart, Curnier, Computer Methods in
+/// Applied Mechanics and Engineering 92, 1991). With the force of the last iteration, push along
+/// the normal n and rub across it, and a stiffness k, the acting forces are
 ///
 ///     push' = max(0, push - k gap),   rub' = rub - k slip, no longer than mu push
 ///
-/// act, k n n^T + k (I - n n^T) join the Hessian where they hold and stick. They become the forces
-/// once the gradient that is left is less than a share of their change: sooner, and contacts would
-/// take turns at sticking and slipping without end.
+/// Where they hold and stick, k n n^T + k (I - n n^T) is added to the Hessian. The acting forces
+/// become the forces once the gradient that is left is less than a share of their change. If this
+/// happened sooner, contacts would take turns at sticking and slipping for ever.
 ///
-/// What touches may be a point of a face or an edge, as well: its corners share all by its weights.
+/// A point of a face or an edge may also touch; its corners share everything by its weights.
 class AugmentedContacts {
  public:
-  AugmentedContacts() = default;  ///< none
+  AugmentedContacts() = default;  ///< no contact
   AugmentedContacts(const Scene& scene, const Params& params)
       : contacts_(make_contacts(scene, params)), stiffness_(contacts_ ? scene.start.x.size() : 0) {}
 
-  void forget();  ///< no force
-  /// The forces of the same contacts when fewer vertices could move.
+  void forget();  ///< sets all forces to 0
+  /// Takes over the forces of the same contacts when fewer vertices could move.
   void take_over(const AugmentedContacts& before) {
     if (contacts_) contacts_->take_over(*before.contacts_);
   }
   void begin(double t, double h);
-  /// elastic: of all links and bending at each vertex [N/m].
+  /// elastic: stiffness of all links and bending at each vertex [N/m].
   template <class Real>
   void set_stiffness(const Particles<Real>& p, std::span<const double> elastic, double h);
-  /// The forces of what newly touches at p.x = y as if it had no link.
+  /// Sets the forces of new contacts at p.x = y, as if their vertices had no links.
   template <class Real>
   void predict_new(const Particles<Real>& p, double h) {
     if (contacts_) contacts_->predict_new(p, h);
   }
-  /// What touches at p.x.
+  /// Finds the vertices that touch at p.x.
   template <class Real>
   void find(const Particles<Real>& p) {
     if (contacts_) contacts_->find(p, touching_);
   }
-  bool any() const { return contacts_ != nullptr; }  ///< the scene has what may touch
+  bool any() const { return contacts_ != nullptr; }  ///< the scene has something to touch
   bool touch() const { return !touching_.empty() || !pieces_.all.empty(); }
   void let_go() { touching_.clear(); }  ///< no vertex touches until find()
   TouchingPieces& pieces() { return pieces_; }
 
-  /// A contact's part at x: energy [J], force [N], Hessian [N/m].
+  /// A contact's terms at x: energy [J], force [N], Hessian [N/m].
   struct Part {
     double energy = 0;
     Vec3 force = Vec3::Zero();
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
   };
-  /// visit(vertex, part) of what touches, at x. A vertex' contacts come one after the other.
+  /// Calls visit(vertex, part) for the vertices that touch, at x. The contacts of a vertex follow
+  /// one another.
   template <class Visit>
   void each(const std::vector<Vec3>& x, const Visit& visit) const {
     for (const TouchingVertex& at : touching_)
       visit(at.vertex, part(at, contacts_->force(at.vertex, at.collider), stiffness_[at.vertex],
                             x[at.vertex]));
   }
-  /// visit(piece, part) of faces and edges.
+  /// Calls visit(piece, part) for the faces and edges that touch, at x.
   template <class Visit>
   void each_piece(const std::vector<Vec3>& x, const Visit& visit) const {
     for (const TouchingPiece& piece : pieces_.all)
       visit(piece, part(piece.at, piece.force, pieces_.stiffness_of(piece), piece.place(x)));
   }
 
-  /// The forces become what acts at x, which p.x is but for rounding, if the gradient that is left
-  /// [N] is less; what has newly come inside is held from now on, at first by what its own inertia
-  /// asks for. Whether a force changes by more than `rounding` [N]. False without contact.
+  /// Sets the forces to those acting at x if the gradient `left` [N] is small enough; x equals p.x
+  /// up to rounding. A new contact is held from now on, at first by the force that its own inertia
+  /// needs. Returns whether a force changes by more than `rounding` [N]; false without contact.
   template <class Real>
   bool update(const Particles<Real>& p, const std::vector<Vec3>& x, double h, double left,
               double rounding);
@@ -134,7 +137,7 @@ class AugmentedContacts {
   static Part part(const TouchingVertex& at, const ContactForce& held, double k, const Vec3& x);
 
  private:
-  std::unique_ptr<Contacts> contacts_;    ///< null: none
+  std::unique_ptr<Contacts> contacts_;    ///< null: no contact
   std::vector<TouchingVertex> touching_;  ///< of this iteration
   std::vector<ContactForce> acting_;      ///< [touching]
   std::vector<double> stiffness_;         ///< [n] N/m, k; empty: no contact

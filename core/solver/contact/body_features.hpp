@@ -15,27 +15,27 @@ namespace taut {
 
 /// How a point of a face or an edge of the cloth leaves a solid.
 struct Separation {
-  double length = 0;           ///< m; <= 0: it is outside
+  double length = 0;           ///< m; <= 0: the point is outside
   Vec3 normal = Vec3::Zero();  ///< unit
   TrianglePoint point;
-  bool has_passed = false;  ///< through an edge, since the substep began
+  bool has_passed = false;  ///< the edge has passed through an edge since the substep began
 };
 
-/// An edge of the cloth is a face whose last two corners are one vertex.
+/// Whether a piece is an edge of the cloth: a face whose last two corners are one vertex.
 inline bool is_edge(const Triangle& piece) { return piece[1] == piece[2]; }
 
-/// A straight edge that does not move, of a body or the axis of a capsule.
+/// A straight edge that does not move: of a body, or the axis of a capsule.
 struct FixedEdge {
   Vec3 from, along;  ///< m
 };
 
-/// Where the lines of an edge of the cloth and of a fixed one are nearest to each other.
+/// Where the lines of an edge of the cloth and of a fixed edge are nearest to each other.
 struct LinesApart {
   double on_cloth = 0, on_fixed = 0;  ///< shares
-  Vec3 normal = Vec3::Zero();         ///< unit, across both; of which sign, does not matter
-  double height = 0;                  ///< m, of the cloth's along it
+  Vec3 normal = Vec3::Zero();         ///< unit, across both, of either sign
+  double height = 0;                  ///< m, height of the cloth's edge along the normal
 
-  /// Whether the places belong to both edges, ends included.
+  /// Whether these points are on both edges, ends included.
   bool meet() const { return on_cloth >= 0 && on_cloth <= 1 && on_fixed >= 0 && on_fixed <= 1; }
   void turn() {
     normal = -normal;
@@ -56,14 +56,14 @@ inline std::optional<LinesApart> lines_apart(const Vec3& p, const Vec3& q, const
   return apart;
 }
 
-/// Of an edge of the cloth, whose ends go straight from `before` to `now`, that passes through one
-/// of a body, both ends of which count: where their lines are apart where it first does so, and at
-/// the end; the normals are those on the side from which it comes.
+/// First crossing of an edge of the cloth, whose ends move straight from `before` to `now`, with an
+/// edge of a body, ends included: the lines at the crossing and at the end. The normals point to
+/// the side from which the edge comes.
 struct Crossing {
   LinesApart first, end;
-  double share = 0;  ///< of the way, of the first
+  double share = 0;  ///< of the path, at the first crossing
 };
-/// The volume that the two edges span is a polynomial of second degree in the share of the way.
+/// The volume spanned by the two edges is a polynomial of second degree in the share of the path.
 inline std::optional<Crossing> first_crossing(const Corners& before, const Corners& now,
                                               const FixedEdge& edge) {
   const auto at = [&](double share, std::size_t c) {
@@ -88,7 +88,7 @@ inline std::optional<Crossing> first_crossing(const Corners& before, const Corne
     auto first = lines_apart(at(share, 0), at(share, 1), edge);
     if (!first || !first->meet()) continue;
     auto end = lines_apart(now[0], now[1], edge);
-    if (!end || !end->meet()) {  // it has turned away: as it was when it passed
+    if (!end || !end->meet()) {  // it has turned away: use the lines at the crossing
       end = first;
       end->height = end->normal.dot(end->on(now) - edge.from);
     }
@@ -98,7 +98,7 @@ inline std::optional<Crossing> first_crossing(const Corners& before, const Corne
   }
   return {};
 }
-/// The same with a body's edge whose ends go straight, too.
+/// First crossing with a body's edge whose ends move straight, too.
 inline std::optional<Crossing> first_crossing(const MovingEdge& cloth, const MovingEdge& body) {
   for (const auto& [share, rises] : passes(cloth, body)) {
     if (share == 0) return {};
@@ -108,7 +108,7 @@ inline std::optional<Crossing> first_crossing(const MovingEdge& cloth, const Mov
     if (!first || !first->meet()) continue;
     const FixedEdge at_end{body.now[0], body.now[1] - body.now[0]};
     auto end = lines_apart(cloth.now[0], cloth.now[1], at_end);
-    if (!end || !end->meet()) {  // it has turned away: as it was when it passed
+    if (!end || !end->meet()) {  // it has turned away: use the lines at the crossing
       end = first;
       end->height = end->normal.dot(end->on({cloth.now[0], cloth.now[1], cloth.now[1]}) -
                                     at_end.from - end->on_fixed * at_end.along);
@@ -120,22 +120,22 @@ inline std::optional<Crossing> first_crossing(const MovingEdge& cloth, const Mov
   return {};
 }
 
-/// What of a solid body of triangles the faces and edges of a cloth meet that its vertices do not:
-/// an edge of the cloth an edge of the body that is convex, a face a vertex. Everything else is met
-/// by a vertex of the cloth first. Each piece remembers which of them were near, and is not looked
-/// up before it has moved on. In the body's frame.
+/// Contact of the faces and edges of a cloth with a solid body of triangles where its vertices do
+/// not touch: edges of the cloth with convex edges of the body, and faces with vertices. Everything
+/// else first meets a vertex of the cloth. Each piece remembers nearby features, and looks them up
+/// again only after it has moved. All in the body's frame.
 class BodyFeatures {
  public:
   BodyFeatures(double thickness, std::size_t pieces) : thickness_(thickness), near_(pieces) {}
 
-  /// Where a substep began.
+  /// State at the beginning of a substep.
   struct Before {
     Corners corners;
-    const TriangleMesh* mesh = nullptr;  ///< of a body that deforms; null: it is rigid
-    double longest_way = 0;              ///< m, of the body's vertices since then
+    const TriangleMesh* mesh = nullptr;  ///< mesh of a body that deforms; null: it is rigid
+    double longest_way = 0;  ///< m, longest displacement of the body's vertices since then
   };
-  /// The farthest way out. `before`: if what has passed through a convex edge since then counts;
-  /// else null.
+  /// The farthest separation from any feature. before: if not null, a piece that has since passed
+  /// through a convex edge counts, too.
   Separation out_of(const TriangleMesh& mesh, std::size_t piece, bool is_edge, const Corners& now,
                     const Before* before) {
     Near& near = near_[piece];
@@ -157,13 +157,13 @@ class BodyFeatures {
     return best;
   }
 
-  /// The body is another one: what was near need not be.
+  /// Forgets which features are near: the body has changed.
   void forget() {
     for (Near& near : near_) near.reach = 0;
   }
 
-  /// Of an edge: from the one that it had to leave last, however far it is; none where they are no
-  /// longer across each other.
+  /// Separation of an edge from the edge that it had to leave last, however far away it is; empty
+  /// if the two are no longer across each other.
   std::optional<Separation> out_of_last(const TriangleMesh& mesh, std::size_t piece,
                                         const Corners& now) const {
     const int last = near_[piece].last;
@@ -176,12 +176,12 @@ class BodyFeatures {
   std::size_t bytes() const { return near_.size() * sizeof(Near); }
 
  private:
-  /// Of a piece: the edges or vertices that it can meet until it has moved by `reach`.
+  /// Features that a piece can meet until it has moved by `reach`.
   struct Near {
     Corners at;
     double reach = 0;           ///< m; 0: not looked up yet
     std::vector<int> features;  ///< 3 triangle + side, or vertices
-    int last = -1;              ///< of them, that of the last way out; negative: none
+    int last = -1;              ///< feature of the last separation; negative: none
   };
 
   static FixedEdge edge_of(const TriangleMesh& mesh, int edge) {
@@ -218,7 +218,7 @@ class BodyFeatures {
     near.features.erase(std::unique(near.features.begin(), near.features.end()),
                         near.features.end());
   }
-  /// By the number that it has in the first of its triangles.
+  /// Adds the edge, by its number in the first of its triangles.
   static void add_edge(const TriangleMesh& mesh, int edge, const Corners& now, double within,
                        std::vector<int>& all) {
     const int beyond = mesh.beyond(edge / 3, edge % 3);
@@ -236,7 +236,7 @@ class BodyFeatures {
     if ((closest_point(now, at).position - at).norm() <= within) all.push_back(vertex);
   }
 
-  /// Sides between which a line at a convex edge is outside of both.
+  /// Whether a normal at a convex edge lies between the normals of its two sides.
   static bool is_between(const Vec3& normal, const Vec3& along, const Vec3& one,
                          const Vec3& other) {
     return along.dot(one.cross(normal)) >= 0 && along.dot(normal.cross(other)) >= 0;
@@ -246,11 +246,11 @@ class BodyFeatures {
     const Vec3 weights(1 - at.on_cloth, at.on_cloth, 0);
     return {thickness_ - at.height, at.normal, {at.on(now), weights}, has_passed};
   }
-  /// Of the two sides of an edge.
+  /// Sum of the normals of the two sides of an edge.
   static Vec3 outward(const TriangleMesh& mesh, int edge) {
     return mesh.normal(edge / 3) + mesh.normal(mesh.beyond(edge / 3, edge % 3) / 3);
   }
-  /// Where the edges are across each other; outward.
+  /// The nearest points of the two edges if they are across each other, with the normal outward.
   static std::optional<LinesApart> lines_over(const TriangleMesh& mesh, int edge,
                                               const Corners& now) {
     auto at = lines_apart(now[0], now[1], edge_of(mesh, edge));
@@ -262,7 +262,7 @@ class BodyFeatures {
   static std::array<Vec3, 2> ends_of(const FixedEdge& edge) {
     return {edge.from, edge.from + edge.along};
   }
-  /// On the way from one mesh to the other, not normalised.
+  /// Normal of a triangle at a share of its path from one mesh to the other, not normalised.
   static Vec3 normal_at(const TriangleMesh& from, const TriangleMesh& to, double share,
                         int triangle) {
     Corners at;
@@ -272,7 +272,7 @@ class BodyFeatures {
     }
     return (at[1] - at[0]).cross(at[2] - at[0]);
   }
-  /// Whether, and how, the cloth's edge has passed through that of the body from outside.
+  /// How the cloth's edge has passed through the body's from outside; empty if it has not.
   static std::optional<Crossing> passed(const TriangleMesh& mesh, int number, const FixedEdge& edge,
                                         const Corners& now, const Before& before) {
     const int one = number / 3, other = mesh.beyond(one, number % 3) / 3;
@@ -304,7 +304,8 @@ class BodyFeatures {
     };
     const auto at = lines_over(mesh, number, now);
     if (!at || at->height >= thickness_ || !leaves_sides_below(at->normal)) return {};
-    if (at->height < 0) {  // inside, unless it is beyond the whole body: a little further in, too
+    // It is inside, unless it is beyond the whole body: also test a point a little further in.
+    if (at->height < 0) {
       const Vec3 way = (now[1] - now[0]).normalized(), place = at->on(now);
       const double inward = way.dot(outward(mesh, number)) > 0 ? at->height : -at->height;
       if (!is_inside_at(mesh, place, -at->height) &&
@@ -317,7 +318,7 @@ class BodyFeatures {
   Separation over_vertex(const TriangleMesh& mesh, int vertex, const Corners& now) const {
     const Vec3& corner = mesh.vertices()[to_index(vertex)];
     const TrianglePoint at = closest_point(now, corner);
-    if (at.weights.maxCoeff() >= 1) return {};  // a vertex of the cloth's own business
+    if (at.weights.maxCoeff() >= 1) return {};  // contact of the cloth's vertex itself
     const Vec3 way = corner - at.position;
     const double length = way.norm();
     if (length == 0) return {thickness_, mesh.corner_normal(vertex).normalized(), at};
@@ -328,7 +329,7 @@ class BodyFeatures {
     return {thickness_ - length, -way / length, at};
   }
 
-  /// Whether the place is inside, and its way out to an edge or a corner not a detour.
+  /// Whether the point is inside, and the path out to an edge or a corner is no detour.
   static bool is_inside_at(const TriangleMesh& mesh, const Vec3& place, double way) {
     constexpr double kDetour = 5;
     return way < kDetour * -mesh.nearest(place).distance;

@@ -18,11 +18,11 @@ class Contacts::Surface {
  public:
   virtual ~Surface() = default;
   virtual void begin(double t, double h) = 0;
-  /// Whether x is inside, or `held`; then `at`, but for its vertex and collider, is filled in.
+  /// Whether x is inside or `held`. If so, fills in `at`, except its vertex and collider.
   virtual bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
                        TouchingVertex& at) = 0;
   virtual bool turns() const = 0;
-  /// The force on a vertex that it holds, from the last substep to this one.
+  /// Turns the force on a vertex that the collider holds from the last substep to this one.
   virtual Vec3 turned(std::size_t vertex, const Vec3& force) const = 0;
 };
 
@@ -49,7 +49,7 @@ class SurfaceIn final : public Contacts::Surface {
                TouchingVertex& at) override {
     const Vec3T<double> to = vec3t<double>(x), before = vec3t<double>(previous);
     Tangent<double> tangent;
-    if constexpr (kIsMesh) {  // by a copy, for vertices are asked about by several threads
+    if constexpr (kIsMesh) {  // on a copy, because several threads ask about vertices
       Contact<double, MeshSurface> contact = contact_;
       contact.surface.ask_about(&seen_[vertex]);
       if (!contact.touched(to, before, continuous_, held, tangent)) return false;
@@ -75,7 +75,7 @@ class SurfaceIn final : public Contacts::Surface {
   Collider collider_;
   bool continuous_;
   Contact<double, SurfaceOf> contact_{};
-  std::vector<Seen> seen_;  ///< [vertices] of a body of triangles
+  std::vector<Seen> seen_;  ///< [vertices] for a body of triangles
 };
 
 class DeformingSurfaceIn final : public Contacts::Surface {
@@ -223,8 +223,9 @@ Vec3 Contacts::force_at(std::size_t vertex, const Vec3& x, const Vec3& previous)
 
 void Contacts::settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian,
                              const Vec3& previous, Vec3& x) {
-  std::optional<MatrixCompliance> moves;  // hardly any vertex touches anything
-  constexpr int kRounds = 8;  // of a vertex at several colliders, whose forces change each other
+  // Computed only on contact: hardly any vertex touches anything.
+  std::optional<MatrixCompliance> moves;
+  constexpr int kRounds = 8;  // for a vertex at several colliders, whose forces affect each other
   for (int round = 0; round < kRounds; ++round) {
     int touching = 0;
     TouchingVertex at;

@@ -14,7 +14,7 @@
 
 namespace taut {
 
-/// The force by which a collider holds a vertex.
+/// Contact force of a collider on a vertex.
 struct ContactForce {
   double push = 0;          ///< N, along the normal, >= 0
   Vec3 rub = Vec3::Zero();  ///< N, friction, across the normal
@@ -35,7 +35,7 @@ struct TouchingVertex {
   Vec3 total(const ContactForce& f) const { return f.push * normal + f.rub; }
 };
 
-/// What a force moves a vertex by [m/N]: the same in all directions, or a matrix.
+/// Displacement of a vertex per force [m/N]: the same in all directions, or a matrix.
 struct IsotropicCompliance {
   double value;
   Vec3 operator*(const Vec3& force) const { return value * force; }
@@ -86,10 +86,11 @@ Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce
   return leave(now);
 }
 
-/// Contact as a constraint of solvers that solve towards y: every vertex' forces, by collider, kept
-/// from iteration to iteration and from substep to substep while they hold, so that links feel what
-/// the collider pushes with. Projection after a solve that knows nothing of the collider would rest
-/// where links carry too little: at an edge by more than g h^2 however often it is repeated.
+/// Contact as a constraint, for solvers that solve towards y. The forces of every vertex, by
+/// collider, are kept from iteration to iteration and from substep to substep while they hold, so
+/// that links feel the push of the collider. Projection after a solve without the collider would
+/// come to rest where links carry too little: at an edge it is off by more than g h^2 however often
+/// it is repeated.
 ///
 /// The conditions are those of one step of implicit Euler with Signorini and Coulomb contact,
 ///
@@ -100,20 +101,21 @@ class Contacts {
   Contacts(const Scene&, bool continuous);
   ~Contacts();
 
-  void restart();  ///< no force, no substep before
-  void take_over(const Contacts& before) { forces_ = before.forces_; }  ///< of the same colliders
-  /// The substep [t, t + h]: colliders move, forces turn with them.
+  void restart();  ///< forgets all forces and the last substep
+  /// Takes over the forces at the same colliders.
+  void take_over(const Contacts& before) { forces_ = before.forces_; }
+  /// Begins the substep [t, t + h]: colliders move, and forces turn with them.
   void begin(double t, double h);
 
-  /// Whether the vertex at x, which began the substep at `previous`, is held by the collider or
-  /// inside it; if so, where.
+  /// Whether the collider holds the vertex at x, which began the substep at `previous`, or x is
+  /// inside it. If so, sets where it touches.
   bool touches(std::size_t vertex, std::size_t collider, const Vec3& x, const Vec3& previous,
                TouchingVertex&);
   std::size_t colliders() const { return surfaces_.size(); }
   ContactForce& force(std::size_t vertex, std::size_t collider) {
     return forces_[vertex * surfaces_.size() + collider];
   }
-  /// All contacts of vertices that are not pinned.
+  /// Finds all contacts of vertices that are not pinned.
   template <class Real>
   void find(const Particles<Real>& p, std::vector<TouchingVertex>&);
 
@@ -128,7 +130,7 @@ class Contacts {
 
   /// Whether any collider holds the vertex, or x is inside one.
   bool reaches(std::size_t vertex, const Vec3& x, const Vec3& previous);
-  /// The sum of the forces [N] on a vertex at x, linearised there.
+  /// Sum of the forces [N] on a vertex at x, linearised there.
   Vec3 force_at(std::size_t vertex, const Vec3& x, const Vec3& previous);
   /// Settles the contacts of a vertex that has been moved to x, with this Hessian [N/m].
   void settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian, const Vec3& previous,
@@ -141,7 +143,8 @@ class Contacts {
   std::vector<ContactForce> forces_;  ///< [vertex][collider]
 };
 
-/// Null if there is no collider, or if `contact` is neither continuous nor discrete.
+/// The contacts of a scene; null if there is no collider, or if `contact` is neither continuous nor
+/// discrete.
 std::unique_ptr<Contacts> make_contacts(const Scene&, const Params&);
 
 }  // namespace taut

@@ -11,13 +11,14 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Rounds at most; sweeps after them, and where they led nowhere.
+/// Most rounds; sweeps after successful rounds, and sweeps if no round led anywhere.
 constexpr int kRounds = 4, kSweeps = 2, kSweepsAlone = 30;
-constexpr double kEnough = 1e-12;  ///< of coordinates, of gaps and slips
-/// Beyond kMany contacts a matrix, whose factor costs their cube, is dearer than many iterations of
-/// the links: kFactors are made in a substep, and rounds that need another one are left out.
-/// Beyond kTooMany there are sweeps alone, from the forces of the last iteration on; where a cloth
-/// lies on so many it does not come to rest altogether (results/benchmarks/contact-rests.md).
+constexpr double kEnough = 1e-12;  ///< tolerance of gaps and slips, as a share of coordinates
+/// Beyond kMany contacts the factor of a matrix, which costs their cube, takes longer than many
+/// iterations of the links. Then at most kFactors are made in a substep, and rounds that need
+/// another are left out. Beyond kTooMany there are only sweeps, starting from the forces of the
+/// last iteration. A cloth that lies on so many contacts does not come to rest completely
+/// (results/benchmarks/contact-rests.md).
 constexpr std::size_t kMany = 160, kTooMany = 700;
 constexpr int kFactors = 16;
 constexpr int kSweepsOfMany = 2;
@@ -120,7 +121,7 @@ void CoupledContacts::factor(const Sets& sets) {
   const MatrixXd& g = *compliance_;
   MatrixXd g_ss = part(g, sets.sticking, sets.sticking), g_ll = part(g, sets.sliding, sets.sliding);
   const MatrixXd g_sl = part(g, sets.sticking, sets.sliding);
-  // A vertex that two colliders hold has two forces, which its place does not tell apart.
+  // A vertex held by two colliders has two forces, which its position does not tell apart.
   constexpr double kApart = 1e-9;
   g_ss.diagonal() *= 1 + kApart;
   Eigen::LLT<MatrixXd> stuck(g_ss);
@@ -135,7 +136,7 @@ void CoupledContacts::factor(const Sets& sets) {
   factored_ = {sets, std::move(stuck), std::move(across), Eigen::PartialPivLU<MatrixXd>(g_ll)};
 }
 
-/// With the factors of these trials' sets.
+/// Solves with the factors of these trials' sets.
 void CoupledContacts::solve(const std::vector<Trial>& trials, Rows& x, Rows& change) {
   const auto& [sets, stuck, across, slide] = *factored_;
   std::vector<std::size_t> sticking, sliding;

@@ -12,24 +12,26 @@
 
 namespace taut {
 
-/// Contacts of vertices that a linear system couples: a force at one moves all.
+/// Contacts of vertices that a linear system couples: a force at one vertex moves all.
 ///
 ///     x_i = free_i + sum_j G_ij f_j,      G [m/N] the same for x, y and z (the Delassus operator)
 ///
-/// Each round of a semi-smooth Newton method takes every contact as open, sticking or sliding,
-/// whichever its force would be if it alone had to close its gap and slip, and solves the linear
-/// system that this leaves (Alart, Curnier 1991, where a contact's own compliance is the
-/// parameter). Sweeps contact by contact end it (projected Gauss-Seidel; Jean, Moreau 1992): forces
-/// are within their cones whatever the rounds left.
+/// Each round of a semi-smooth Newton method takes every contact as open, sticking or sliding, by
+/// the force with which it alone would close its gap and slip, and solves the linear system that
+/// remains (Alart, Curnier 1991, where a contact's own compliance is the parameter). Sweeps contact
+/// by contact end the solution (projected Gauss-Seidel; Jean, Moreau 1992), so forces are within
+/// their friction cones whatever the rounds have left.
 class CoupledContacts {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-  void begin() { factored_in_substep_ = 0; }        ///< a substep
-  void compliance_changed() { factored_.reset(); }  ///< it is another matrix from now on
+  /// Begins a substep.
+  void begin() { factored_in_substep_ = 0; }
+  /// The compliance is another matrix from now on.
+  void compliance_changed() { factored_.reset(); }
 
-  /// Of the contacts `at`, contact c of vertex `place[c]` of G, with the force force(c). Changes
-  /// the forces and moves x [places] m; returns the sums of the changes [places] N.
+  /// Resolves the contacts `at`; contact c is at vertex `place[c]` of G and has the force force(c).
+  /// Changes the forces and moves x [places] m. Returns the sums of the changes [places] N.
   Rows resolve(const Eigen::MatrixXd& compliance, std::span<const TouchingVertex> at,
                std::span<const Eigen::Index> place,
                const std::function<ContactForce&(std::size_t)>& force, Rows& x);
@@ -38,14 +40,14 @@ class CoupledContacts {
   enum class State { open, sticking, sliding };
   struct Trial {
     State state = State::open;
-    Vec3 direction = Vec3::Zero();  ///< of a sliding one's force: normal + mu across
-    double away = 0;                ///< m, from the conditions of contact
+    Vec3 direction = Vec3::Zero();  ///< of the force of a sliding contact: normal + mu across
+    double away = 0;                ///< m, distance from the conditions of contact
   };
   Trial trial(std::size_t contact, const Rows& x) const;
-  /// The places of those that stick and slide, and what their matrices rest on.
+  /// The places of sticking and sliding contacts, and what their matrices depend on.
   struct Sets {
     std::vector<Eigen::Index> sticking, sliding;
-    std::vector<Vec3> normals, directions;  ///< of those that slide
+    std::vector<Vec3> normals, directions;  ///< of sliding contacts
     bool operator==(const Sets&) const = default;
   };
   Sets sets_of(const std::vector<Trial>&) const;

@@ -8,11 +8,11 @@
 
 namespace taut {
 
-/// A body that deforms, as one substep sees it: what Contact (simd/contact.hpp) is for surfaces
-/// that move as a whole, for one point at a time and in double. Two things differ. A path is held
-/// against every triangle's own way (DeformingBody::first_hit), and a particle's slip is that
-/// against the surface where it touches: against the place of the triangle, and what is around it
-/// as the triangle turns.
+/// A body that deforms, in one substep: the counterpart of Contact (simd/contact.hpp) for surfaces
+/// that move as a whole, for one point at a time and in double. Two things differ. A path is tested
+/// against every triangle's own path (DeformingBody::first_hit). Slip is relative to the surface
+/// where the particle touches: to the point of the triangle, with the surroundings turning as the
+/// triangle does.
 class DeformingContact {
  public:
   DeformingContact(const Collider& collider, double thickness)
@@ -26,16 +26,17 @@ class DeformingContact {
   const DeformingBody& body() const { return body_; }
   double friction() const { return friction_; }
   double thickness() const { return thickness_; }
-  double drift() const { return drift_; }  ///< m, of any vertex since the start, at most
+  /// Upper bound of the displacement of any vertex since the start [m].
+  double drift() const { return drift_; }
 
-  /// A point's way through a substep, in the body's frame.
+  /// A point's path through a substep, in the body's frame.
   struct Path {
     Vec3 from, to;
   };
   Path path(const Vec3& x, const Vec3& previous) const {
     return {body_.local_before(previous), body_.local(x)};
   }
-  /// From where on nothing can touch a point [m], at its end.
+  /// Distance from the path's end beyond which nothing can touch the point [m].
   double reach(const Path& path, bool continuous) const {
     if (!continuous) return thickness_;
     return thickness_ + 1.001 * (path.to - path.from).norm() + body_.longest_way();
@@ -43,21 +44,21 @@ class DeformingContact {
   bool beyond_all(const Path& path, double reach) const {
     return body_.after().box().squaredExteriorDistance(path.to) > reach * reach;
   }
-  /// Of the surface at the end, from the side on which the point is if the body is thin.
+  /// The nearest point of the surface at the end; for a thin body, seen from the side of the point.
   NearestPlace nearest(const Path& path) const {
     return seen_from_outside(body_.after().nearest(path.to));
   }
 
-  /// A half-space that the point has to keep out of, by `thickness` [m], and where it would be if
-  /// it had not slipped; in the world.
+  /// A half-space from which the point must keep `thickness` [m], and the point's position without
+  /// slip; in world coordinates.
   struct Touch {
     Vec3 normal;
     double offset;  ///< m
     Vec3 from;
     int triangle;
   };
-  /// Whether the point is inside, or `held`, or, `continuous`, has passed through the surface since
-  /// the substep began: then it belongs to the side from which it came.
+  /// Whether the point is inside or `held` or, if `continuous`, has passed through the surface
+  /// since the substep began. In the last case the half-space is on the side from which it came.
   std::optional<Touch> touch(const Path& path, const NearestPlace& nearest, bool continuous,
                              bool held) const {
     const bool near = held || nearest.distance < thickness_;
@@ -69,7 +70,7 @@ class DeformingContact {
     return in_world(nearest.normal, motion.to, motion(path.from), nearest.triangle);
   }
 
-  /// Where the point has passed through the surface since the substep began, if it has.
+  /// Where the point has passed through the surface since the substep began; empty if it has not.
   std::optional<Touch> passes(const Path& path) const { return entered(path, nearest(path)); }
 
  private:
@@ -84,9 +85,9 @@ class DeformingContact {
     return {out, out.dot(body_.world(on)), body_.world(from), triangle};
   }
 
-  /// Nothing where the path goes through no triangle, or where the nearest place is on the side
-  /// that it came through. A path without a hit stays inside if it ends inside: what began there
-  /// leaves where it was nearest to the surface.
+  /// Empty if the path passes through no triangle, or if the nearest point is on the side that it
+  /// came through. A path without a hit stays inside if it ends inside: a point that began inside
+  /// leaves at the nearest point of the surface.
   std::optional<Touch> entered(const Path& path, const NearestPlace& nearest) const {
     const auto hit = body_.first_hit(path.from, path.to);
     if (!hit && (body_.is_thin() || nearest.distance > 0)) return {};

@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// Puts particles out of a body that deforms, one after the other.
+/// Pushes particles out of a body that deforms, one after another.
 template <class Real>
 class DeformingProjector final : public Projector<Real> {
  public:
@@ -16,7 +16,7 @@ class DeformingProjector final : public Projector<Real> {
       : contact_(collider, thickness), continuous_(continuous) {}
 
   void begin(double t, double dt) override {
-    if (queued_in_) queued_in_->finish();  // what is queued reads the body of the last substep
+    if (queued_in_) queued_in_->finish();  // queued work reads the body of the last substep
     contact_.begin(t, dt);
   }
 
@@ -46,11 +46,12 @@ class DeformingProjector final : public Projector<Real> {
   }
 
  private:
-  /// How far from the surface a particle was in the body's frame, and how far the surface had
-  /// drifted by then: it is so far away at least, less what both have moved since.
+  /// Distance of a particle from the surface, its position in the body's frame, and the drift of
+  /// the surface when it was looked up. The distance is now at least this, less the motion of both
+  /// since.
   struct Seen {
     Vec3 at = Vec3::Zero();
-    double distance = 0, drift = 0;  ///< m; distance 0: nothing is known
+    double distance = 0, drift = 0;  ///< m; distance 0: unknown
   };
 
   bool moved_out(Vec3& x, const Vec3& previous, Seen& seen) const {
@@ -67,7 +68,7 @@ class DeformingProjector final : public Projector<Real> {
     if (continuous_) keep_from_others(x, previous);
     return true;
   }
-  /// As at a rigid body (projector.cpp).
+  /// Like BodyContact::keep_from_others() at a rigid body (projector.cpp).
   void keep_from_others(Vec3& x, const Vec3& previous) const {
     const double rounding = 1e-9 * contact_.body().after().reach();
     constexpr int kOthers = 4;
@@ -97,7 +98,7 @@ class DeformingProjector final : public Projector<Real> {
 
   DeformingContact contact_;
   bool continuous_;
-  mutable std::vector<Seen> seen_;  ///< by place
+  mutable std::vector<Seen> seen_;  ///< by place of the particle
   mutable ThreadPool* queued_in_ = nullptr;
 };
 

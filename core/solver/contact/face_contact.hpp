@@ -12,26 +12,28 @@
 
 namespace taut {
 
-/// Keeps faces and edges of the cloth, not just its vertices, out of a ball or a capsule, edges and
-/// corners of a box out of the faces, and those of a solid body of triangles (BodyFeatures). Of
-/// each piece that is too deep, the deepest point is moved out along the surface's normal; its
-/// corners share the correction by their barycentric weights b and inverse masses w,
+/// Keeps faces and edges of the cloth, not just its vertices, out of a ball or a capsule; edges and
+/// corners of a box out of the faces, and likewise those of a solid body of triangles
+/// (BodyFeatures). For each piece that is too deep, the deepest point is moved out along the
+/// surface's normal. The piece's corners share the correction by their barycentric weights b and
+/// inverse masses w,
 ///
 ///     dx_i = w_i b_i s n / sum of w_j b_j^2,
 ///
-/// so that the point moves by s n and momentum changes along n alone. Continuous: an edge that has
-/// passed through a convex edge of a body or the axis of a capsule goes back to the side from which
-/// it came; where a substep ended before it was there, in the next.
+/// so that the point moves by s n and momentum changes only along n. Continuous: an edge that has
+/// passed through a convex edge of a body, or through the axis of a capsule, goes back to the side
+/// from which it came; if it is not there when the substep ends, it goes on in the next.
 ///
 /// With a solver that has a target y, a piece keeps the force F at its point from sweep to sweep
-/// and from substep to substep, as long as Signorini and Coulomb ask for it, were the corners free
-/// (settle() in contacts.hpp); its changes move y as they move x, so that links feel b F. A solver
-/// that takes pieces into its solve (TouchingPieces) is told which touch, and nothing is moved.
+/// and from substep to substep, while Signorini and Coulomb require it for free corners (settle()
+/// in contacts.hpp). Its changes move y as they move x, so that links feel b F. A solver that
+/// includes pieces in its solve (TouchingPieces) is told which of them touch, and nothing is moved
+/// here.
 template <class Real>
 class FaceContactPass final : public Pass<Real> {
  public:
-  /// The collider is no plane and no thin body. pieces: faces and edges (is_edge()). solver: null,
-  /// or that of the links, whose target moves as well.
+  /// Precondition: the collider is neither a plane nor a thin body. pieces: faces and edges
+  /// (is_edge()). solver: null, or the pass of the links, whose target is moved as well.
   FaceContactPass(const Collider& collider, double thickness, bool continuous,
                   std::vector<Triangle> pieces, Pass<Real>* solver)
       : collider_(collider),
@@ -66,7 +68,7 @@ class FaceContactPass final : public Pass<Real> {
 
   void begin(Particles<Real>& p, double t, double dt) override {
     if (deforming_) {
-      if (continuous_) remember_sides(p);  // they go with the surface of the last substep
+      if (continuous_) remember_sides(p);  // relative to the surface of the last substep
       deforming_->move(t, t + dt);
       shape_ = deforming_->body();
       features_->forget();
@@ -96,7 +98,7 @@ class FaceContactPass final : public Pass<Real> {
       to_body_ = body->rotation.conjugate().toRotationMatrix();
     }
     if (continuous_ && !deforming_) remember_sides(p);
-    for (std::size_t f = 0; f < held_.size(); ++f)  // of the last substep; p.x is y
+    for (std::size_t f = 0; f < held_.size(); ++f)  // forces of the last substep; p.x is y
       if (held_[f].holds()) {
         held_[f].force = turned(held_[f], at_start(p, faces_[f], held_[f].weights));
         if (!pieces_) add_force(p.x, p, faces_[f], held_[f].weights, dt * dt * held_[f].force);
@@ -124,29 +126,30 @@ class FaceContactPass final : public Pass<Real> {
   }
 
  private:
-  /// What holds a face [N], and at which of its points.
+  /// Force that holds a face [N], and the point of the face at which it acts.
   struct Held {
     Vec3 force = Vec3::Zero(), weights = Vec3::Zero();
     bool holds() const { return !force.isZero(0); }
   };
 
-  /// A point that is equally deep below several sides leaves between them, over their common edge
-  /// or corner: along n = sum of their normals, by depth / (n . one of them).
+  /// Separation over an edge or corner of a box: a point that is equally deep below several sides
+  /// leaves between them, along n = sum of their normals, by depth / (n . one of them).
   static Separation over_edge(const Box& box, const Deepest& deepest) {
     const Vec3 local = box.rotation.conjugate() * (deepest.at.position - box.center);
     const Vec3 depths = box.half_extents - local.cwiseAbs();
     Vec3 out = Vec3::Zero();
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       if (depths[axis] <= deepest.depth * (1 + 1e-6)) out[axis] = local[axis] < 0 ? -1 : 1;
-    const double sides = out.norm();  // sqrt(how many)
+    const double sides = out.norm();  // sqrt(number of sides)
     if (sides == 0) return {};
     return {deepest.depth * sides, box.rotation * out / sides, deepest.at};
   }
 
-  /// An edge that goes back through another one turns on its way, and may be through it again.
+  /// Most rounds in a sweep: an edge that goes back through another one turns, and may be through
+  /// it again.
   static constexpr int kRounds = 4;
 
-  /// Whether that was all: the piece had not passed through anything.
+  /// Returns whether the piece is done, since it had not passed through anything.
   bool keep_out(Particles<Real>& p, std::size_t f, double dt) {
     const auto out = to_leave(p.x, f);
     if (!out) return true;
@@ -157,7 +160,7 @@ class FaceContactPass final : public Pass<Real> {
     return !out->has_passed;
   }
 
-  /// How a piece at x leaves the collider, or has left that which still holds it.
+  /// How a piece at x leaves the collider, or how far it is from a collider that still holds it.
   std::optional<Separation> to_leave(const Points<Real>& x, std::size_t f) {
     const Triangle& face = faces_[f];
     const Corners t{at(x, face[0]), at(x, face[1]), at(x, face[2])};
@@ -171,7 +174,7 @@ class FaceContactPass final : public Pass<Real> {
     return outside(f, t);
   }
 
-  /// Tells the solver what touches at x.
+  /// Tells the solver which pieces touch at x.
   std::span<TouchingPiece> find_touching(const Particles<Real>& p, const Points<Real>& x) {
     std::vector<TouchingPiece>& all = pieces_->all;
     std::erase_if(all, [&](const TouchingPiece& piece) { return piece.found_by == this; });
@@ -187,13 +190,14 @@ class FaceContactPass final : public Pass<Real> {
     return std::span(all).subspan(first);
   }
 
-  /// What the solver has made of them.
+  /// Keeps the forces that the solver has found.
   void keep_forces() {
     for (const TouchingPiece& piece : pieces_->all)
       if (piece.found_by == this)
         held_[piece.number] = {piece.at.total(piece.force), piece.weights};
   }
-  /// The forces of what touches after an iteration, as those of vertices (AugmentedContacts).
+  /// Updates the forces of touching pieces after an iteration, as AugmentedContacts does for
+  /// vertices.
   void follow(const Particles<Real>& p, std::span<TouchingPiece> touching, double h) {
     std::vector<ContactForce> acting;
     double change2 = 0;
@@ -218,7 +222,7 @@ class FaceContactPass final : public Pass<Real> {
     }
   }
 
-  /// Precondition: no plane.
+  /// Precondition: the collider is not a plane.
   Separation separation_of(std::size_t piece, const Corners& t) {
     if (const MeshBody* body = std::get_if<MeshBody>(&shape_)) return out_of(*body, piece, t);
     Separation out;
@@ -241,7 +245,7 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   Vec3 moved(const Vec3& x) const { return point(motion_(vec3t<double>(x))); }
-  /// Where the corners of an edge would be if they had moved with a rigid collider.
+  /// Positions of an edge's corners if they had moved with a rigid collider.
   Corners before(const Particles<Real>& p, const Triangle& piece) const {
     Corners t;
     for (std::size_t c = 0; c < 2; ++c) {
@@ -261,9 +265,10 @@ class FaceContactPass final : public Pass<Real> {
     return way2 > reach_ * reach_;
   }
 
-  /// Where edges come from: where they began the substep, or where they were before they passed
-  /// through what they have not gone back through, which goes with the surface. Of a rigid collider
-  /// where that is at the end of the substep; of one that deforms, at its start.
+  /// Remembers where edges come from: where they began the substep or, for edges that have passed
+  /// through something and not gone back yet, where they were before, moved along with the surface.
+  /// Positions refer to the end of the substep for a rigid collider, and to its start for one that
+  /// deforms.
   void remember_sides(const Particles<Real>& p) {
     const bool first = safe_.empty();
     if (first) safe_.resize(faces_.size());
@@ -305,7 +310,7 @@ class FaceContactPass final : public Pass<Real> {
     return {deepest.depth, surface(shape, deepest.at.position).normal, deepest.at};
   }
 
-  /// Of an edge that has passed through the axis.
+  /// Separation of an edge that has passed through the axis.
   Separation back_over(const Capsule& capsule, std::size_t edge, const Corners& t) const {
     const auto met = first_crossing(safe_[edge], t, axis_of(capsule));
     if (!met) return {};
@@ -339,7 +344,7 @@ class FaceContactPass final : public Pass<Real> {
     return was;
   }
 
-  /// Of a point of the face that the collider may have left.
+  /// Separation, negative, of a point of the face that the collider may no longer hold.
   Separation outside(std::size_t piece, const Corners& t) const {
     if (const MeshBody* body = std::get_if<MeshBody>(&shape_); body && is_edge(faces_[piece]))
       if (auto out = features_->out_of_last(*body->mesh, piece, in_body(*body, t, true)))
@@ -359,11 +364,11 @@ class FaceContactPass final : public Pass<Real> {
     for (std::size_t c = 0; c < 3; ++c) sum += weights[to_axis(c)] * at(x, face[c]);
     return sum;
   }
-  /// Where a point of a face began the substep [m].
+  /// Position of a point of a face at the beginning of the substep [m].
   static Vec3 at_start(const Particles<Real>& p, const Triangle& face, const Vec3& weights) {
     return place_of(p.previous, face, weights);
   }
-  /// What a force at the point moves it by, were its corners free [1/kg].
+  /// Displacement of the point per force and h^2 with free corners [1/kg].
   static double inverse_mass_of(const Particles<Real>& p, const Triangle& face,
                                 const Vec3& weights) {
     double sum = 0;
@@ -373,7 +378,7 @@ class FaceContactPass final : public Pass<Real> {
     }
     return sum;
   }
-  /// The half-space that it has to keep out of.
+  /// The half-space that the piece has to stay in.
   TouchingVertex touching(const Particles<Real>& p, const Triangle& face,
                           const Separation& out) const {
     TouchingVertex contact;
@@ -383,7 +388,7 @@ class FaceContactPass final : public Pass<Real> {
     contact.friction = collider_.friction;
     return contact;
   }
-  /// Where it would be if it had gone with the surface at `now` [m].
+  /// Position of the point if it had moved with the surface at `now` [m].
   Vec3 carried(const Vec3& start, const Vec3& now) const {
     if (!deforming_) return point(motion_(vec3t<double>(start)));
     const Vec3 x = deforming_->local(now);
@@ -391,7 +396,7 @@ class FaceContactPass final : public Pass<Real> {
     return deforming_->world(motion(deforming_->local_before(start)));
   }
 
-  /// The force of the last substep, which held the face at this place.
+  /// The force of the last substep, which held the face at this point, turned with the collider.
   Vec3 turned(const Held& held, const Vec3& place) const {
     if (deforming_)
       return deforming_->turned(
@@ -401,7 +406,7 @@ class FaceContactPass final : public Pass<Real> {
     return {dot(motion_.turn[0], f), dot(motion_.turn[1], f), dot(motion_.turn[2], f)};
   }
 
-  /// push: force times h^2 [N s^2].
+  /// Adds a force to the corners. push: force times h^2 [N s^2].
   static void add_force(Points<Real>& x, const Particles<Real>& p, const Triangle& face,
                         const Vec3& weights, const Vec3& push) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -410,12 +415,12 @@ class FaceContactPass final : public Pass<Real> {
     }
   }
 
-  /// The force for `out`, in the place of the one that has held the face until now.
+  /// Replaces the force that held the face by the one for `out`.
   void hold(Particles<Real>& p, const Triangle& face, const Separation& out, double dt,
             Held& held) const {
     const Vec3& weights = out.point.weights;
     const double own = inverse_mass_of(p, face, weights);
-    if (own == 0) return;  // all that could move it are pins
+    if (own == 0) return;  // its corners are pins
     double of_held = 0;    // 1/kg
     for (std::size_t c = 0; c < 3; ++c)
       of_held +=
@@ -461,17 +466,18 @@ class FaceContactPass final : public Pass<Real> {
   double thickness_;
   bool continuous_;
   std::vector<Triangle> faces_;
-  Pass<Real>* solver_;         ///< null: none with a target
-  TouchingPieces* pieces_;     ///< of a solver that takes them into its solve; else null
-  std::vector<Held> held_;     ///< [pieces]; empty without one
-  std::vector<Corners> safe_;  ///< [pieces] m, of edges; remember_sides()
-  Shape shape_;  ///< at the end of the step, grown by the thickness unless it is a body's
+  Pass<Real>* solver_;         ///< null: no solver with a target
+  TouchingPieces* pieces_;     ///< null unless the solver includes pieces in its solve
+  std::vector<Held> held_;     ///< [pieces]; empty without a solver
+  std::vector<Corners> safe_;  ///< [pieces] m, for edges; see remember_sides()
+  /// At the end of the step, enlarged by the thickness unless it is a body.
+  Shape shape_;
   Vec3 center_ = Vec3::Zero();
-  double reach_ = 0;                      ///< m, from its centre to its farthest point
-  std::optional<BodyFeatures> features_;  ///< of a body of triangles
+  double reach_ = 0;                      ///< m, from the centre to the farthest point
+  std::optional<BodyFeatures> features_;  ///< for a body of triangles
   Eigen::Matrix3d to_body_ = Eigen::Matrix3d::Identity();
   RigidMotion<double> motion_;
-  std::optional<DeformingBody> deforming_;  ///< a collider that does
+  std::optional<DeformingBody> deforming_;  ///< for a collider that deforms
 };
 
 }  // namespace taut

@@ -11,24 +11,25 @@
 
 namespace taut {
 
-/// Where a particle was in a body's frame when it was looked up, and what that says of places
-/// nearby. It is right as long as the body keeps its shape, however it moves.
+/// Position of a particle in a body's frame when it was last looked up, and what follows for nearby
+/// positions. Valid while the body keeps its shape, however it moves.
 struct Seen {
   Vec3 at = Vec3::Zero();
-  double distance = 0;  ///< m, of what is outside, at least; 0: nothing is known
+  double distance = 0;  ///< m, lower bound if outside; 0: unknown
   TriangleMesh::Nearby nearby;
 
-  /// Whether that says that `now` is at least `reach` from the surface.
+  /// Whether `now` is surely at least `reach` from the surface.
   bool tells_clear(const Vec3& now, double reach) const {
     const double spare = distance - reach;
     return spare > 0 && (now - at).squaredNorm() < spare * spare;
   }
 };
 
-/// A body of triangles at one moment, as surfaces.hpp has the closed forms, for one point at a
-/// time: it looks the point up in the body's tree. Asked in Real, answered in double. Remembers the
-/// last place, for the questions of one contact are about the same point: copied, not shared, by
-/// whoever asks. A particle's Seen spares it most walks in the tree; answers are the same bits.
+/// A body of triangles at one moment, with the functions of the closed forms in surfaces.hpp, for
+/// one point at a time: it looks the point up in the body's tree. Arguments are Real, computation
+/// is in double. It remembers the last position, since the questions of one contact are about one
+/// point; each user therefore works on a copy. A particle's Seen saves most walks in the tree and
+/// gives the same bits.
 template <class Real>
 struct MeshSurface {
   using Shape = MeshBody;
@@ -45,13 +46,13 @@ struct MeshSurface {
         axes(body.rotation.toRotationMatrix()),
         thin(body.sides == MeshBody::Sides::both) {}
 
-  /// What follows is about the particle that has seen this; null: about any point.
+  /// Sets the particle that the following questions are about; null: any point.
   void ask_about(Seen* seen) {
     seen_ = seen;
     known_ = false;
   }
 
-  /// Where its particle has hardly moved since it was looked up in the tree [m].
+  /// Distance if the particle has hardly moved since it was looked up in the tree [m].
   std::optional<double> distance_if_known(const Vector& x) const {
     const Vec3 p = local(x);
     if (!seen_->nearby.know(p)) return {};
@@ -60,7 +61,7 @@ struct MeshSurface {
   bool clear(const Vector& x, Real thickness) const {
     return distance_at_least(x, static_cast<double>(thickness)) >= static_cast<double>(thickness);
   }
-  /// By twice the rounding of distances in Real.
+  /// With a margin of twice the rounding of distances in Real.
   bool beyond(const Vector& x, Real way2, Real thickness) const {
     const double reach =
         static_cast<double>(thickness) + 1.001 * std::sqrt(static_cast<double>(way2));
@@ -85,7 +86,7 @@ struct MeshSurface {
     return {true, tangent(normal, normal.dot(met))};
   }
 
-  /// In the body's frame.
+  /// x in the body's frame.
   Vec3 local(const Vector& x) const { return axes.transpose() * (world(x) - center); }
 
  private:
@@ -100,7 +101,7 @@ struct MeshSurface {
   bool knows(const Vector& x) const {
     return known_ && x.x == asked_.x && x.y == asked_.y && x.z == asked_.z;
   }
-  /// Exact where it is below `reach`.
+  /// Distance, exact if it is below `reach`.
   double distance_at_least(const Vector& x, double reach) const {
     if (knows(x)) return place_.distance;
     const Vec3 p = local(x);
@@ -134,7 +135,7 @@ struct MeshSurface {
     return place_;
   }
 
-  static constexpr double kRounding = 1e-10;  ///< far beyond that of coordinates
+  static constexpr double kRounding = 1e-10;  ///< far above the rounding of coordinates
   Seen* seen_ = nullptr;
   mutable bool known_ = false;
   mutable Vector asked_{};

@@ -12,24 +12,24 @@
 
 namespace taut {
 
-/// All pairs of particles within a reach, by a uniform grid with cells of that size, sorted by
-/// counting. Cell (i, j, k) is bucket i + row j + layer k, modulo the number of buckets: the grid
-/// wraps around, without end and without a hash. Cells next to each other in x are buckets next to
-/// each other, so that a cell and its neighbours are five runs of particles,
+/// Finds all pairs of particles within a reach, by a uniform grid with cells of that size, sorted
+/// by counting. Cell (i, j, k) is bucket i + row j + layer k, modulo the number of buckets: the
+/// grid wraps around, without bounds and without a hash. Cells that are adjacent in x are adjacent
+/// buckets, so a cell and its neighbours are five runs of particles,
 ///
 ///     z + 1:  o o o     o: three cells of a row in x, C: the cell itself and the next,
 ///     z:      . C o     .: the pair is found from there
 ///     z - 1:  . . .     y to the right
 ///
-/// no two of which share a bucket, as a row has eight or more and a layer eight rows. Which sizes
-/// they have depends on the extent of the cloth, so that few cells lie on one another; those that
-/// do are far apart and are compared in vain. Linear in the number of particles and pairs.
+/// no two of which share a bucket, because a row has eight or more buckets and a layer eight rows.
+/// Their sizes depend on the extent of the cloth, so that few cells share a bucket; cells that do
+/// are far apart, and comparing them finds nothing. Linear in the number of particles and pairs.
 ///
-/// Pairs come in lists, so that threads can work them off: the particles, in the order of their
-/// cells, are cut into parts of about as many comparisons, and of part n list n has the pairs
-/// inside it, list parts() + n those with the part after it, and list 2 parts() + n the few others,
+/// Pairs come in lists, so that threads can process them. The particles, in the order of their
+/// cells, are cut into parts with about as many comparisons each. For part n, list n has the pairs
+/// inside it, list parts() + n those with the next part, and list 2 parts() + n the few others,
 /// from one end of the grid to the other or across a part of few particles. Lists and their order
-/// depend on nothing but the positions.
+/// depend only on the positions.
 template <class Real>
 class NeighbourGrid {
  public:
@@ -54,7 +54,7 @@ class NeighbourGrid {
     }
   }
 
-  std::size_t size() const { return particles_.size(); }  ///< particles
+  std::size_t size() const { return particles_.size(); }  ///< number of particles
   std::size_t parts() const { return parts_.size(); }
   std::size_t bytes() const {
     std::size_t sum = (3 * particles_.size() + starts_.size()) * sizeof starts_[0] +
@@ -67,7 +67,7 @@ class NeighbourGrid {
     return sum;
   }
 
-  /// From now on ignores pairs that are less than `within` [m] apart at rest.
+  /// Ignores from now on pairs that are less than `within` [m] apart at rest.
   void ignore(const Points<Real>& rest, Real within) {
     ignored_ = within;
     rest.read([&](const auto& at) {
@@ -75,15 +75,15 @@ class NeighbourGrid {
     });
   }
 
-  /// Calls visit(list, a, b) once for every pair less than `reach` [m], > 0, apart: at the same
-  /// time for the lists of different parts.
+  /// Calls visit(list, a, b) once for every pair less than `reach` [m] apart, > 0; at the same time
+  /// for lists of different parts.
   template <class Visit>
   void pairs(const Points<Real>& x, Real reach, const Visit& visit) {
     find(x, nullptr, reach, reach, visit);
   }
 
-  /// The same for those less than `within` and their own way since `previous` apart, together at
-  /// most `reach`.
+  /// Like pairs(), for pairs that are less than `within` plus their relative motion since
+  /// `previous` apart; together this is at most `reach`.
   template <class Visit>
   void moving_pairs(const Points<Real>& x, const Points<Real>& previous, Real within, Real reach,
                     const Visit& visit) {
@@ -91,28 +91,29 @@ class NeighbourGrid {
   }
 
  private:
-  /// What it takes to search for the neighbours of some of the particles.
+  /// Data for searching the neighbours of one part of the particles.
   struct Part {
-    std::size_t begin = 0;  ///< particle, in the order of the cells
+    std::size_t begin = 0;  ///< first particle, in the order of the cells
     std::vector<SearchBlock> blocks;
     std::vector<CandidatePair> found;
-    std::size_t count = 0;  ///< of these
+    std::size_t count = 0;  ///< number of pairs in `found`
     Vec4T<Real> least, most;
   };
-  /// What a thread needs to sort some of the particles.
+  /// Data of a thread for sorting its share of the particles.
   struct Count {
-    /// [bucket_count] where they end in each bucket; the first thread's are starts_.
+    /// [bucket_count] end of its particles in each bucket; the first thread's are starts_.
     std::vector<std::uint32_t> ends;
-    std::vector<std::uint32_t> before;  ///< [threads] how many are in a bucket before each share
+    /// [threads] number of particles in a bucket before each share.
+    std::vector<std::uint32_t> before;
   };
   using Coordinates = std::array<std::vector<Real>, 3>;
 
   static constexpr Real kCells = 1000000;
   static constexpr std::size_t kParts = 8;
-  /// One particle in so many has its comparisons counted.
+  /// One particle in this many has its comparisons counted.
   static constexpr std::size_t kSample = 16;
 
-  /// previous: null if none has moved.
+  /// previous: null if no particle has moved.
   template <class Visit>
   void find(const Points<Real>& x, const Points<Real>* previous, Real within, Real reach,
             const Visit& visit) {
@@ -130,7 +131,8 @@ class NeighbourGrid {
     });
   }
 
-  /// Sorts the particles and cuts them into parts. Not in find(): compiled once for all visits.
+  /// Sorts the particles and cuts them into parts. Separate from find(), to be compiled once for
+  /// all visits.
   NeighbourSearch<Real> prepared(const Points<Real>& x, const Points<Real>* previous, Real within,
                                  Real reach) {
     x.read([&](const auto& at) { sort(x, previous, reach, at); });
@@ -157,7 +159,7 @@ class NeighbourGrid {
     return part < parts() ? parts_[part].begin : size();
   }
 
-  /// With how many particles, about, the k-th in the order of the cells will be compared.
+  /// Approximate number of comparisons of the k-th particle in the order of the cells.
   std::uint32_t comparisons_of(std::size_t k) const {
     std::uint32_t all = 1;
     for (const std::uint32_t step : {0U, row_, layer_ - row_, layer_, layer_ + row_}) {
@@ -167,8 +169,8 @@ class NeighbourGrid {
     return all;
   }
 
-  /// So that all parts have about as many comparisons: a crumpled cloth has most of them in few of
-  /// its cells.
+  /// Cuts the particles into parts with about as many comparisons each: a crumpled cloth has most
+  /// of them in few of its cells.
   void cut_into_parts() {
     const auto all = std::accumulate(comparisons_.begin(), comparisons_.end(), std::uint64_t{0});
     std::uint64_t sum = 0;
@@ -179,7 +181,7 @@ class NeighbourGrid {
     }
   }
 
-  /// The pairs of the n-th part of the particles with those after them.
+  /// Finds the pairs of the particles of part n with those after them.
   void find_part(NeighbourSearch<Real> search, std::size_t n, std::size_t begin, std::size_t end) {
     Part& part = parts_[n];
     const auto last = static_cast<std::uint32_t>(end);
@@ -190,12 +192,12 @@ class NeighbourGrid {
       search.room = part.found.size() - part.count;
       const std::size_t count = find_pairs_(search, next, last);
       part.count += count;
-      if (next < last)  // no room for what the next one might find
+      if (next < last)  // there is no room for what the next one might find
         part.found.resize(std::max<std::size_t>(1024, 2 * part.found.size()));
     }
   }
 
-  /// Calls f(n, begin, end) for as many shares of the particles as there are parts.
+  /// Calls f(n, begin, end) for shares of the particles, as many as there are parts.
   template <class F>
   void for_each_share(const F& f) {
     pool_.run_parts(parts_.size(), particles_.size(), f);
@@ -207,8 +209,8 @@ class NeighbourGrid {
     to[2][k] = p.v[2];
   }
 
-  /// Sets where the cells begin and how wide they are, and row_ and layer_: the grid that fits the
-  /// extent of x best. At most a million cells along an axis, so that their numbers are exact.
+  /// Fits the grid to the extent of x: sets origin and width of the cells, row_ and layer_. At most
+  /// a million cells along an axis, so that their numbers are exact.
   template <class At>
   void fit_grid(const Points<Real>& x, Real reach, const At& at) {
     for_each_share([&](std::size_t n, std::size_t begin, std::size_t end) {
@@ -241,7 +243,7 @@ class NeighbourGrid {
 
   std::uint32_t bucket_of(const Vec4T<Real>& x) const {
     const Vec4T<Real> cell = per_metre_ * (x - origin_);
-    // A state that has gone to infinity has some cell, too.
+    // A state that has gone to infinity also gets a cell.
     const auto number = [&](int axis) {
       return static_cast<std::uint32_t>(cell.v[axis] < 2 * kCells ? cell.v[axis] : 0);
     };
@@ -252,7 +254,7 @@ class NeighbourGrid {
     return thread == 0 ? starts_.data() : counts_[thread].ends.data();
   }
 
-  /// By counting: every thread a share of the particles, then a share of the buckets.
+  /// Sorts by counting: every thread takes a share of the particles, then a share of the buckets.
   template <class At>
   void sort(const Points<Real>& x, const Points<Real>* previous, Real reach, const At& at) {
     fit_grid(x, reach, at);
@@ -282,7 +284,8 @@ class NeighbourGrid {
                     });
     starts_[bucket_count_] = static_cast<std::uint32_t>(size());
     pool_.run_parts(threads, size(), [&](std::size_t n, std::size_t begin, std::size_t end) {
-      std::uint32_t* const to = ends(n);  // in the end, of the first one, where the buckets start
+      // Those of the first thread are the starts of the buckets in the end.
+      std::uint32_t* const to = ends(n);
       for (std::size_t i = end; i-- > begin;)
         particles_[--to[buckets_[i]]] = static_cast<std::uint32_t>(i);
     });
@@ -302,17 +305,19 @@ class NeighbourGrid {
 
   ThreadPool& pool_;
   std::vector<std::uint32_t> particles_;       ///< bucket after bucket
-  std::vector<std::uint32_t> buckets_;         ///< of each particle
+  std::vector<std::uint32_t> buckets_;         ///< bucket of each particle
   std::vector<std::uint32_t> sorted_buckets_;  ///< in the order of particles_
-  Coordinates now_, moved_, at_rest_;          ///< likewise; room for kSearchLanes more
-  std::vector<Vec4T<Real>> rest_;              ///< [particles] m; empty: none is ignored
-  Real ignored_ = 0;                           ///< m
-  std::uint32_t bucket_count_ = 8 * 8 * 8;     ///< a power of two
+  /// In the order of particles_, with room for kSearchLanes more.
+  Coordinates now_, moved_, at_rest_;
+  std::vector<Vec4T<Real>> rest_;           ///< [particles] m; empty: no pair is ignored
+  Real ignored_ = 0;                        ///< m
+  std::uint32_t bucket_count_ = 8 * 8 * 8;  ///< a power of two
   std::uint32_t row_ = 8, layer_ = 64;
   Vec4T<Real> origin_{};
   Real per_metre_ = 1;
-  std::vector<std::uint32_t> starts_;       ///< [bucket_count + 1]
-  std::vector<std::uint32_t> comparisons_;  ///< of every kSample-th particle; empty: one part
+  std::vector<std::uint32_t> starts_;  ///< [bucket_count + 1]
+  /// Of every kSample-th particle; empty if there is one part.
+  std::vector<std::uint32_t> comparisons_;
   FindPairs<Real> find_pairs_;
   std::vector<Part> parts_;
   std::vector<Count> counts_;  ///< one for each thread

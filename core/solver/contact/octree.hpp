@@ -11,13 +11,13 @@
 namespace taut {
 
 /// Self-collision as published in Vasilovici, Cloth Simulation Report, section 4.2.4: an octree
-/// over the particles, each of them a ball; particles of one leaf are compared all with all. What
-/// happens to two that overlap is not said, but "the cloth will simply not move" if the radius is
-/// large: so both stay where they were before the step. The published failures follow: particles on
-/// two sides of a split never meet ("when opposite corners want to collide it will not work"), and
-/// a cloth whose particles overlap at rest hangs in the air. Pushing them apart instead is worse:
-/// with a radius of 0.6 of the spacing `jam` then flies 2.4 m away, with twice the spacing it
-/// explodes.
+/// over the particles, each of which is a ball; all particles of a leaf are compared with each
+/// other. The report does not say what happens to two that overlap, but that "the cloth will simply
+/// not move" if the radius is large: so both stay where they were before the step. The published
+/// failures follow. Particles on two sides of a split never meet ("when opposite corners want to
+/// collide it will not work"), and a cloth whose particles overlap at rest hangs in the air.
+/// Pushing them apart instead is worse: with a radius of 0.6 of the spacing `jam` then flies 2.4 m
+/// away, with twice the spacing it explodes.
 template <class Real>
 class OctreePass final : public Pass<Real> {
  public:
@@ -49,7 +49,7 @@ class OctreePass final : public Pass<Real> {
  private:
   using Point = typename Points<Real>::Point;
   struct Leaf {
-    std::size_t begin, end;  ///< in order_
+    std::size_t begin, end;  ///< range in order_
   };
   static constexpr std::size_t kCapacity = 8;
   static constexpr int kDepth = 12;

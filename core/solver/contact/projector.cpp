@@ -79,8 +79,8 @@ class ProjectorOf final : public Projector<Real> {
   Contact<Real, SurfaceOf> contact_{};
 };
 
-/// Four floats or two doubles, of the narrowest instruction set; kept apart from other files'
-/// lanes.
+/// Four floats or two doubles, of the narrowest instruction set; separate from the lanes of other
+/// files.
 struct NearBody;
 template <class Real>
 using Few = Lanes<Real, 16 / sizeof(Real), NearBody>;
@@ -89,15 +89,16 @@ using Few = Lanes<Real, 16 / sizeof(Real), NearBody>;
 template <class Real>
 struct BodyContact {
   Contact<Real, MeshSurface> contact;
-  SphereSurface<Real> around;  ///< all of it
-  Vec3T<Real> center;          ///< m, of its frame
-  Vec3T<Real> axes[3];         ///< of its frame in the world
-  Real rounding;               ///< m, far beyond that of coordinates in Real
-  Real noise;                  ///< m, of coordinates in Real
+  SphereSurface<Real> around;  ///< encloses the body
+  Vec3T<Real> center;          ///< m, origin of the body's frame
+  Vec3T<Real> axes[3];         ///< of the body's frame, in world coordinates
+  Real rounding;               ///< m, far above the rounding of coordinates in Real
+  Real noise;                  ///< m, rounding of coordinates in Real
   bool continuous;
 
-  /// Whether particles may touch: those in the sphere around the body that are not known to be
-  /// clear by where they were seen, in the body's frame, and how far from it. Quick.
+  /// Quick test whether particles may touch: those in the sphere around the body, unless the
+  /// position in the body's frame and the distance at which they were last seen show that they are
+  /// clear.
   template <class T>
   [[gnu::always_inline]] auto may_touch(const Vec3T<T>& x, const Vec3T<T>& previous,
                                         const Vec3T<T>& seen_at, T seen_distance) const {
@@ -114,7 +115,8 @@ struct BodyContact {
     return !sphere.beyond(x, way2, T(contact.thickness)) && !clear;
   }
 
-  /// Whether x, which began the substep at `previous`, has been moved.
+  /// Pushes x, which began the substep at `previous`, out of the body. Returns whether it was
+  /// moved.
   bool project(Vec3T<Real>& x, const Vec3T<Real>& previous, Seen& seen) {
     contact.surface.ask_about(&seen);
     if (const auto moved = project_where_known(x, previous)) {
@@ -131,8 +133,8 @@ struct BodyContact {
   }
 
  private:
-  /// A vertex that was put out of one triangle may lie behind another one. It goes on from there;
-  /// if that does not end, it goes half of its way to the last one.
+  /// Keeps a vertex that was pushed out of one triangle from lying behind another one: it goes on
+  /// from there, and if that does not end, half of its path to the last one.
   void keep_from_others(Vec3T<Real>& x, const Vec3T<Real>& previous) const {
     const Vec3T<Real> from = contact.motion(previous);
     constexpr int kOthers = 4;
@@ -148,7 +150,7 @@ struct BodyContact {
         x = from + height(from) / (2 * (height(from) - height(x))) * (x - from);
     }
   }
-  /// The same numbers for a particle that has hardly moved and cannot have passed through.
+  /// The same numbers, for a particle that has hardly moved and cannot have passed through.
   std::optional<bool> project_where_known(Vec3T<Real>& x, const Vec3T<Real>& previous) {
     const auto distance = contact.surface.distance_if_known(x);
     if (!distance) return {};
@@ -162,8 +164,8 @@ struct BodyContact {
   }
 };
 
-/// Particles in lanes as long as they are clear; then one after the other, for each walks in the
-/// tree for itself.
+/// Tests particles in lanes while they are clear, then one after another, because each walks
+/// through the tree by itself.
 template <class Real>
 class MeshProjector final : public Projector<Real> {
  public:
@@ -176,7 +178,7 @@ class MeshProjector final : public Projector<Real> {
   }
 
   void begin(double t, double dt) override {
-    if (queued_in_) queued_in_->finish();  // what is queued reads the body of the last substep
+    if (queued_in_) queued_in_->finish();  // queued work reads the body of the last substep
     const auto body = std::get<MeshBody>(shape_at(collider_, t + dt));
     body_.contact.surface = MeshSurface<Real>(body);
     body_.contact.motion = rounded<Real>(rigid_motion(collider_.motion, t, dt));
@@ -231,7 +233,7 @@ class MeshProjector final : public Projector<Real> {
 
   Collider collider_;
   BodyContact<Real> body_{};
-  // By place of x, as x lies in memory; the last two are seen_ for the lanes.
+  // Indexed by the place of x in memory; the last two are seen_ in the form that lanes need.
   mutable std::vector<Seen> seen_;
   mutable std::vector<Real> seen_at_, seen_distance_;
   mutable ThreadPool* queued_in_ = nullptr;

@@ -9,14 +9,14 @@
 
 namespace taut {
 
-// Between the model and the numbers of the contact loops, which know no Eigen.
+// Conversions between the model and the types of the contact loops, which do not use Eigen.
 
 PlaneSurface<double> surface_of(const Plane&);
 BallSurface<double> surface_of(const Ball&);
 BoxSurface<double> surface_of(const Box&);
 CapsuleSurface<double> surface_of(const Capsule&);
 
-/// From time t to t + dt [s].
+/// Rigid motion from time t to t + dt [s].
 RigidMotion<double> rigid_motion(const Motion&, double t, double dt);
 
 template <class Real, class Vector>
@@ -28,7 +28,7 @@ Eigen::Matrix<Real, 3, 1> point(const Vec3T<Real>& t) {
   return {t.x, t.y, t.z};
 }
 
-// The same in the solver's precision.
+// Conversions to the solver's precision.
 template <class Real>
 Vec3T<Real> rounded(const Vec3T<double>& t) {
   return {static_cast<Real>(t.x), static_cast<Real>(t.y), static_cast<Real>(t.z)};
@@ -61,25 +61,25 @@ RigidMotion<Real> rounded(const RigidMotion<double>& c) {
           rounded<Real>(c.shift)};
 }
 
-/// Puts out of a collider what is inside, step after step. Particles are taken as they lie in
-/// memory, some at once.
+/// Pushes particles out of a collider, step after step. Particles are processed as they lie in
+/// memory, several at once.
 template <class Real>
 class Projector {
  public:
   virtual ~Projector() = default;
-  /// What follows belongs to the step [t, t + dt].
+  /// Begins the step [t, t + dt].
   virtual void begin(double t, double dt) = 0;
-  /// Queues it.
+  /// Queues the projection.
   virtual void project(const ParticleSpan<Real>&, std::size_t blocks, ThreadPool&) const = 0;
 };
 
-/// Keeps particles at `thickness` [m]; `continuous` also catches those that passed through the
-/// collider since the step began.
+/// Makes a projector that keeps particles at `thickness` [m]. continuous: also catches particles
+/// that passed through the collider since the step began.
 template <class Real>
 std::unique_ptr<Projector<Real>> make_projector(const Collider&, double thickness, bool continuous,
                                                 Simd);
 
-/// All particles at once, with x as the caller keeps it.
+/// All particles, with x stored by the caller.
 template <class Real>
 ParticleSpan<Real> span_of(const Particles<Real>& p, Points<Real>& x) {
   return {x.data(), p.previous.data(), p.layout->sheet(), p.size()};

@@ -14,8 +14,8 @@ namespace taut {
 namespace {
 
 /// Moves every particle that is inside a collider out of it (Vasilovici, Cloth Simulation Report,
-/// sections 4.2.1 to 4.2.3); continuous: also those that passed through it since the step began. No
-/// particle sees another; pins are put back afterwards.
+/// sections 4.2.1 to 4.2.3). continuous: also particles that passed through it since the step
+/// began. Particles do not affect each other; pins are put back afterwards.
 template <class Real>
 class CollidePass final : public Pass<Real> {
  public:
@@ -45,14 +45,14 @@ class CollidePass final : public Pass<Real> {
  private:
   struct Pin {
     int vertex;
-    typename Points<Real>::Point place;  ///< where it is meanwhile [m]
+    typename Points<Real>::Point place;  ///< m, the pin's position meanwhile
   };
   static std::vector<Pin> pins_of(const Scene& scene) {
     std::vector<Pin> pins;
     for (const int v : scene.pins) pins.push_back({v, Points<Real>::Point::Zero()});
     return pins;
   }
-  /// Queues f(p, pin) for each.
+  /// Queues f(p, pin) for each pin.
   template <class F>
   void for_pins(Particles<Real>& p, const F& f) {
     if (pins_.empty()) return;
@@ -71,7 +71,7 @@ class CollidePass final : public Pass<Real> {
   ByBlock<Pin> pins_;
 };
 
-/// Finds the particles that have arrived inside a collider.
+/// Finds the particles that have entered a collider.
 template <class Real>
 class EnteringParticles {
  public:
@@ -80,7 +80,7 @@ class EnteringParticles {
 
   void begin(double t, double dt) { projector_->begin(t, dt); }
 
-  /// Calls visit(i, where it belongs) for each of them that can move.
+  /// Calls visit(i, position outside) for each of them that can move.
   template <class Visit>
   void find(const Particles<Real>& p, const Visit& visit) {
     outside_ = p.x;
@@ -99,8 +99,8 @@ class EnteringParticles {
 };
 
 /// The first quick fix for the box in Vasilovici, Cloth Simulation Report, section 4.2.3: a
-/// particle that arrives inside is put on the surface and never moves again, whatever its links ask
-/// for, and even if the collider leaves.
+/// particle that enters is put on the surface and never moves again, whatever its links require,
+/// and even if the collider leaves.
 template <class Real>
 class FreezePass final : public Pass<Real> {
  public:
@@ -150,9 +150,9 @@ class FreezePass final : public Pass<Real> {
   std::vector<Held> held_;
 };
 
-/// The second: a particle that arrives inside is put on the surface and its next integration is
-/// left out. Its previous place grows old meanwhile while its links go on pulling, so that the step
-/// after next takes the way of two steps for the velocity of one: the pops described there.
+/// The second quick fix: a particle that enters is put on the surface, and its next integration is
+/// left out. Its previous position grows old while its links go on pulling, so the step after next
+/// takes the displacement of two steps for the velocity of one: the pops described in the report.
 template <class Real>
 class HaltPass final : public Pass<Real> {
  public:
@@ -168,7 +168,7 @@ class HaltPass final : public Pass<Real> {
   void begin(Particles<Real>& p, double t, double dt) override {
     entering_.begin(t, dt);
     skip_.assign(skip_.size(), false);
-    for (const Halted& h : halted_) {  // undo this step's integration
+    for (const Halted& h : halted_) {  // undo the integration of this step
       p.x.set(h.particle, p.previous[h.particle]);
       p.previous.set(h.particle, h.previous);
       skip_[h.particle] = true;
@@ -234,8 +234,8 @@ void add_response(const Collider& collider, const Scene& scene, const Layout& la
   }
 }
 
-/// Faces and edges that are kept out of the collider. A face keeps its own sides out of the closed
-/// forms, and leaves them to the edges at a body of triangles.
+/// Faces and edges to be kept out of the collider. A face keeps its own sides out of the closed
+/// forms; at a body of triangles it leaves them to the edges.
 std::vector<Triangle> pieces_of(const Scene& scene, const Collider& collider,
                                 const ContactSettings& settings) {
   if (!settings.edges || std::holds_alternative<Plane>(collider.shape)) return {};

@@ -12,23 +12,24 @@ namespace taut {
 
 /// What happens to a particle inside a collider.
 enum class Response {
-  continuous,  ///< out in every sweep, also what has passed through the collider in this step
-  discrete,    ///< out in every sweep
-  before,      ///< out once a substep, before the sweeps
-  after,       ///< out once a substep, after the sweeps
-  freeze,      ///< on to the surface, where it stays for ever
-  halt         ///< on to the surface; its next integration is left out
+  /// Pushed out in every sweep, also if it has passed through the collider in this step.
+  continuous,
+  discrete,  ///< pushed out in every sweep
+  before,    ///< pushed out once a substep, before the sweeps
+  after,     ///< pushed out once a substep, after the sweeps
+  freeze,    ///< put on the surface, where it stays for ever
+  halt       ///< put on the surface; its next integration is left out
 };
 enum class SelfCollisionMethod { grid, octree, off };
 
 struct ContactSettings {
   Response response = Response::continuous;
-  bool edges = false, faces = false;  ///< are kept out, too, not only vertices
+  bool edges = false, faces = false;  ///< whether these are kept out, and not only vertices
   SelfCollisionMethod self = SelfCollisionMethod::grid;
   Simd simd = Simd::scalar;
 };
 
-/// The passes of contact, by when they act. All empty if the scene has nothing to touch.
+/// The passes of contact, by when they act. All are empty if the scene has nothing to touch.
 template <class Real>
 struct ContactPasses {
   using List = std::vector<std::unique_ptr<Pass<Real>>>;
@@ -37,9 +38,9 @@ struct ContactPasses {
   List after;   ///< once a substep, after the sweeps
 };
 
-/// solver: that of the links if it has Contacts, else null. Vertices are then put out of colliders
-/// once, at the end. Self-collision moves its target, too, and so do faces and edges unless it
-/// takes them into its solve.
+/// Makes the passes of contact. solver: the pass of the links if it has Contacts, otherwise null.
+/// With a solver, vertices are pushed out of colliders only once, at the end; self-collision also
+/// moves its target, and so do faces and edges unless it includes them in its solve.
 template <class Real>
 ContactPasses<Real> make_contact(const Scene&, const Layout&, const ContactSettings&,
                                  Pass<Real>* solver, ThreadPool&);

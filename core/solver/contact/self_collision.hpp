@@ -12,36 +12,37 @@
 
 namespace taut {
 
-/// The cloth against itself: every particle is a ball, and no two may overlap. A uniform grid
-/// finds the pairs, which are projected in every sweep. OctreePass (octree.hpp) lacks three
+/// Self-collision of the cloth: every particle is a ball, and no two balls may overlap. A uniform
+/// grid finds the pairs, which are projected in every sweep. OctreePass (octree.hpp) lacks three
 /// things:
 ///
-/// - pairs are found wherever they are, not only within one cell;
-/// - two particles keep at most their distance at rest, so that a radius larger than the spacing
-///   does not make neighbours fight (M. Mueller, Ten Minute Physics 15), and those that are linked
-///   within 3/2 diameters are left to their link;
-/// - two particles that have changed sides since the step began go back, so that a layer that
+/// - Pairs are found wherever they are, not only within one cell.
+/// - Two particles keep at most their distance at rest, so that neighbours do not push each other
+///   if the radius is larger than the spacing (M. Mueller, Ten Minute Physics 15). Linked particles
+///   within 3/2 diameters are left to their link.
+/// - Two particles that have changed sides since the step began go back, so that a layer that
 ///   arrives fast, by up to four diameters a step, does not pass between.
 ///
-/// In a cloth that moves fast, the pairs of a step are those within 3/2 diameters plus their own
-/// way in the step, which leaves half a diameter for the sweeps. In a slow cloth they are those
-/// within a diameter and a skin, and are used until a particle has moved a quarter of the skin
-/// against
-/// the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at all. Pairs within
-/// 3/2 diameters at rest are known once and for all and never searched for: a sheet that does not
-/// touch itself has few others.
+/// In a cloth that moves fast, the pairs of a step are those within 3/2 diameters plus their
+/// relative motion in the step, which leaves half a diameter for the sweeps. In a slow cloth they
+/// are those within a diameter and a skin, and are used until a particle has moved by a quarter of
+/// the skin relative to the cloth as a whole (L. Verlet, 1967): a cloth at rest does not search at
+/// all. Pairs within 3/2 diameters at rest are known from the start and never searched for; a sheet
+/// that does not touch itself has few others.
 ///
 /// With a solver that has a target y, a pair keeps the push c [m] from a to b that parts it, from
-/// sweep to sweep and from substep to substep. Its length is the one needed if a and b were free:
+/// sweep to sweep and from substep to substep. Its length is what would be needed if a and b were
+/// free:
 ///
 ///     c' = n max(0, least - n . (d - c)),    d = x_b - x_a,  n = d/|d|
 ///
-/// and c' - c moves x and y alike, so that links feel m/h^2 c. At the end c is the multiplier of
-/// Signorini's conditions: nowhere is any link stiffer against a parting than masses alone are.
+/// c' - c moves x and y alike, so that links feel m/h^2 c. At the end c is the multiplier of
+/// Signorini's conditions: with links, no pair yields more to a push than its free masses do.
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
-  /// solver: the pass of the links if it has a target, which moves with the particles; else null.
+  /// solver: the pass of the links if it has a target, which moves with the particles; otherwise
+  /// null.
   SelfCollidePass(const Scene& scene, Simd simd, Pass<Real>* solver, ThreadPool& pool)
       : diameter_(static_cast<Real>(2 * scene.self_collision->radius)),
         kernels_(kernels<Real>(simd)),
@@ -87,7 +88,7 @@ class SelfCollidePass final : public Pass<Real> {
 
  private:
   struct Pair {
-    std::uint32_t a, b;  ///< slots
+    std::uint32_t a, b;  ///< slots of the particles
     Real least;          ///< m
     Real share;          ///< of the correction that moves a: w_a / (w_a + w_b)
   };
@@ -95,7 +96,7 @@ class SelfCollidePass final : public Pass<Real> {
   struct Crossing : Pair {
     Vec4T<Real> before;  ///< from a to b when the step began [m]
   };
-  /// Of one list of the grid.
+  /// The pairs of one list of the grid.
   struct alignas(64) Found {
     std::vector<Pair> pairs;
     std::vector<Crossing> crossing;
@@ -103,9 +104,9 @@ class SelfCollidePass final : public Pass<Real> {
   };
   struct Push {
     std::uint64_t pair;
-    std::array<Real, 3> by;  ///< m, of the one with the larger slot
+    std::array<Real, 3> by;  ///< m, push on the particle with the larger slot
   };
-  /// Of some of the particles, and in which bounds they lie.
+  /// Bounds of the motions of some of the particles.
   struct alignas(64) Motions {
     MotionBoxes<Real> boxes;
     Real largest2;  ///< m^2
@@ -146,9 +147,8 @@ class SelfCollidePass final : public Pass<Real> {
     pool_.finish();
   }
 
-  /// Queues f(list) for all that have any of these pairs, those close at rest first: each list for
-  /// itself and at the same time lists that have no particle in common, so that threads change
-  /// nothing.
+  /// Queues f(list) for all lists that have any of these pairs, those close at rest first. Lists
+  /// run at the same time only if they share no particle, so that threads change nothing.
   template <class P, class F>
   void for_found(std::vector<P> Found::*pairs, const F& f) {
     const std::size_t parts = grid_.parts();
@@ -164,7 +164,7 @@ class SelfCollidePass final : public Pass<Real> {
           parts > 1);
       pool_.queue_pairs(
           parts, [visit, parts](std::size_t n) { visit(parts + n); }, parts > 1);
-      pool_.finish();  // other lists are of other parts
+      pool_.finish();  // the remaining lists are of other parts
       for (std::size_t n = 2 * parts; n < found->size(); ++n) visit(n);
     }
   }
@@ -191,7 +191,7 @@ class SelfCollidePass final : public Pass<Real> {
   template <bool packed>
   void separate(Points<Real>& x, const Pair& pair, const Vec4T<Real>& out) const {
     const Real length = std::sqrt(squared_norm(out));
-    if (!(length > 0)) return;  // at one place: no direction is better than another
+    if (!(length > 0)) return;  // both are at one point: no direction is better than another
     const Real gap = dot(out, between<packed>(x, pair)) / length;
     const Real push = (pair.least - gap) / length;
     move<packed>(x, pair.a, -pair.share * push * out);
@@ -217,13 +217,13 @@ class SelfCollidePass final : public Pass<Real> {
     held = now;
   }
 
-  /// The same for b and a.
+  /// Key of a pair, the same for a, b and b, a.
   static std::uint64_t name_of(const Pair& pair) {
     const auto [less, more] = std::minmax(pair.a, pair.b);
     return std::uint64_t{less} << 32 | more;
   }
 
-  /// Before pairs are found anew.
+  /// Keeps the pushes before pairs are found anew.
   void keep_pushes() {
     kept_.clear();
     for (const auto* lists : {&close_found_, &others_found_})
@@ -237,7 +237,7 @@ class SelfCollidePass final : public Pass<Real> {
     std::ranges::sort(kept_, {}, &Push::pair);
   }
 
-  /// Those of the last substep act from the start; p.x is y.
+  /// Applies the pushes of the last substep at the start of this one; p.x is y.
   template <bool packed>
   void begin_pushes(Particles<Real>& p, double h) {
     const Real scale = pushed_for_ > 0 ? static_cast<Real>(h * h / (pushed_for_ * pushed_for_)) : 1;
@@ -271,7 +271,7 @@ class SelfCollidePass final : public Pass<Real> {
     placed_ = true;
   }
 
-  /// Of this step alone.
+  /// Finds the pairs of this step alone.
   template <bool packed>
   void search_step(const Particles<Real>& p, Real motion) {
     forget_pairs();
@@ -294,7 +294,7 @@ class SelfCollidePass final : public Pass<Real> {
                        });
   }
 
-  /// Of this step and those that follow.
+  /// Finds the pairs of this step and of those that follow.
   void search_steps(const Particles<Real>& p, Real motion) {
     forget_pairs();
     skin_ = diameter_ / 2 + 2 * motion;
@@ -328,7 +328,7 @@ class SelfCollidePass final : public Pass<Real> {
     searched_ = false;
   }
 
-  /// Calls f(found, pair) for those close at rest, at the same time for different lists.
+  /// Calls f(found, pair) for the pairs close at rest, at the same time for different lists.
   template <class F>
   void for_close(const F& f) {
     pool_.run(grid_.parts(), [&](std::size_t begin, std::size_t end) {
@@ -338,7 +338,7 @@ class SelfCollidePass final : public Pass<Real> {
     });
   }
 
-  /// Whether a < b + c, of which the squares are given.
+  /// Whether a < b + c, given their squares.
   static bool less(Real a2, Real b2, Real c2) {
     const Real more = a2 - c2 - b2;
     return more < 0 || more * more < 4 * b2 * c2;
@@ -352,7 +352,7 @@ class SelfCollidePass final : public Pass<Real> {
             wa == wb ? Real(0.5) : wa / (wa + wb)};
   }
 
-  /// Since the step began, and since they were at `then`.
+  /// Bounds of the motions since the step began and since the particles were at `then`.
   MotionBoxes<Real> motion_boxes(Particles<Real>& p, const Points<Real>& then) {
     const ParticleSpan<Real> span = span_of(p, p.x);
     pool_.run_parts(motions_.size(), span.parts(),
@@ -374,9 +374,9 @@ class SelfCollidePass final : public Pass<Real> {
     return all;
   }
 
-  /// Square of the largest motion of a particle against the cloth as a whole since it was at `then`
-  /// [m^2]: no two move by more than twice that against each other. The cloth moves as the middle
-  /// of the box of all motions.
+  /// Square of the largest motion of a particle relative to the cloth as a whole since it was at
+  /// `then` [m^2]; two particles move relative to each other by at most twice that. The motion of
+  /// the cloth is the middle of the box of all motions.
   Real largest_motion2(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box) {
     const ParticleSpan<Real> span{p.x.data(), then.data(), p.layout->sheet(), p.size()};
     const Vec3T<Real> middle = Real(0.5) * (box.least + box.most);
@@ -392,8 +392,8 @@ class SelfCollidePass final : public Pass<Real> {
     return std::sqrt(largest_motion2(p, then, box));
   }
 
-  /// Whether that is at least `distance`. Mostly the box alone says so: it is at most half the
-  /// diagonal and at least half the longest side.
+  /// Whether the largest motion is at least `distance`. The box alone mostly decides this: the
+  /// largest motion is at most half its diagonal and at least half its longest side.
   bool moved_more(Particles<Real>& p, const Points<Real>& then, const MotionBox<Real>& box,
                   Real distance) {
     const Vec3T<Real> sides = box.most - box.least;
@@ -422,16 +422,16 @@ class SelfCollidePass final : public Pass<Real> {
   Real diameter_;                             ///< m
   std::size_t stride_ = 1;                    ///< of the particles' layout
   const Kernels<Real>& kernels_;
-  Pass<Real>* solver_;      ///< null: none with a target
-  std::vector<Push> kept_;  ///< of the pairs before the last search
-  double pushed_for_ = 0;   ///< s, of which substep pushes are; 0: of none
+  Pass<Real>* solver_;      ///< null: no solver with a target
+  std::vector<Push> kept_;  ///< pushes of the pairs before the last search
+  double pushed_for_ = 0;   ///< s, substep of the pushes; 0: none
   ThreadPool& pool_;
   NeighbourGrid<Real> grid_;
-  /// Of each list of the grid at rest: at rest within kNearby diameters and not linked.
+  /// [lists of the grid at rest] pairs within kNearby diameters at rest that are not linked.
   std::vector<std::vector<Pair>> close_;
-  bool placed_ = false;              ///< until then by numbers of particles, not slots
-  std::vector<Found> close_found_;   ///< of each list of close_
-  std::vector<Found> others_found_;  ///< of each list of the grid
+  bool placed_ = false;              ///< false: close_ has numbers of particles, not slots
+  std::vector<Found> close_found_;   ///< [lists of close_]
+  std::vector<Found> others_found_;  ///< [lists of the grid]
   std::vector<Motions> motions_;
   Real skin_ = 0;             ///< m
   Points<Real> searched_at_;  ///< m

@@ -11,8 +11,8 @@ namespace taut {
 
 namespace {
 
-/// Near ends count from so many particles before their tile: neighbouring tiles, of which most come
-/// later, are within what 16 bits can say.
+/// Near ends are 16-bit numbers, counted from kBefore particles before their tile. Most
+/// neighbouring tiles come later, and so lie within this range.
 constexpr std::size_t kBefore = 16384, kNear = std::numeric_limits<std::uint16_t>::max();
 
 std::size_t place(const Layout& layout, int v) { return layout.slot(to_index(v)) / 4; }
@@ -32,7 +32,7 @@ ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<c
     }
     phase_.push_back(tile_.size() - 1);
   }
-  // Only now do the arrays stay where they are.
+  // Pointers are set last, when the arrays no longer move.
   std::size_t near = 0, far = 0, share = 0, multiplier = 0;
   for (BatchRun<Real>& run : runs_) {
     if (run.near) {
@@ -72,7 +72,7 @@ void ColourBatches<Real>::add_tile(const Tile& tile, std::span<const double> w, 
 template <class Real>
 void ColourBatches<Real>::add_colour(Constraints constraints, std::size_t first,
                                      const Layout& layout) {
-  // Equal shares, and their multipliers', by how many links have them.
+  // Votes for the most common equal share, with the share of its multiplier.
   std::map<std::pair<Real, Real>, int> votes;
   for (const CompliantConstraint<Real>& c : constraints)
     if (c.share_a == c.share_b) ++votes[{c.share_a, c.share}];
@@ -105,7 +105,7 @@ void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> con
   run.first = first;
   run.equal_share = equal ? constraints.front().share_a : Real(0);
   run.multiplier_share = equal ? constraints.front().share : Real(0);
-  const bool compliant = constraints.front().share > 0;  // a colour is of one family
+  const bool compliant = constraints.front().share > 0;  // a colour has one family
   const std::size_t ends = compliant ? 3 : 2;
   for (std::size_t next = 0; next < constraints.size(); next += kLanes, ++run.count) {
     Batch<Real, Number>& batch = to.emplace_back();
@@ -126,7 +126,7 @@ void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> con
       if (!equal && compliant) shares_[base + 2 * kLanes + l] = c.share;
     }
   }
-  // Not yet where they will stay, but whether there are any.
+  // These pointers are not final; so far they only say which arrays there are.
   if constexpr (std::is_same_v<Number, std::uint16_t>)
     run.near = to.data();
   else
@@ -136,7 +136,7 @@ void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> con
   runs_.push_back(run);
 }
 
-/// While a tile is worked off, batch by batch, the particles of the next come from memory.
+/// Makes the runs of each tile prefetch the particles of the next tile, some with each batch.
 template <class Real>
 void ColourBatches<Real>::look_ahead() {
   constexpr std::size_t line = 64 / sizeof(Real);

@@ -11,20 +11,21 @@
 namespace taut {
 
 /// A Gauss-Seidel sweep over any links of packed particles: phases of tiles of batches of kLanes
-/// independent links. In each colour come first those whose ends have the same share, which need no
-/// table of shares, and near ones before far ones; what does not fill a batch is far, the last
-/// batch filled up with links that do nothing between the two spare particles of Layout::packed.
+/// independent links. In each colour, links whose ends have the same share come first, because they
+/// need no table of shares, and near links come before far ones. Links that do not fill a batch are
+/// far; their last batch is filled up with links between the two spare particles of Layout::packed,
+/// which do nothing.
 template <class Real>
 class ColourBatches {
  public:
-  /// layout: packed.
+  /// Precondition: the layout is packed.
   ColourBatches(const std::vector<Phase>&, std::span<const double> w, double omega,
                 const Layout& layout, const Compliances& = {});
   ColourBatches(ColourBatches&&) = default;
   ColourBatches(const ColourBatches&) = delete;  // it points into itself
 
   std::size_t phases() const { return phase_.size() - 1; }
-  /// Tiles of a phase.
+  /// Number of tiles in a phase.
   std::size_t parts(std::size_t phase) const { return phase_[phase + 1] - phase_[phase]; }
   std::span<const BatchRun<Real>> runs(std::size_t phase, std::size_t tile) const {
     const std::size_t t = phase_[phase] + tile;
@@ -39,7 +40,7 @@ class ColourBatches {
 
  private:
   using Constraints = std::vector<CompliantConstraint<Real>>;
-  /// Places of particles in memory, first and last.
+  /// First and last particle in memory.
   struct Extent {
     std::size_t first, last;
   };
@@ -53,10 +54,11 @@ class ColourBatches {
 
   std::vector<NearBatch<Real>> near_;
   std::vector<FarBatch<Real>> far_;
-  std::vector<Extent> extents_;  ///< of each tile
+  std::vector<Extent> extents_;  ///< [tiles]
   std::vector<Real> shares_, multipliers_;
   std::vector<BatchRun<Real>> runs_;
-  std::vector<std::size_t> tile_, phase_;  ///< where each begins, and the end
+  /// First run of each tile, first tile of each phase, and the ends.
+  std::vector<std::size_t> tile_, phase_;
 };
 
 }  // namespace taut

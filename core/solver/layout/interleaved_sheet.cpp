@@ -12,7 +12,8 @@ namespace taut {
 
 namespace {
 
-/// In the order of the sweep: along u, along v, both diagonals, then every second vertex.
+/// All directions in the order of the sweep: along u, along v, both diagonals, then every second
+/// vertex.
 constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::structural, 0},
                                                               {0, 1, Family::structural, 0},
                                                               {1, 1, Family::shear, 0},
@@ -20,7 +21,7 @@ constexpr std::array<RegularLinks::Direction, 6> kDirections{{{1, 0, Family::str
                                                               {2, 0, Family::bend, 0},
                                                               {0, 2, Family::bend, 0}}};
 
-/// One vector more than a row needs where neighbouring rows would share cache sets.
+/// The rows in memory. They get a vector of padding where neighbouring rows would share cache sets.
 SheetRows rows_of(const SheetSides& grid) {
   const int lanes = grid.columns >= 4 * kWide ? kWide : kNarrow;
   const int vectors = std::max((grid.columns + lanes - 1) / lanes, grid.reach + 1);
@@ -28,8 +29,8 @@ SheetRows rows_of(const SheetSides& grid) {
   return {grid.rows, grid.columns, lanes, vectors, to_index((vectors + padding) * 3 * lanes)};
 }
 
-/// A side that fills the lanes lies along them, or else one that is long enough; if there are two
-/// the first.
+/// Chooses the side that lies along the lanes: one that fills them, otherwise one that is long
+/// enough; the first side if both do.
 std::optional<SheetSides> sides_of(const Grid& grid) {
   for (const int fewest : {2 * kNarrow + 1, kFewestColumns}) {
     if (grid.nu >= fewest) return SheetSides{grid.nu, grid.nv, false};
@@ -96,7 +97,8 @@ Layout interleaved_layout(const SheetSides& grid) {
 
 namespace {
 
-/// What the sweep needs of one direction, but for its shares; `multipliers` of compliant links.
+/// Everything that the sweep needs to know of one direction but its shares. multipliers: null for
+/// rigid links.
 template <class Real>
 SheetDirection<Real> direction_of(const RegularLinks::Direction& links, int rows,
                                   Real* multipliers) {
@@ -111,7 +113,7 @@ SheetDirection<Real> direction_of(const RegularLinks::Direction& links, int rows
           .row = nullptr};
 }
 
-/// Shares of each link of a direction: of its left and its right end, and of its multiplier.
+/// Shares of each link of a direction: of its left end, its right end and its multiplier.
 template <class Real>
 class LinkShares {
  public:
@@ -128,8 +130,8 @@ class LinkShares {
             static_cast<Real>(soft_ / all)};
   }
 
-  /// Those of row j as they lie in memory, [K][ends][lanes]; links between equal masses vote for
-  /// what most of them have.
+  /// Shares of row j as they lie in memory, [K][ends][lanes]. Every link with the same share at
+  /// both ends casts a vote for the most common share.
   std::vector<Real> row(int j, int lanes, int vectors,
                         std::map<std::pair<Real, Real>, int>& votes) const {
     const int ends = links_.multipliers ? 3 : 2;
@@ -151,13 +153,14 @@ class LinkShares {
   double omega_, soft_;
 };
 
-/// Whether all links of a row have the direction's equal share, but for those that SheetRow names.
+/// Whether all links of a row have the direction's equal share, except those that SheetRow
+/// excludes.
 template <class Real>
 bool all_equal(const std::vector<Real>& shares, const SheetDirection<Real>& of,
                const SheetSweep<Real>& sweep, int columns) {
   const int ends = of.multipliers ? 3 : 2;
   const auto equal = [&](int k) {
-    // Padding alone is at one place for ever, and nobody looks at it.
+    // Shares of padding do not matter: nothing reads its positions.
     const int real = std::min(sweep.lanes, (columns - k + sweep.vectors - 1) / sweep.vectors);
     const auto* s = shares.data() + ends * sweep.lanes * k;
     for (int e = 0; e < ends; ++e, s += sweep.lanes)
@@ -185,7 +188,7 @@ InterleavedSheet<Real>::InterleavedSheet(const RegularLinks& links, std::span<co
   sweep_.stride = in_memory.stride;
   sweep_.directions = static_cast<int>(links.directions.size());
   std::map<std::vector<Real>, std::size_t> known;
-  std::vector<std::size_t> table;  // of each row of each direction
+  std::vector<std::size_t> table;  // index into shares_ of each row of each direction
   for (std::size_t d = 0; d < links.directions.size(); ++d) {
     const RegularLinks::Direction& own = links.directions[d];
     const double soft = compliances.over_h2[static_cast<std::size_t>(own.family)];

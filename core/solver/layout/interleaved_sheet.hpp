@@ -13,19 +13,21 @@
 
 namespace taut {
 
-/// A grid as it is laid out: its columns are cut into strips. `across`: they are the grid's rows.
+/// A grid as it is laid out: its columns are cut into strips. across: these columns are the grid's
+/// rows.
 struct SheetSides {
   int columns = 0, rows = 0;
   bool across = false;
-  int reach = 1;  ///< columns between the ends of a link, at most
+  int reach = 1;  ///< most columns between the ends of a link
   int size() const { return columns * rows; }
-  /// The vertex in column i of row j, and back.
+  /// The vertex in column i of row j; column() and row() are its inverse.
   int index(int i, int j) const { return across ? i * rows + j : j * columns + i; }
   int column(int v) const { return across ? v / rows : v % columns; }
   int row(int v) const { return across ? v % rows : v / columns; }
 };
 
-/// The links of a regular sheet: every link of the directions that are present, of one length each.
+/// The links of a regular sheet: all links of each direction that is present, with one length for
+/// each direction.
 struct RegularLinks {
   struct Direction {
     int columns = 0, rows = 0;  ///< from (i, j) to (i + columns, j + rows)
@@ -36,28 +38,29 @@ struct RegularLinks {
   std::vector<Direction> directions;  ///< in the order of the sweep
 };
 
-/// What `links` are if an interleaved sheet can hold them: all six directions or some, each
-/// complete, without duplicates, of one length to 1e-9; at least kFewestColumns columns, or else
-/// as many rows and 2 columns; and the faces are those of make_sheet.
+/// Fewest columns, or else rows, of an interleaved sheet.
 inline constexpr int kFewestColumns = kNarrow;
+/// The regular links that `links` are, or nothing if an interleaved sheet cannot hold them. It can
+/// hold some or all of the six directions, each complete, without duplicates and of one length to
+/// 1e-9. The mesh needs at least kFewestColumns columns, or as many rows and 2 columns, and the
+/// faces of make_sheet.
 std::optional<RegularLinks> regular_links(const Mesh&, std::span<const Link>);
 
-/// The first row of a block of rows that own links or quads, and their end: these reach into the
-/// first rows of the block after it.
+/// First row of a block of rows that own links or quads, and the end. These reach into the first
+/// rows of the next block.
 inline std::pair<int, int> rows_of_block(std::size_t block, int rows) {
   const int first = std::min(static_cast<int>(block) * kBlockRows, rows);
   return {first, std::min(first + kBlockRows, rows)};
 }
 
-/// Where an interleaved sheet (simd/kernels.hpp) keeps each vertex. Vertices past the last column
-/// are padding that falls freely and that nobody looks at. A link at the end of a strip pairs a
-/// vector with another one, so a row has one vector more than links reach columns: small sheets
-/// leave lanes empty, which still takes less time than colour batches
-/// (results/benchmarks/kernels.md).
+/// Layout of an interleaved sheet (simd/kernels.hpp). Vertices past the last column are padding,
+/// which falls freely and is never read. A link at the end of a strip pairs a vector with another
+/// one, so a row has at least one vector more than links reach columns. Small sheets thus leave
+/// lanes empty, which still takes less time than colour batches (results/benchmarks/kernels.md).
 Layout interleaved_layout(const SheetSides&);
 
-/// A Gauss-Seidel sweep over an interleaved sheet, the even blocks, then the odd ones; the
-/// directions one after the other within a block.
+/// A Gauss-Seidel sweep over an interleaved sheet: the even blocks, then the odd ones. Within a
+/// block the directions come one after another.
 template <class Real>
 class InterleavedSheet {
  public:
@@ -78,8 +81,8 @@ class InterleavedSheet {
   int row_count_;
   SheetSweep<Real> sweep_{};
   std::vector<SheetRow<Real>> rows_;
-  std::vector<std::vector<Real>> shares_;  ///< different rows' tables, each kept once
-  std::vector<std::vector<Real, CacheLineAllocator<Real>>> multipliers_;  ///< by direction
+  std::vector<std::vector<Real>> shares_;  ///< distinct tables of shares, each kept once
+  std::vector<std::vector<Real, CacheLineAllocator<Real>>> multipliers_;  ///< [directions]
 };
 
 }  // namespace taut

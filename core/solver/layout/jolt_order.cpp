@@ -1,7 +1,7 @@
-// The links as Jolt Physics 5's soft body visits its edges after Optimize(), which it demands:
-// batches of neighbouring vertices for its threads, the one with most links first, in each the
-// links nearest to a pin first; then the links between batches. Positions in float, as Jolt holds
-// them, so that ties are the same.
+// Sorts links as Jolt Physics 5's soft body visits its edges after Optimize(), which Jolt requires.
+// Batches of neighbouring vertices, made for Jolt's threads, come first, the one with most links
+// first; within a batch, links nearest to a pin come first. Links between batches come last.
+// Positions are floats, as in Jolt, so that ties are the same.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,11 +38,11 @@ class Batches {
       if (own.size() > kBatch / 2) {
         own.clear();
         ++count_;
-      }  // else the next start joins it
+      }  // otherwise the next start joins this batch
     }
   }
 
-  /// The batch of a link: its ends', or count() if they are in different ones or in what is left.
+  /// The batch of a link, or count() if its ends are in different batches or in the incomplete one.
   int of(const Link& link) const {
     const int a = batch_[to_index(link.a)];
     return a == batch_[to_index(link.b)] ? a : count_;
@@ -52,7 +52,7 @@ class Batches {
  private:
   static constexpr int kNoVertex = -1;
 
-  /// Of the vertices without a batch the lowest along their longest axis, then along the others.
+  /// The vertex without a batch that is lowest along their longest axis, then along the others.
   int farthest_out() const {
     FloatPoint low{kInfinity, kInfinity, kInfinity}, size{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -79,11 +79,11 @@ class Batches {
     return best;
   }
 
-  /// Of the free neighbours of these vertices the one with most links to them, then the one nearest
-  /// to the first of them.
+  /// The free neighbour of these vertices with the most links to them, then the nearest to their
+  /// first.
   int nearest(const std::vector<int>& own) const {
     int best = kNoVertex;
-    std::pair<std::ptrdiff_t, float> least{0, 0};  // links, counted down, and distance
+    std::pair<std::ptrdiff_t, float> least{0, 0};  // minus the number of links, and distance
     for (const int vertex : own)
       for (const auto& [v, link] : neighbours_.of(vertex)) {
         if (batch_[to_index(v)] != kNoVertex) continue;
@@ -106,7 +106,7 @@ class Batches {
   int count_ = 0;
 };
 
-/// m, along links from the nearest vertex that is pinned; infinite without one.
+/// Distance [m] along links from the nearest pinned vertex; infinite without one.
 std::vector<float> ways_to_pins(const Scene& scene, const std::vector<FloatPoint>& x,
                                 const Adjacency& neighbours) {
   std::vector<int> pinned;
@@ -131,7 +131,7 @@ std::vector<Link> jolt_order(const Scene& scene) {
   const std::vector<float> way = ways_to_pins(scene, x, neighbours);
   std::vector<int> size(to_index(batches.count()) + 1);
   for (const Link& link : scene.links) --size[to_index(batches.of(link))];
-  size.back() = 1;  // the links between batches come after the largest and the smallest
+  size.back() = 1;  // links between batches come last
   std::vector<Link> links = scene.links;
   std::ranges::stable_sort(links, {}, [&](const Link& link) {
     const int batch = batches.of(link);

@@ -11,10 +11,10 @@ namespace taut {
 
 namespace {
 
-constexpr int kTileSide = 32;                         ///< grid vertices
+constexpr int kTileSide = 32;                         ///< vertices on each side of a tile of a grid
 constexpr int kTileVertices = kTileSide * kTileSide;  ///< 16 KiB of packed float positions
 
-/// Cuts the vertices into halves across their longest side at rest until each part is a tile.
+/// Cuts the vertices into halves across their longest side at rest until each part fits a tile.
 void cut(std::span<int> vertices, const Mesh& mesh, int& next, std::vector<int>& tile) {
   const std::size_t tiles = (vertices.size() + kTileVertices - 1) / kTileVertices;
   if (tiles <= 1) {
@@ -34,7 +34,7 @@ void cut(std::span<int> vertices, const Mesh& mesh, int& next, std::vector<int>&
   cut(vertices.subspan(half), mesh, next, tile);
 }
 
-/// Tile of each vertex: squares of a grid; of any other mesh neighbours at rest.
+/// Tile of each vertex: squares on a grid, neighbours at rest on any other mesh.
 std::vector<int> tiles_of(const Mesh& mesh) {
   std::vector<int> tile(to_index(mesh.size()), -1);
   if (mesh.grid) {
@@ -50,7 +50,7 @@ std::vector<int> tiles_of(const Mesh& mesh) {
   return tile;
 }
 
-/// Greedy: each colour takes every remaining link that touches none of its vertices.
+/// Greedy colouring: each colour takes every remaining link that shares no vertex with it.
 void colour_family(std::vector<Link> links, std::vector<int>& stamp, int& now, Tile& tile) {
   while (!links.empty()) {
     ++now;
@@ -66,7 +66,7 @@ void colour_family(std::vector<Link> links, std::vector<int>& stamp, int& now, T
   }
 }
 
-/// Greedy too: each phase takes every remaining tile that touches none of its vertices.
+/// Greedy grouping: each phase takes every remaining tile that shares no vertex with it.
 std::vector<Phase> phases(std::vector<Tile> tiles, std::size_t vertices) {
   std::vector<Phase> all;
   std::vector<int> phase_of_vertex(vertices, -1);

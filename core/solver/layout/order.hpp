@@ -11,25 +11,26 @@
 
 namespace taut {
 
-/// A link as the sweeps see it: who, how long, and who moves by how much.
+/// A link as the sweeps see it: its vertices, its rest length, and how much each end moves.
 template <class Real>
 struct DistanceConstraint {
   int a = 0, b = 0;               ///< vertices
   Real rest = 0;                  ///< m, > 0
-  Real share_a = 0, share_b = 0;  ///< of the correction; see project_distance
+  Real share_a = 0, share_b = 0;  ///< shares of the correction; see project_distance
 };
 
-/// A link that may comply: share, of its multiplier, 0: it has none; see compliant_excess.
+/// A link that may be compliant. share: of its multiplier, 0 if it has none; see compliant_excess.
 template <class Real>
 struct CompliantConstraint : DistanceConstraint<Real> {
   Real share = 0;
 };
 
-/// How links comply. Multipliers that every sweep finds at 0 need not be there: without them a link
-/// of shares w/(w1 + w2 + a) is projected as a rigid one is.
+/// How links comply. Multipliers that are 0 at the start of every sweep are not needed: without
+/// them, a link of shares w/(w1 + w2 + a) is projected as a rigid one is.
 struct Compliances {
-  std::array<double, kFamilies.size()> over_h2{};  ///< of a substep [1/kg], by family; 0: rigid
-  bool multipliers = false;                        ///< XPBD's, kept from sweep to sweep
+  /// compliance/h^2 of a substep [1/kg] by family; 0: rigid.
+  std::array<double, kFamilies.size()> over_h2{};
+  bool multipliers = false;  ///< XPBD's, kept from sweep to sweep
 };
 
 /// Whether the link has two ends and at least one of them can move. w: inverse masses [1/kg].
@@ -38,7 +39,7 @@ inline bool moves(const Link& link, std::span<const double> w) {
   return link.a != link.b && inverse(link.a) + inverse(link.b) > 0;
 }
 
-/// Those of `links` that move, in the given order. omega: relaxation factor.
+/// Constraints for those of `links` that can move, in the given order. omega: relaxation factor.
 template <class Real>
 std::vector<CompliantConstraint<Real>> make_compliant_constraints(std::span<const Link> links,
                                                                   std::span<const double> w,
@@ -66,17 +67,18 @@ std::vector<DistanceConstraint<Real>> make_distance_constraints(
   return {all.begin(), all.end()};
 }
 
-/// Whether no two vertices can be farther apart than they are in the flat sheet: a regular sheet
-/// with shear links. One without is a net: pulled along its diagonals it grows longer, up to the
-/// way along its links.
+/// Whether no two vertices can be farther apart than in the flat sheet: true of a regular sheet
+/// with shear links. Without shear links a sheet is a net: pulled along its diagonals it grows
+/// longer, up to the path along its links.
 inline bool keeps_flat_distances(const Scene& scene) {
   return scene.mesh.grid && std::ranges::none_of(scene.links, is_seam) &&
          std::any_of(scene.links.begin(), scene.links.end(),
                      [](const Link& l) { return l.family == Family::shear; });
 }
 
-/// In which order Gauss-Seidel visits the links. It decides convergence, stability under substeps
-/// and what can run in parallel; results/benchmarks/default-setting.md compares.
+/// The order in which Gauss-Seidel visits the links. It decides convergence, stability under
+/// substeps and what can run in parallel; results/benchmarks/default-setting.md compares the
+/// orders.
 enum class Order {
   mesh,      ///< as the scene lists them
   coloured,  ///< independent groups, tile by tile
@@ -89,20 +91,21 @@ enum class Order {
 using Colour = std::vector<Link>;
 /// A neighbourhood small enough for the first-level cache: its colours, one after the other.
 using Tile = std::vector<Colour>;
-/// Tiles that share no vertex: they may run at the same time.
+/// Tiles that share no vertex, so that they can run at the same time.
 using Phase = std::vector<Tile>;
 
 /// Sorts links into phases of tiles of colours, family after family within a tile. Depends only on
 /// the links and the mesh.
 std::vector<Phase> colour(std::span<const Link>, const Mesh&);
 
-/// Places of the vertices in memory such that those of a tile are neighbours.
+/// Position in memory of each vertex, such that vertices of a tile are neighbours.
 std::vector<std::uint32_t> tile_ranks(const Mesh&);
 
-/// All links, one after the other.
+/// All links of the phases, one after another.
 std::vector<Link> flatten(const std::vector<Phase>&);
 
-/// As Jolt Physics 5.3 to 5.5 sorts a soft body's edges that start at scene.start (Optimize()).
+/// The scene's links as Jolt Physics 5.3 to 5.5 sorts the edges of a soft body that starts at
+/// scene.start (Optimize()).
 std::vector<Link> jolt_order(const Scene&);
 
 /// The scene's links in the given order; seed is for Order::random.

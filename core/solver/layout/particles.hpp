@@ -16,18 +16,19 @@
 
 namespace taut {
 
-/// Where in an array the coordinates of each particle are: x at slot(i), y and z each stride()
-/// further. A sweep chooses the layout that suits it; everything else uses Points and does not
-/// care.
+/// Where an array holds the coordinates of each particle: x at slot(i), y and z each stride()
+/// further. A sweep chooses the layout that suits it; all other code uses Points and need not know.
 class Layout {
  public:
-  /// x y z 0 | x y z 0 | ..., particle i at place rank[i], or at i if there are no ranks; at the
-  /// end at least two spare points, which no particle owns, and as many as fill the lanes.
+  /// Packed layout, x y z 0 | x y z 0 | ...: particle i is at position rank[i], or at i without
+  /// ranks. At the end there are at least two spare points that belong to no particle, and as many
+  /// as fill the lanes.
   static Layout packed(std::size_t n, std::vector<std::uint32_t> rank = {}) {
     for (std::uint32_t& r : rank) r *= 4;
     return Layout(n, 1, 4 * (n + kLanes), std::move(rank));
   }
-  /// Vectors of coordinates x, y, z, x, ... (AoSoA); x of each particle at its slot.
+  /// Interleaved layout (AoSoA): vectors of coordinates x, y, z, x, ...; slots[i] is where x of
+  /// particle i is.
   static Layout interleaved(std::vector<std::uint32_t> slots, const SheetRows& sheet) {
     const std::size_t n = slots.size();
     Layout layout(n, static_cast<std::size_t>(sheet.lanes),
@@ -40,13 +41,13 @@ class Layout {
   std::size_t size() const { return size_; }      ///< particles
   std::size_t length() const { return length_; }  ///< numbers in the array
   std::size_t stride() const { return stride_; }
-  const SheetRows& sheet() const { return sheet_; }  ///< one lane: packed
+  const SheetRows& sheet() const { return sheet_; }  ///< one lane if packed
   [[gnu::always_inline]] std::size_t slot(std::size_t i) const {
     return slots_.empty() ? 4 * i : slots_[i];
   }
-  /// The slot of each particle; null: 4 i.
+  /// The slot of each particle; null: slot(i) is 4 i.
   const std::uint32_t* slots() const { return slots_.empty() ? nullptr : slots_.data(); }
-  /// Which coordinate the number at `place` is: 0 x, 1 y, 2 z, 3 none. Repeats every kGrain.
+  /// Coordinate of the number at `place`: 0 x, 1 y, 2 z, 3 none. Repeats every kGrain numbers.
   int axis(std::size_t place) const {
     return static_cast<int>(stride_ == 1 ? place % 4 : place / stride_ % 3);
   }
@@ -77,7 +78,7 @@ class Layout {
   std::vector<std::uint32_t> slots_;  ///< empty: 4 i
 };
 
-/// Allocates at cache-line boundaries, as the widest lanes need.
+/// Allocates at cache-line boundaries, which the widest lanes need.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
@@ -90,14 +91,14 @@ struct CacheLineAllocator {
   bool operator==(const CacheLineAllocator&) const { return true; }
 };
 
-/// One point or vector per particle. What the innermost loops call is force-inlined; otherwise g++
-/// stops inlining in a large translation unit, and contact costs twice as much.
+/// One point or vector per particle. Members that the innermost loops call are force-inlined: g++
+/// otherwise stops inlining in a large translation unit, and contact costs twice as much.
 template <class Real>
 class Points {
  public:
   using Point = Eigen::Matrix<Real, 3, 1>;
 
-  Points() = default;  ///< none: the effect that would need them is absent
+  Points() = default;  ///< empty: the effect that would need it is absent
   explicit Points(std::shared_ptr<const Layout> layout)
       : layout_(std::move(layout)), values_(layout_->length(), Real(0)) {}
 
@@ -116,8 +117,8 @@ class Points {
   }
   [[gnu::always_inline]] void add(std::size_t i, const Point& p) { set(i, (*this)[i] + p); }
 
-  /// Calls f(at): at(points, i) loads particle i of any points with this layout. The slots are
-  /// looked up once, outside f's loop.
+  /// Calls f(at), where at(points, i) loads particle i of any points with this layout. The slots
+  /// are looked up once, outside f's loop.
   template <class F>
   void read(const F& f) const {
     const std::uint32_t* const slots = layout_->slots();
@@ -131,7 +132,7 @@ class Points {
             __attribute__((always_inline)) { return load_vec4<true>(points.data() + 4 * i, 1); });
   }
 
-  /// Every coordinate, padding too.
+  /// Sets every coordinate, padding included.
   void fill(Real value) { std::ranges::fill(values_, value); }
 
   Real* data() { return values_.data(); }
@@ -143,7 +144,7 @@ class Points {
   std::vector<Real, CacheLineAllocator<Real>> values_;
 };
 
-/// The cloth as Jakobsen keeps it: no velocities, only where each particle is and where it was.
+/// The cloth as Jakobsen stores it: no velocities, only present and previous positions.
 template <class Real>
 struct Particles {
   using Point = typename Points<Real>::Point;
@@ -158,11 +159,11 @@ struct Particles {
   std::size_t size() const { return layout->size(); }
 };
 
-/// Items that belong to a vertex each, sorted by the block of that vertex.
+/// Items that each belong to a vertex, sorted by the block of that vertex.
 template <class Item>
 class ByBlock {
  public:
-  ByBlock() = default;  ///< none
+  ByBlock() = default;  ///< empty
   ByBlock(std::vector<Item> items, const Layout& layout) : items_(std::move(items)) {
     if (items_.empty()) return;
     const auto block_of = [&](const Item& item) { return layout.block_of(to_index(item.vertex)); };
@@ -182,40 +183,41 @@ class ByBlock {
 
  private:
   std::vector<Item> items_;
-  std::vector<std::size_t> first_;  ///< index of each block's first item, and the end
+  std::vector<std::size_t> first_;  ///< first item of each block, and the end
 };
 
 struct TouchingPieces;  // contact/augmented_contacts.hpp
 
-/// One effect of a scene with the data it needs. It exists only if the scene has the effect: no
-/// flag is tested inside the loop, and an absent effect owns no memory.
+/// One effect of a scene with the data it needs. It exists only if the scene has the effect: the
+/// loop tests no flag, and an absent effect takes no memory.
 template <class Real>
 class Pass {
  public:
   virtual ~Pass() = default;
-  /// The solver starts anew from another state: forget what was.
+  /// The solver starts anew from another state: forgets everything that was kept.
   virtual void restart() {}
-  /// Pins have let go: `before`, a pass of the same class, did this one's work until here. What is
-  /// kept from step to step and not taken over here is forgotten.
+  /// Pins have been released, and `before`, a pass of the same class, has done this pass's work
+  /// until now. Takes over what is kept from step to step; the rest is lost.
   virtual void take_over(const Pass& /*before*/) {}
-  /// Once for the step [t, t + dt], before integration; called only if the pass asks for it.
+  /// Called once for the step [t, t + dt], before integration, and only if the pass asks for it.
   virtual void accelerate(Particles<Real>&, double /*t*/, double /*dt*/) {}
-  /// Once for the step [t, t + dt], after integration and before the first sweep.
+  /// Called once for the step [t, t + dt], after integration and before the first sweep.
   virtual void begin(Particles<Real>&, double /*t*/, double /*dt*/) {}
-  /// For the step [t, t + dt].
+  /// Applies the effect in the step [t, t + dt].
   virtual void apply(Particles<Real>&, double t, double dt) = 0;
-  /// Once for the step, after the last sweep and contact; called only of passes that solve links.
+  /// Called once for the step, after the last sweep and contact, and only for passes that solve
+  /// links.
   virtual void end(Particles<Real>&, double /*t*/, double /*dt*/) {}
-  /// Whether this pass accesses particles only in queued work (ThreadPool::queue). Finish the queue
-  /// before any other pass.
+  /// Whether this pass accesses particles only in queued work (ThreadPool::queue). The queue must
+  /// be finished before any other pass runs.
   virtual bool queues() const { return false; }
   /// The goal y [m] of a pass that solves towards y, the positions without links and contact; null
-  /// for any other. Contact that is projected after the pass moves y as it moves the particles, so
-  /// that the links feel that force from the next iteration on.
+  /// for any other pass. Contact that is projected after the pass moves y along with the particles,
+  /// so that the links feel its force from the next iteration on.
   virtual Points<Real>* target() { return nullptr; }
-  /// The contact of faces and edges, of a pass that has it in its solve; null for any other.
+  /// The contact of faces and edges, for a pass that includes it in its solve; null for any other.
   virtual TouchingPieces* touching_pieces() { return nullptr; }
-  /// The costs of one application, one for each thing it does; the solver sets `repeats`.
+  /// Costs of one application, an entry for each thing it does; the solver sets `repeats`.
   virtual std::vector<PassCost> cost() const = 0;
 };
 

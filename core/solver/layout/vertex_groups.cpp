@@ -11,7 +11,7 @@ namespace {
 
 using Colours = std::vector<std::vector<int>>;
 
-/// Greedily, vertex after vertex: the first colour that no neighbour has.
+/// Greedy colouring, vertex after vertex: each takes the first colour that no neighbour has.
 Colours colour_vertices(const Adjacency& ends, std::span<const BendingElement> bending,
                         std::span<const double> w) {
   std::vector<std::vector<const BendingElement*>> bent(bending.empty() ? 0 : w.size());
@@ -45,7 +45,7 @@ Colours one_by_one(std::span<const double> w) {
   return colours;
 }
 
-/// Colour after colour, then the pins.
+/// Layout in which the colours follow one another, then the pins.
 Layout side_by_side(const Colours& colours, std::span<const double> w) {
   std::vector<std::uint32_t> rank(w.size());
   std::uint32_t next = 0;

@@ -12,31 +12,31 @@
 
 namespace taut {
 
-/// The vertices that move, cut for sweeps that move one at a time while all others are held: into
-/// colours, no two vertices of which are linked or in one bending element, and those into groups of
-/// kLanes, whatever the machine's lanes. The particles of a group lie side by side.
+/// The vertices that move, divided for sweeps that move one vertex at a time while all others are
+/// held. No two vertices of a colour are linked or in one bending element. Colours are divided into
+/// groups of kLanes, whatever lanes the machine has, and the particles of a group lie side by side.
 class VertexGroups {
  public:
   VertexGroups() = default;
-  /// w: inverse masses [1/kg], 0: pinned. Not coloured: each vertex is a colour, in the given
-  /// order.
+  /// w: inverse masses [1/kg], 0: pinned. If not coloured, each vertex is a colour of its own, in
+  /// the given order.
   VertexGroups(const Adjacency&, std::span<const BendingElement>, std::span<const double> w,
                bool coloured);
-  /// One colour of all that move, in this order, for sweeps that move none of them.
+  /// One colour of all vertices that move, in this order, for sweeps that only read positions.
   VertexGroups(const Adjacency&, std::vector<int> order, std::span<const double> w);
 
   const Layout& layout() const { return layout_; }
   std::size_t colours() const { return colour_.size() - 1; }
-  /// First group of a colour; of colours(): their number.
+  /// First group of a colour; the number of groups for colours().
   std::size_t first_group(std::size_t colour) const { return colour_[colour]; }
   std::size_t size() const { return groups_.size(); }
   std::size_t vertices() const { return vertices_; }
   const VertexGroup* data() const { return groups_.data(); }
-  /// Of a group's lane; -1: none.
+  /// The vertex in a lane of a group; -1: none.
   int vertex(std::size_t group, std::size_t lane) const { return vertex_[group * kLanes + lane]; }
 
-  /// Calls set(slot, lane, link) for the links of every vertex in their order; every link has a
-  /// slot at either end that moves.
+  /// Makes the slots: every link has one at each end that moves. Calls set(slot, lane, link) for
+  /// the links of every vertex in their order.
   template <class Slot, class Set>
   std::vector<Slot> make_slots(const Adjacency& ends, const Set& set) const {
     std::vector<Slot> slots(groups_.empty() ? 0 : groups_.back().end_slot);
@@ -68,7 +68,7 @@ class VertexGroups {
   std::vector<int> vertex_;  ///< [groups][kLanes]
   std::size_t vertices_ = 0;
   std::vector<VertexGroup> groups_;
-  std::vector<std::size_t> colour_;  ///< first group of each, and the end
+  std::vector<std::size_t> colour_;  ///< first group of each colour, and the end
   Layout layout_;
 };
 

@@ -19,8 +19,8 @@ Hessian::Hessian(const std::vector<Spring>& springs, const std::vector<BendingEl
   if (factored) analyse(simd, beside);
 }
 
-/// add(row, column, k [N/m]) for every entry in the lower triangle of the bending elements, whose
-/// Hessian is constant.
+/// Calls add(row, column, k [N/m]) for every entry of the bending elements, whose Hessian is
+/// constant, in the lower triangle.
 template <class Add>
 void Hessian::each_bending(const Add& add) const {
   for (const BendingElement& e : bending_)
@@ -121,8 +121,9 @@ Vector Hessian::times(double h, const Vector& v) const {
   return out;
 }
 
-/// To a residual of 1e-6 of the right-hand side; blocks of vertices inverted as preconditioner.
-/// False: a direction along which the energy curves down was met.
+/// Conjugate gradients to a residual of 1e-6 of the right-hand side, preconditioned by the inverse
+/// blocks of the vertices. Returns false if it meets a direction along which the energy curves
+/// down.
 bool Hessian::conjugate_gradients(double h, const Vector& right, Vector& p) const {
   std::vector<Matrix3d> inverse(mass_.size());
   for (std::size_t i = 0; i < mass_.size(); ++i)

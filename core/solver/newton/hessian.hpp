@@ -13,7 +13,7 @@ namespace taut::solver::implicit {
 
 using Vector = Eigen::VectorXd;
 
-/// A spring's part of the Hessian: isotropic I + axial u u^T [N/m].
+/// Hessian of one spring: isotropic I + axial u u^T [N/m].
 struct SpringHessian {
   double isotropic = 0, axial = 0;
   Vec3 u = Vec3::UnitX();
@@ -23,42 +23,42 @@ struct SpringHessian {
   Vec3 times(const Vec3& v) const { return isotropic * v + axial * u.dot(v) * u; }
 };
 
-/// H = M/h^2 + springs + bending + contact, over the vertices that move; vectors have three numbers
-/// for each of them. Its linear systems are solved by a sparse LDLT, whose pattern is analysed
-/// once, or by conjugate gradients with a block Jacobi preconditioner.
+/// H = M/h^2 + springs + bending + contact, over the vertices that move. Vectors have three numbers
+/// for each of them. Linear systems are solved by a sparse LDLT, whose pattern is analysed once, or
+/// by conjugate gradients with a block Jacobi preconditioner.
 class Hessian {
  public:
-  /// Of springs and bending that outlive it. w: inverse masses [1/kg].
-  /// beside: vertices between which add_contact() may add something, more than springs and bending.
+  /// Springs and bending must outlive it. w: inverse masses [1/kg]. beside: pairs of vertices
+  /// between which add_contact() may add a block, besides those of springs and bending.
   Hessian(const std::vector<Spring>& springs, const std::vector<BendingElement>& bending,
           std::span<const double> w, bool factored, Simd simd,
           std::span<const std::pair<int, int>> beside = {});
 
   int size() const { return 3 * static_cast<int>(mass_.size()); }
-  /// Where the vertex is in vectors; kPinned: it does not move.
+  /// First entry of the vertex in vectors; kPinned: it does not move.
   int column(std::size_t vertex) const { return column_[vertex]; }
   double mass(std::size_t vertex) const { return mass_[to_index(column_[vertex]) / 3]; }
   SpringHessian& block(std::size_t spring) { return blocks_[spring]; }
-  /// What contact adds at a vertex that moves [N/m].
   void clear_contacts() { contacts_.clear(); }
+  /// Adds a block of contact [N/m] at a vertex that moves.
   void add_contact(std::size_t vertex, const Eigen::Matrix3d& block) {
     add_contact(vertex, vertex, block);
   }
-  /// The same between two, for both.
+  /// Adds a block of contact [N/m] between two vertices, for both of them.
   void add_contact(std::size_t a, std::size_t b, const Eigen::Matrix3d& block) {
     contacts_.push_back({a, b, block});
   }
   bool factored() const { return !diagonal_.empty(); }
   static constexpr int kPinned = -1;
 
-  /// p [m] of H p = right [N]; false: H is not positive definite.
+  /// Solves H p = right [N] for p [m]. Returns false if H is not positive definite.
   bool solve(double h, const Vector& right, Vector& p);
 
-  /// H v without the masses' part; pins do not move.
+  /// H v without the masses; pins do not move.
   Vector elastic_times(const Vector& v) const {
     return elastic_times(v, [](std::size_t) { return Vec3(Vec3::Zero()); });
   }
-  /// pin(vertex): its way [m].
+  /// H v without the masses; pin(vertex) is the displacement of a pin [m].
   template <class Pin>
   Vector elastic_times(const Vector& v, const Pin& pin) const {
     Vector out = Vector::Zero(v.size());
@@ -88,7 +88,7 @@ class Hessian {
   std::size_t bytes() const;
 
  private:
-  /// Of 3 x 3 numbers in the matrix; null: an end is pinned.
+  /// A block of 3 x 3 numbers in the matrix; null: one end is pinned.
   struct Block {
     double* first = nullptr;
     std::size_t stride = 0;
@@ -101,7 +101,7 @@ class Hessian {
   };
 
   void analyse(Simd simd, std::span<const std::pair<int, int>> beside);
-  /// Of two that move, in whichever order; the matrix has it.
+  /// The block of two vertices that move, in either order. Precondition: the matrix has it.
   Block place(int column, int other);
   template <class Add>
   void each_bending(const Add& add) const;
@@ -113,15 +113,15 @@ class Hessian {
   const std::vector<Spring>& springs_;
   const std::vector<BendingElement>& bending_;
   std::vector<int> column_;
-  std::vector<double> mass_;  ///< kg, of those that move
+  std::vector<double> mass_;  ///< kg, of the vertices that move
   std::vector<SpringHessian> blocks_;
   std::vector<ContactBlock> contacts_;
   PanelFactor factor_;                          ///< empty: conjugate gradients
-  std::vector<Block> diagonal_;                 ///< [those that move]
+  std::vector<Block> diagonal_;                 ///< [vertices that move]
   std::vector<Block> beside_;                   ///< [springs]
-  std::vector<std::pair<Block, double>> bent_;  ///< [N/m] of bending, times unity
-  std::vector<std::size_t> rank_;               ///< [those that move] in the order of elimination
-  Vector in_order_;                             ///< in that order
+  std::vector<std::pair<Block, double>> bent_;  ///< bending [N/m] in each block, times the identity
+  std::vector<std::size_t> rank_;  ///< [vertices that move] in the order of elimination
+  Vector in_order_;                ///< right-hand side, then solution, in that order
 };
 
 }  // namespace taut::solver::implicit

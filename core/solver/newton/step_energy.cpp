@@ -8,7 +8,7 @@ namespace taut::solver::implicit {
 
 namespace {
 
-/// visit(corner, weight) of those with one.
+/// Calls visit(corner, weight) for the corners whose weight is not 0.
 template <class Visit>
 void each_corner(const TouchingPiece& piece, const Visit& visit) {
   for (std::size_t c = 0; c < 3; ++c)
@@ -16,7 +16,7 @@ void each_corner(const TouchingPiece& piece, const Visit& visit) {
       visit(c, weight);
 }
 
-/// Between whose ends contact of faces and edges acts, where the scene has any.
+/// Pairs of vertices between which contact of faces and edges acts; empty if the scene has none.
 std::vector<std::pair<int, int>> sides_of_pieces(const loop::Setup& s) {
   std::vector<std::pair<int, int>> sides;
   if (s.scene.colliders.empty() || s.params.is("faces", "off")) return sides;
@@ -70,7 +70,7 @@ Vector StepEnergy::elastic(const std::vector<Vec3>& x) const {
   for (const auto& [a, b, rest, k] : springs) {
     const Vec3 d = x[b] - x[a];
     const double length = d.norm();
-    if (length == 0) continue;  // no direction to push in
+    if (length == 0) continue;  // there is no direction to push in
     const Vec3 pull = k * (length - rest) / length * d;
     if (hessian.column(a) >= 0) g.segment<3>(hessian.column(a)) -= pull;
     if (hessian.column(b) >= 0) g.segment<3>(hessian.column(b)) += pull;

@@ -10,20 +10,21 @@
 
 namespace taut::solver::implicit {
 
-/// G of one step (core/solver/implicit.cpp): inertia, springs, bending and contact. x: [n] m;
-/// gradients [N] and moves [m] have three numbers for each vertex that moves, at hessian.column().
+/// G of one step (core/solver/implicit.cpp): inertia, springs, bending and contact. x: [n] m.
+/// Gradients [N] and displacements [m] have three numbers for each vertex that moves, at
+/// hessian.column().
 struct StepEnergy {
-  /// factored: H is solved by a factor, else by conjugate gradients.
+  /// factored: solves H by a factor, otherwise by conjugate gradients.
   StepEnergy(const loop::Setup&, bool factored);
   StepEnergy(const StepEnergy&) = delete;  // the Hessian refers to springs and bending
 
   double energy(const std::vector<Vec3>& x, double h) const;  ///< J
   Vector gradient(const std::vector<Vec3>& x, double h) const;
-  /// Its part of links, bending and contact.
+  /// The gradient's part of links, bending and contact.
   Vector elastic(const std::vector<Vec3>& x) const;
   /// |g| in the norm of 1/M [N/sqrt(kg)].
   double in_norm_of_masses(const Vector& g) const;
-  /// The Hessian becomes that at x. clamped: links never push across themselves, so that it is
+  /// Sets the Hessian to that at x. clamped: compressed links do not push sideways, so that it is
   /// positive definite.
   void linearise(const std::vector<Vec3>& x, bool clamped);
   /// y - x of the vertices that move [m].
@@ -34,9 +35,9 @@ struct StepEnergy {
   std::vector<Spring> springs;
   std::vector<BendingElement> bending;
   Hessian hessian;
-  std::vector<double> stiffness;  ///< N/m, of all links and bending at each vertex
+  std::vector<double> stiffness;  ///< N/m, sum over all links and bending at each vertex
   AugmentedContacts contacts;
-  Points<double> y;  ///< m, where they would go without links
+  Points<double> y;  ///< m, positions without links
 };
 
 }  // namespace taut::solver::implicit

@@ -1,6 +1,7 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include <cstddef>
 #include <type_traits>
@@ -11,14 +12,14 @@
 
 namespace taut {
 
-/// x + y + z of each.
+/// x + y + z of each particle in d.
 template <class T>
 [[gnu::always_inline]] inline T sums(const T (&d)[4]) {
   const Vec3T<T> t = transposed(d);
   return t.x + t.y + t.z;
 }
 
-/// Lane l of every particle in t.
+/// Lane l of every particle in t, spread over the particle's lanes.
 template <int l, class T>
 [[gnu::always_inline]] inline T spread(T t) {
   if constexpr (kWidth<T> == 4)
@@ -27,7 +28,8 @@ template <int l, class T>
     return T::template shuffle<l, l, l, l, l + 4, l + 4, l + 4, l + 4>(t, t);
 }
 
-/// Links g .. g + kWidth<T> - 1 of a batch. equal: shares(0) is that of both ends of all of them.
+/// Projects links g .. g + kWidth<T> - 1 of a batch. equal: shares(0) applies to both ends of all
+/// of them.
 template <class T, bool equal, class Real, class Number, class Shares, class Excess>
 [[gnu::always_inline]] inline void project_batch(const Batch<Real, Number>& batch, int g, Real* x,
                                                  const Shares& shares, const Excess& excess_of) {
@@ -66,8 +68,8 @@ template <class T, bool equal, class Real, class Number, class Shares, class Exc
 }
 
 /// Calls f(batch, n, x) for the n-th batch of a run; x: the particle from which its ends count.
-/// Meanwhile the batches after it and the next tile's particles come from memory: no machine sees
-/// by itself that these will be needed (0.66 of the time at 1024 x 1024, nothing in cache).
+/// Prefetches later batches and the next tile's particles: no machine foresees that these will be
+/// needed (0.66 of the time at 1024 x 1024, no effect in cache).
 template <class Real, class F>
 [[gnu::always_inline]] inline void visit_batches(const BatchRun<Real> run, Real* x, const F& f) {
   constexpr std::size_t kBatchesAhead = 8;
@@ -81,8 +83,8 @@ template <class Real, class F>
   run.near ? visit(run.near, particle(x, run.first)) : visit(run.far, x);
 }
 
-/// Calls f(batch, n, x, g, equal, shares) for all links g .. g + kWidth<T> - 1 of each; `equal` is
-/// a constant, ends: shares of a link.
+/// Calls f(batch, n, x, g, equal, shares) for links g .. g + kWidth<T> - 1 of each batch, until all
+/// are done. equal: a constant; ends: number of shares of a link.
 template <class T, int ends, class Real, class F>
 [[gnu::always_inline]] inline void visit_links(const BatchRun<Real>& run, Real* x, const F& f) {
   const Real* const all_shares = run.shares;
@@ -108,8 +110,8 @@ template <class T, int ends, class Real, class F>
         });
 }
 
-/// Batches with T holding a particle (4 lanes) or two (8): a whole particle is one load. On a
-/// machine without lanes one link after the other.
+/// Projects batches. T holds a particle (4 lanes) or two (8), so that a whole particle is one load.
+/// On a machine without lanes, links come one after another.
 template <class T, Projection kind, class Real>
 void batches(const BatchRun<Real>& run, Real* x) {
   visit_links<T, 2>(
@@ -142,7 +144,7 @@ void compliant_batches(const BatchRun<Real>& run, Real* x, Real keep) {
       });
 }
 
-/// What batches() loads and stores, with nothing but an addition in between.
+/// Loads and stores what batches() does, with only an addition in between.
 template <class T, class Real>
 void load_and_store(const BatchRun<Real>& run, Real* x) {
   const T little(static_cast<Real>(0.001));

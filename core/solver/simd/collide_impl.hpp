@@ -1,6 +1,7 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include <cstdint>
 #include <type_traits>
@@ -13,14 +14,14 @@ namespace taut {
 template <class Real>
 inline constexpr Real kNumbers[kWide] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/// Whether a lane's number, of those that begin with `first`, is below `end`.
+/// Which of the lanes, numbered from `first` on, are below `end`.
 template <class T, class Real>
 [[gnu::always_inline]] inline auto lanes_below(int first, Real end) {
   return load<T>(kNumbers<Real> + first) < T(end);
 }
 
-/// Calls f(place, present) for kWidth<T> particles after the other, of the parts [begin, end):
-/// `present` leaves out padding.
+/// Calls f(place, present) for the particles of the parts [begin, end), kWidth<T> at a time;
+/// `present` excludes padding.
 template <class T, int lanes, class Real, class F>
 [[gnu::always_inline]] inline void visit_particles(const ParticleSpan<Real> span, std::size_t begin,
                                                    std::size_t end, const F& f) {
@@ -28,7 +29,7 @@ template <class T, int lanes, class Real, class F>
     for (std::size_t i = begin * kLanes; i < end * kLanes; i += kWidth<T>)
       f(4 * i, lanes_below<T>(0, static_cast<Real>(span.particles) - static_cast<Real>(i)));
   } else {
-    // The first vectors of a row have a column in one lane more than the others.
+    // In the first vectors of a row, one lane more has a column than in the others.
     const SheetRows& sheet = span.sheet;
     const int others = (sheet.columns - 1) / sheet.vectors;
     const int first = sheet.columns - others * sheet.vectors;
@@ -41,7 +42,7 @@ template <class T, int lanes, class Real, class F>
   }
 }
 
-/// Calls f with a lane type and the lanes of the span's layout as a constant.
+/// Calls f with a lane type and, as a constant, the number of lanes of the span's layout.
 template <class Narrow, class Wide, class P, class Real, class F>
 [[gnu::always_inline]] inline void with_lanes(const ParticleSpan<Real>& span, const F& f) {
   if (span.sheet.lanes == kWide)
@@ -52,7 +53,8 @@ template <class Narrow, class Wide, class P, class Real, class F>
     f(P(0), std::integral_constant<int, kPackedLanes>{});
 }
 
-/// Of kWidth<T> particles: moves those that are `near` out of the collider; whether any was inside.
+/// Moves those of kWidth<T> particles that are `near` out of the collider. Returns whether any was
+/// inside.
 template <bool continuous, class T, class C, class Mask>
 [[gnu::always_inline]] inline bool project_near(const C& contact, Vec3T<T>& x,
                                                 const Vec3T<T>& previous, const Mask& near) {
@@ -62,8 +64,8 @@ template <bool continuous, class T, class C, class Mask>
     return any(contact.project(x, previous, near));
 }
 
-/// For every mask of eight lanes the numbers of those in it, one after the other; or, `back`, where
-/// among these each of them is. What is left over is 0.
+/// For every mask of eight lanes, the numbers of the lanes in it, one after another; or, with
+/// `back`, the position of each lane among these. Other entries are 0.
 struct LaneOrders {
   std::uint8_t of[256][8] = {};
   explicit consteval LaneOrders(bool back) {
@@ -77,12 +79,12 @@ struct LaneOrders {
 };
 inline constexpr LaneOrders kGather(false), kSpread(true);
 
-/// Particles that may touch, from many vectors, side by side: on a ball two lanes of eight do, on
-/// average, and roots and divisions of the others would be in vain.
+/// Collects from many vectors the particles that may touch, side by side. On a ball, two lanes of
+/// eight do on average, and the roots and divisions of the others would be wasted.
 template <class T, int lanes, class Real>
 class NearParticles {
  public:
-  /// Those of the vector at `place` that are `near`.
+  /// Adds the `near` particles of the vector at `place`.
   [[gnu::always_inline]] void add(std::size_t place, const typename T::Mask& near,
                                   const Vec3T<T>& x, const Vec3T<T>& previous) {
     const unsigned mask = bits(near);
@@ -96,7 +98,7 @@ class NearParticles {
   }
   bool full() const { return vectors_ == kVectors; }
 
-  /// Moves them, and forgets them.
+  /// Moves the collected particles out of the collider, and forgets them.
   template <bool continuous, class C>
   [[gnu::noinline]] void project(const C& contact_in, Real* x) {
     const C contact = contact_in;  // a copy, which no store changes
@@ -138,8 +140,8 @@ class NearParticles {
   std::size_t vectors_ = 0, count_ = 0;
 };
 
-/// A cloth lies on a plane with nearly all of its lanes, and there is little to compute: putting
-/// near ones side by side would not pay.
+/// Whether typically only some lanes touch. A cloth lies on a plane with nearly all of its lanes,
+/// and there is little to compute: putting near ones side by side would not pay.
 template <template <class> class SurfaceOf>
 inline constexpr bool kTouchesSomeLanes = true;
 template <>
@@ -176,7 +178,8 @@ void collide(const Contact<Real, SurfaceOf>& contact_in, const ParticleSpan<Real
       });
 }
 
-/// The same numbers, with what a surface along the world's axes does not need left out of the loop.
+/// Same numbers as collide(), but for a surface along the world's axes the loop leaves out what it
+/// does not need.
 template <class Narrow, class Wide, class P, bool continuous, class Real,
           template <class> class SurfaceOf, template <class> class AlignedOf>
 void collide_aligned_or_not(const Contact<Real, SurfaceOf>& contact, const ParticleSpan<Real>& span,

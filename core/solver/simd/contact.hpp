@@ -4,8 +4,8 @@
 
 namespace taut {
 
-/// Rigid motion of a collider over the step: where the points that are fixed to it go. Friction and
-/// the continuous test see a particle's motion relative to the collider: x - motion(previous).
+/// Rigid motion of a collider over the step: where points fixed to it go. Friction and the
+/// continuous test see a particle's motion relative to the collider, x - motion(previous).
 template <class Real>
 struct RigidMotion {
   bool moves = false;
@@ -21,7 +21,7 @@ struct RigidMotion {
   }
 };
 
-/// A collider as one step sees it, and what it does to a particle, or to one in every lane.
+/// A collider in one step, and what it does to a particle, or to one in every lane.
 template <class Real, template <class> class SurfaceOf>
 struct Contact {
   SurfaceOf<Real> surface;  ///< at the end of the step
@@ -33,7 +33,8 @@ struct Contact {
     return surface.clear(x, T(thickness));
   }
 
-  /// Where x may be inside; continuous: or has come from `previous` through the surface. Quick.
+  /// Quick test whether x may be inside or, if continuous, may have come from `previous` through
+  /// the surface.
   template <bool continuous, class T>
   [[gnu::always_inline]] auto near(const Vec3T<T>& x, const Vec3T<T>& previous) const {
     if constexpr (continuous)
@@ -42,21 +43,21 @@ struct Contact {
       return !clear(x);
   }
 
-  /// Moves x, where it is `inside`, out to the nearest point at the scene's thickness, then against
-  /// its slip since `previous`. Says where it did: not where x was outside.
+  /// Moves x, where it is `inside`, out to the nearest point at the scene's thickness, then back
+  /// against its slip since `previous`. Returns where it did; x may turn out not to be inside.
   template <class T, class Mask>
   [[gnu::always_inline]] Mask project(Vec3T<T>& x, const Vec3T<T>& previous,
                                       const Mask& inside) const {
     return push(x, motion(previous), surface.nearest(x), inside);
   }
 
-  /// The same where it is `near`, but back to the side from which the particle came in, even if it
-  /// has passed through since.
+  /// Like project(), where x is `near`, but moves back to the side from which the particle came in,
+  /// even if it has passed through since.
   template <class T, class Mask>
   [[gnu::always_inline]] Mask project_continuous(Vec3T<T>& x, const Vec3T<T>& previous,
                                                  Mask near) const {
     const Vec3T<T> from = motion(previous);
-    // Hardly ever does a path come so near that it takes more to say that it misses the collider.
+    // Test `beyond` again with half the thickness: few paths come near enough to pay for misses().
     auto passing = near && !surface.beyond(x, squared_norm(x - from), T(thickness / 2));
     if (any(passing)) passing = near && !surface.misses(from, x);
     near = near && !clear(x);
@@ -65,8 +66,9 @@ struct Contact {
     return push(x, from, tangent, near);
   }
 
-  /// Moves x, where it is deep, out by that half-space, against its slip from `from`. Coulomb: the
-  /// tangential correction is at most mu times the normal one, and no more than the slip itself.
+  /// Moves x out of the half-space where it is deep, then back against its slip from `from`.
+  /// Coulomb friction: the tangential correction is at most mu times the normal one, and no more
+  /// than the slip.
   template <class T, class Normal, class Mask>
   [[gnu::always_inline]] auto push(Vec3T<T>& x, const Vec3T<T>& from,
                                    const Tangent<T, Normal>& tangent, const Mask& where) const {
@@ -84,8 +86,8 @@ struct Contact {
     return deep;
   }
 
-  /// Whether one vertex is inside, has passed through since `previous` (continuous), or is `held`:
-  /// then by which half-space.
+  /// Whether one vertex is inside, has passed through since `previous` (continuous), or is `held`.
+  /// If so, `tangent` is set to the half-space to which it belongs.
   bool touched(const Vec3T<Real>& x, const Vec3T<Real>& previous, bool continuous, bool held,
                Tangent<Real>& tangent) const {
     bool inside = held || !apart(x);
@@ -104,14 +106,15 @@ struct Contact {
   }
 
  private:
-  /// The surface nearest to x, or where it came in if it is `passing`, which then counts as near.
+  /// The half-space nearest to x, or the one where x came in if it is `passing`; it then counts as
+  /// near.
   template <class T, class Mask>
   [[gnu::always_inline]] Tangent<T> side_of_entry(const Vec3T<T>& x, const Vec3T<T>& from,
                                                   const Mask& passing, Mask& near) const {
     Tangent<T> tangent = surface.nearest(x);
     if (any(passing)) {
       const Entry<T> entry = surface.entry(from, x);
-      // The faces of a turned box are across each other but for rounding, which must not decide.
+      // Faces of a turned box are perpendicular only up to rounding, which must not decide.
       const auto same_side =
           !surface.clear(x, T(0)) && dot(tangent.normal, entry.tangent.normal) > T(1e-6);
       const auto back = passing && entry.hits;
@@ -121,7 +124,7 @@ struct Contact {
     return tangent;
   }
 
-  /// clear(), exact.
+  /// An exact clear().
   bool apart(const Vec3T<Real>& x) const {
     if constexpr (requires { surface.apart(x, thickness); })
       return surface.apart(x, thickness);

@@ -6,7 +6,7 @@
 
 namespace taut {
 
-/// How the distance constraint |x2 - x1| = rest is projected; any masses, w = 1/m.
+/// How the distance constraint |x2 - x1| = rest is projected, for any masses, w = 1/m.
 ///
 /// exact (Jakobsen 2001, section 4):          f = (|delta| - r) / |delta|
 /// sqrt-free (ibid., first-order Taylor of    f = (|delta|^2 - r^2) / (|delta|^2 + r^2)
@@ -18,8 +18,8 @@ namespace taut {
 /// see tests/solver/projection_test.cpp.
 enum class Projection { exact, sqrt_free };
 
-/// Shorter than any link [m]. Added so that coincident particles give 0 and not 0/0; it changes no
-/// other bit.
+/// A length below that of any link [m]. It is added so that coincident particles give 0 and not
+/// 0/0, and changes no other bit.
 inline constexpr double kTinyLength = 1e-18;
 
 /// The share of delta by which a pair is too long.
@@ -35,12 +35,12 @@ template <Projection kind, class T>
   }
 }
 
-/// XPBD's (Macklin, Mueller, Chentanez 2016, equations 17 and 18), as a length: with
+/// XPBD's excess (Macklin, Mueller, Chentanez 2016, equations 17 and 18), as a length. With
 /// a = compliance/h^2 and m = a lambda,
 ///
 ///     m -= a/(w1 + w2 + a) (|delta| - r + m),    f = (|delta| - r + m before) / |delta|,
 ///
-/// and shares w/(w1 + w2 + a). Without compliance it is `exact`, bit by bit.
+/// for shares w/(w1 + w2 + a). Without compliance it equals `exact`, bit by bit.
 template <class T>
 [[gnu::always_inline]] inline T compliant_excess(T length2, T rest, T share, T& multiplier) {
   using std::sqrt;
@@ -50,10 +50,10 @@ template <class T>
   return beyond / length;
 }
 
-/// Moves x1 and x2 by what excess(|delta|^2) says, for every width and precision. share1 and
+/// Moves x1 and x2 by what excess_of(|delta|^2) says, for every width and precision. share1 and
 /// share2 are w1/(w1 + w2) and w2/(w1 + w2), times the relaxation weight of the link. Only
-/// project_batch (batches_impl.hpp), whose coordinates lie across the lanes, has these operations
-/// once more.
+/// project_batch (batches_impl.hpp), whose coordinates lie across the lanes, repeats these
+/// operations.
 template <class T, class Excess>
 [[gnu::always_inline]] inline void move_ends(Vec3T<T>& x1, Vec3T<T>& x2, T share1, T share2,
                                              const Excess& excess_of) {

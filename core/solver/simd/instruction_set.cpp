@@ -8,7 +8,7 @@ namespace taut {
 
 namespace {
 
-struct Isa;  // keeps what this file compiles to apart from the other sets'
+struct Isa;  // keeps this file's code apart from that of the other sets
 
 constexpr Simd kSimd = Simd::TAUT_SIMD;
 constexpr int kRegister = kSimd == Simd::avx512 ? 64 : kSimd == Simd::avx2 ? 32 : 16;  // bytes

@@ -1,8 +1,8 @@
 #pragma once
 
-// Included by instruction_set.cpp, which is compiled once for each of them and says what its lanes
-// are. No function here may be shared between them: everything depends on the lane type, which is
-// private to the file.
+// Included by instruction_set.cpp, which is compiled once for each instruction set and defines its
+// lanes. No function here may be shared between instruction sets: everything depends on the lane
+// type, which is private to that file.
 
 #include <cstring>
 #include <type_traits>
@@ -22,7 +22,7 @@
 
 namespace taut {
 
-/// s: a copy, which no store changes.
+/// s is a copy, which no store changes.
 template <class T, bool forces, class Real>
 [[gnu::always_inline]] inline void integrate(const VerletStep<Real> s, std::size_t begin,
                                              std::size_t end) {
@@ -52,8 +52,8 @@ void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real
       span, [&](auto t, auto of_layout) __attribute__((always_inline)) {
         using T = decltype(t);
         constexpr int lanes = of_layout;
-        // Table after table: a particle's second tether waits for its first, and meanwhile there is
-        // more to do for other particles. Packed ones would have to be transposed each time.
+        // Table after table: a particle's second tether waits for its first, and other particles
+        // fill the time. Packed particles would have to be transposed for each table.
         const std::size_t at_once = lanes == kPackedLanes ? tables.size() : 1;
         std::span<const TetherTable<Real>> some;
         const auto one = [&](std::size_t at, const auto&) __attribute__((always_inline)) {
@@ -62,7 +62,7 @@ void tethers(const ParticleSpan<Real>& span_in, std::span<const TetherTable<Real
           for (const TetherTable<Real>& table : some) {
             Vec3T<T> pin = load_vec3<T, lanes>(table.pin + at), end = x;
             const T length = load_vec3<T, lanes>(table.length + at).x;
-            const Vec3T<T> way = end - pin;  // summed as project_distance sums: computed once
+            const Vec3T<T> way = end - pin;  // summed as in project_distance: computed only once
             const auto tight = way.x * way.x + way.y * way.y + way.z * way.z > length * length;
             if (!any(tight)) continue;
             project_distance<kind>(pin, end, length, T(0), T(1));
@@ -99,7 +99,7 @@ Real in_registers(Real rest, int rounds, int& projections) {
 }
 
 /// Narrow and Wide compute on interleaved sheets of 8 and 16 lanes, P on packed particles, and all
-/// of them where they collide; Double on matrices.
+/// three in contact. Double computes on matrices.
 template <class Real, class Narrow, class Wide, class P, class Double>
 constexpr Kernels<Real> make_kernels() {
   constexpr Projection exact = Projection::exact, sqrt_free = Projection::sqrt_free;

@@ -14,7 +14,7 @@
 
 namespace taut {
 
-/// One decision per lane: all bits of a lane, or none. && and || evaluate both sides.
+/// One decision per lane: all bits of a lane, or no bits. && and || evaluate both sides.
 template <class Real, int width, class Isa>
 struct LaneMask {
   using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
@@ -25,7 +25,7 @@ struct LaneMask {
   [[gnu::always_inline]] friend LaneMask operator||(LaneMask a, LaneMask b) { return {a.v | b.v}; }
   [[gnu::always_inline]] LaneMask operator!() const { return {~v}; }
 
-  /// A bit for each lane, the first one lowest.
+  /// A bit for each lane, the first lane in the lowest bit.
   [[gnu::always_inline]] friend unsigned bits(LaneMask a) {
 #if defined(__AVX512F__)
     if constexpr (sizeof(V) == 64 && width == 16)
@@ -48,9 +48,9 @@ struct LaneMask {
   [[gnu::always_inline]] friend bool any(LaneMask a) { return bits(a) != 0; }
 };
 
-/// `width` numbers that are computed with at once. The arithmetic is a number's, lane by lane, so
-/// every width gives the same bits. `Isa` keeps what one instruction set compiles to apart from
-/// what another does: without it the linker might run AVX-512 code on a machine that has none.
+/// `width` numbers that are computed together. The arithmetic is that of a number, lane by lane, so
+/// every width gives the same bits. `Isa` separates the code of one instruction set from that of
+/// another: without it the linker might run AVX-512 code on a machine that lacks it.
 template <class Real, int width, class Isa>
 struct Lanes {
   using V [[gnu::vector_size(width * sizeof(Real))]] = Real;
@@ -77,13 +77,13 @@ struct Lanes {
   [[gnu::always_inline]] void operator+=(Lanes b) { v += b.v; }
   [[gnu::always_inline]] void operator-=(Lanes b) { v -= b.v; }
 
-  /// Lane l of the result is element l of the two arguments one after the other at index[l].
+  /// Lane l of the result is element index[l] of the two arguments taken one after the other.
   template <int... index>
   [[gnu::always_inline]] static Lanes shuffle(Lanes a, Lanes b) {
     return Lanes(__builtin_shufflevector(a.v, b.v, index...));
   }
 
-  /// Lane l of the result is lane l + by, around the end.
+  /// Lane l of the result is lane l + by, wrapping around.
   template <int by>
   [[gnu::always_inline]] Lanes rotated() const {
     return [this]<int... lane>(std::integer_sequence<int, lane...>) {
@@ -101,7 +101,7 @@ struct Lanes {
   [[gnu::always_inline]] Half upper() const { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
 
 #if defined(__AVX2__)
-  /// Lane l of the result is lane index[l], of eight floats.
+  /// Lane l of the result is lane index[l]; for eight floats.
   [[gnu::always_inline]] Lanes permuted(__m256i index) const {
     return Lanes(V(_mm256_permutevar8x32_ps(__m256(v), index)));
   }
@@ -129,13 +129,13 @@ struct Lanes {
   }
 };
 
-/// How many numbers T is.
+/// Number of numbers in T.
 template <class T>
 inline constexpr int kWidth = 1;
 template <class Real, int width, class Isa>
 inline constexpr int kWidth<Lanes<Real, width, Isa>> = width;
 
-/// Whether T has permuted(): one instruction, which the narrower sets lack.
+/// Whether T has permuted(), an instruction that the narrower sets lack.
 template <class T>
 inline constexpr bool kPermutes = false;
 #if defined(__AVX2__)
@@ -143,7 +143,7 @@ template <class Isa>
 inline constexpr bool kPermutes<Lanes<float, 8, Isa>> = true;
 #endif
 
-/// From and to any address of numbers.
+/// Loads from and stores to any address of numbers.
 template <class T, class Real>
 [[gnu::always_inline]] inline T load(const Real* from) {
   T t;
@@ -167,7 +167,7 @@ template <class F>
 inline constexpr int kPackedLanes = 1;
 inline constexpr std::uint32_t kPacked[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-/// Where the particle at a place of the packed layout is.
+/// The particle at a place of the packed layout.
 template <class Real, class Number>
 [[gnu::always_inline]] inline Real* particle(Real* x, Number place) {
   return x + 4 * static_cast<std::size_t>(place);
@@ -177,7 +177,7 @@ template <class Real>
   return x + slot.number;
 }
 
-/// T holds the x y z 0 of one particle, or of two.
+/// Loads x y z 0 of one particle, or of two, into T.
 template <class T, class Real, class Number>
 [[gnu::always_inline]] inline T load_particles(const Real* x, const Number* place) {
   if constexpr (kWidth<T> == 4)
@@ -196,7 +196,7 @@ template <class T, class Real, class Number>
   }
 }
 
-/// The x, y and z of 4 or 8 particles: lane l is that of p[l % 4], of its half l / 4.
+/// x, y and z of 4 or 8 particles: lane l is that of p[l % 4], in its half l / 4.
 template <class T>
 [[gnu::always_inline]] inline Vec3T<T> transposed(const T (&p)[4]) {
   if constexpr (kWidth<T> == 4) {
@@ -216,7 +216,7 @@ template <class T>
             T::template shuffle<0, 1, 8, 9, 4, 5, 12, 13>(z01, z23)};
   }
 }
-/// The way back.
+/// Inverse of transposed().
 template <class T>
 [[gnu::always_inline]] inline void transpose(const Vec3T<T>& t, T (&p)[4]) {
   const T none(0.0);
@@ -240,7 +240,7 @@ template <class T>
     p[3] = T::template shuffle<2, 3, 10, 11, 6, 7, 14, 15>(xy23, z23);
   }
 }
-/// kWidth<T> packed particles, wherever they are.
+/// Loads kWidth<T> packed particles from anywhere.
 template <class T, class Real, class Number>
 [[gnu::always_inline]] inline Vec3T<T> gather_packed(const Real* x, const Number* place) {
   if constexpr (kWidth<T> == 1) {
@@ -252,7 +252,7 @@ template <class T, class Real, class Number>
     return transposed(p);
   }
 }
-/// The way back.
+/// Inverse of gather_packed().
 template <class T, class Real, class Number>
 [[gnu::always_inline]] inline void scatter_packed(Real* x, const Number* place,
                                                   const Vec3T<T>& to) {
@@ -267,7 +267,7 @@ template <class T, class Real, class Number>
     four_times([&](auto l) { store_particles(x, place + l, p[l]); });
   }
 }
-/// kWidth<T> particles, one after the other: packed, or of one vector of an interleaved sheet.
+/// Loads kWidth<T> successive particles: packed, or from one vector of an interleaved sheet.
 template <class T, int lanes, class Real>
 [[gnu::always_inline]] inline Vec3T<T> load_vec3(const Real* x) {
   if constexpr (lanes == kPackedLanes)

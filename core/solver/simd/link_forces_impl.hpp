@@ -1,6 +1,7 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include <cmath>
 #include <cstring>
@@ -12,14 +13,14 @@
 
 namespace taut {
 
-/// With kTinyLength, as in distance.hpp: a link of length 0 does not pull.
+/// Length with kTinyLength, as in distance.hpp: a link of length 0 does not pull.
 template <class T>
 [[gnu::always_inline]] inline T length_of(const Vec3T<T>& way) {
   using std::sqrt;
   return sqrt(squared_norm(way) + T(kTinyLength * kTinyLength));
 }
 
-/// The force of lanes l, l + 1, .. of a slot on its vertices [N]; way: from there to the other end.
+/// Force of lanes l, l + 1, .. of a slot on its vertices [N]; way: from there to the other end.
 /// Both ends compute the same bits of it, and of what they keep.
 ///
 ///     k (n - r) u
@@ -30,7 +31,7 @@ template <class T, class Real>
   return load<T>(slot.stiffness + l) * beyond / length * way;
 }
 
-/// The same of a link with a multiplier, as admm.cpp has it, which becomes u'; z has gone from it:
+/// Force of a link with a multiplier, as in admm.cpp; the multiplier becomes u'. z is eliminated:
 ///
 ///     p = d + u,   u' = p - z = (|p| - r)/(1 + k/K) p/|p|,   k (d - (z - u')) = k (2 u' - u)
 template <class T, class Real>
@@ -47,7 +48,8 @@ template <class T, class Real>
   return load<T>(slot.stiffness + l) * (next + next - u);
 }
 
-/// Of all links of lanes l, l + 1, .. of group g at x, in the order of their slots.
+/// Sum of the forces of all links in lanes l, l + 1, .. of group g at x, in the order of their
+/// slots.
 template <class T, class Slot, class Real>
 [[gnu::always_inline]] inline Vec3T<T> force_of_links(const VertexGroup& group, Slot* slots, int l,
                                                       const Real* x, const Vec3T<T>& at) {
@@ -57,7 +59,7 @@ template <class T, class Slot, class Real>
   return sum;
 }
 
-/// Numbers of packed particles in double: x y z 0 of those of lanes l, l + 1, ..
+/// Stores x y z 0 of the packed particles in lanes l, l + 1, .. in double.
 template <class T, class Real>
 [[gnu::always_inline]] inline void store_rows(double* rows, const PackedSlot* at,
                                               const Vec3T<T>& to) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include <cstddef>
 #include <cstring>
@@ -11,7 +12,7 @@
 
 namespace taut {
 
-/// What one lane after the other makes of `all`.
+/// Folds the lanes of `all` with f, one after another.
 template <class T, class Real, class F>
 [[gnu::always_inline]] inline Real over_lanes(const T& all, const F& f) {
   Real numbers[kWidth<T>];
@@ -21,12 +22,13 @@ template <class T, class Real, class F>
   return result;
 }
 
-/// Of packed particles, x y z 0 after x y z 0: as they lie there, in vectors of whole particles.
+/// Bounds of the motion of packed particles, read as they lie there (x y z 0 after x y z 0), in
+/// vectors of whole particles.
 template <class T, class Real>
 MotionBox<Real> packed_motion_box(const ParticleSpan<Real>& span, const Real* then,
                                   std::size_t begin, std::size_t end) {
   const Real* const x = span.x;
-  const std::size_t last = 4 * span.particles - kWidth<T>;  // what is seen twice changes nothing
+  const std::size_t last = 4 * span.particles - kWidth<T>;  // reading one twice changes nothing
   const std::size_t part_end = 4 * kLanes * end;
   T least = load<T>(x) - load<T>(then), most = least;
   for (std::size_t i = 4 * kLanes * begin; i < part_end && i < last + kWidth<T>; i += kWidth<T>) {

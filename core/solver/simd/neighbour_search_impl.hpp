@@ -1,13 +1,14 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
 
 namespace taut {
 
-/// A bit for each of the first `count` lanes, or for all.
+/// Mask with a bit for each of the first `count` lanes, or for all lanes.
 template <class T>
 [[gnu::always_inline]] inline std::uint32_t first_lanes(std::uint32_t count) {
   constexpr std::uint32_t width = kWidth<T>;
@@ -15,7 +16,7 @@ template <class T>
   return (1u << (count < width ? count : width)) - 1;
 }
 
-/// Writes blocks of the particles of so many buckets; where the next goes.
+/// Writes blocks of the particles in `count` buckets. Returns where the next block goes.
 template <class T, class Real>
 [[gnu::always_inline]] inline SearchBlock* write_blocks(const NeighbourSearch<Real>& q,
                                                         std::uint32_t bucket, std::uint32_t count,
@@ -29,8 +30,8 @@ template <class T, class Real>
   return to;
 }
 
-/// Writes what all particles of a cell are compared with besides those of the cell itself and of
-/// the next, which mostly follow on them; where these end.
+/// Writes blocks of what all particles of a cell are compared with, besides those of the cell
+/// itself and of the next, which mostly follow directly. Returns the end of these.
 template <class T, class Real>
 [[gnu::always_inline]] inline std::uint32_t write_surroundings(const NeighbourSearch<Real>& q,
                                                                std::uint32_t bucket,
@@ -43,7 +44,8 @@ template <class T, class Real>
   return q.particles;
 }
 
-/// The particle whose neighbours are looked for, in every lane; not `moving`: none has moved.
+/// The particle whose neighbours are searched for, in every lane. moving: false if no particle has
+/// moved.
 template <class T, bool moving>
 struct Query {
   Vec3T<T> now, moved, rest;
@@ -58,7 +60,7 @@ struct Query {
     if constexpr (moving) moved = spread(q.moved, k);
   }
 
-  /// Which of those from m on are near it.
+  /// Mask of the particles from m on that are near it.
   template <class Real>
   [[gnu::always_inline]] std::uint32_t near(const NeighbourSearch<Real>& q, std::uint32_t m) const {
     const T gap2 = squared_norm(now - lanes(q.now, m));
@@ -82,7 +84,7 @@ struct Query {
   }
 };
 
-/// q: a copy, which nothing that is written changes.
+/// q is a copy, which nothing that is written changes.
 template <class T, bool moving, class Real>
 std::size_t find_pairs(const NeighbourSearch<Real> q, std::uint32_t& next, std::uint32_t last) {
   CandidatePair* found = q.found;

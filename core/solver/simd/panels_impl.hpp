@@ -1,6 +1,7 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include <cstring>
 #include <utility>
@@ -10,8 +11,9 @@
 
 namespace taut {
 
-/// [columns][side] of the rows below, u = l d and l, each column one after the other; then the
-/// update loses sum u_i l_j over the columns, in their order: no sum runs over lanes.
+/// Factors a panel. Makes u = l d and l of the rows below, [columns][side] each, column after
+/// column; then subtracts sum u_i l_j over the columns, in their order, from the update. No sum
+/// runs over lanes.
 template <class T>
 bool eliminate(double* panel, std::size_t columns, std::size_t rows, double* update,
                std::size_t side, double* scratch) {
@@ -65,7 +67,7 @@ template <int count, class F>
   (std::make_integer_sequence<int, count>{});
 }
 
-/// Four numbers of a row; T keeps what one instruction set compiles apart from another's.
+/// Four numbers of a row. T separates the code of one instruction set from that of another.
 template <class T>
 struct RowOf {
   using V [[gnu::vector_size(4 * sizeof(double))]] = double;
@@ -122,7 +124,7 @@ template <class T, int columns>
   });
 }
 
-/// L, D and L^T of four right-hand sides beside each other.
+/// Solves with L, D and L^T for four right-hand sides, which lie side by side.
 template <class T>
 void solve_panels(const PanelSolve& solve, double* x) {
   static_assert(kWidestPanel == 4);

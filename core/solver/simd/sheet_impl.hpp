@@ -1,6 +1,7 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include <type_traits>
 
@@ -10,7 +11,8 @@
 
 namespace taut {
 
-/// Rigid links, all alike: at(row, vector)(l) says of the lanes from l on what move_ends() asks.
+/// Rigid links of one length. at(row, vector)(l) is the excess of the lanes from l on, which
+/// move_ends() asks for.
 template <class T, Projection kind>
 struct RigidLinks {
   T rest;
@@ -22,7 +24,7 @@ struct RigidLinks {
   }
 };
 
-/// Compliant ones, each with a multiplier.
+/// Compliant links, each with a multiplier.
 template <class T, int lanes, class Real>
 struct CompliantLinks {
   T rest, keep;
@@ -46,7 +48,7 @@ struct CompliantLinks {
   }
 };
 
-/// All links between two vectors of an interleaved sheet.
+/// Projects all links between two vectors of an interleaved sheet.
 template <class T, int lanes, class Real, class Shares, class Excess>
 [[gnu::always_inline]] inline void project_vectors(Real* a, Real* b, const Shares& shares,
                                                    const Excess& excess_of) {
@@ -59,7 +61,7 @@ template <class T, int lanes, class Real, class Shares, class Excess>
   }
 }
 
-/// The same at the end of the lanes' strips: lane l of a is linked with lane l + 1 of b.
+/// Projects the links at the end of the lanes' strips: lane l of a is linked with lane l + 1 of b.
 template <class T, int lanes, class Real, class Shares, class Excess>
 [[gnu::always_inline]] inline void project_shifted(Real* a, Real* b, const Shares& shares,
                                                    const Excess& excess_of) {
@@ -77,8 +79,8 @@ template <class T, int lanes, class Real, class Shares, class Excess>
   }
 }
 
-/// Calls f(i) for those of [begin, end) that are of this pass of two: i and i + lag are in
-/// different ones. Lag 0: for all.
+/// Calls f(i) for every i of [begin, end) that belongs to this pass of two: i and i + lag belong to
+/// different passes. Lag 0: for every i.
 template <int lag, class F>
 [[gnu::always_inline]] inline void in_pass(int pass, int begin, int end, const F& f) {
   if constexpr (lag == 0)
@@ -91,10 +93,10 @@ template <int lag, class F>
 }
 
 /// Calls f(j, at_end, vectors) for the links of rows [begin, end) of a direction in the order of
-/// the sweep, where vectors(g) calls g(k) for some of the vectors of row j. Rows of a pass have no
-/// particle in common, vectors of a row may: those at the end of the lanes' strips (at_end, a
-/// constant) come after the others of their pass, but of all rows, so that few projections wait for
-/// the one before.
+/// the sweep, where vectors(g) calls g(k) for some of the vectors of row j. Rows of a pass share no
+/// particle, but vectors of a row may. Those at the end of the lanes' strips (at_end, a constant)
+/// come after all others of their pass, over all rows, so that few projections wait for the one
+/// before.
 template <int columns, int rows, class F>
 [[gnu::always_inline]] inline void visit_direction(int all_vectors, int begin, int end,
                                                    const F& f) {
@@ -114,7 +116,7 @@ template <int columns, int rows, class F>
   }
 }
 
-/// Calls f(columns, rows, direction) for each: how far its links reach, as constants.
+/// Calls f(columns, rows, direction) for each direction, with the reach of its links as constants.
 template <class Real, class F>
 [[gnu::always_inline]] inline void visit_directions(const SheetSweep<Real>& sweep, const F& f) {
   constexpr std::integral_constant<int, 0> none;
@@ -131,8 +133,8 @@ template <class Real, class F>
   }
 }
 
-/// Rows [begin, end) of the links of one direction; ends: shares of a link. By itself, so that what
-/// it needs stays in registers.
+/// Sweeps over rows [begin, end) of the links of one direction. ends: number of shares of a link.
+/// Not inlined, so that everything it needs stays in registers.
 template <class T, int lanes, int ends, int columns, int rows, class Links, class Real>
 [[gnu::noinline]] void sweep_direction(const SheetDirection<Real> d, const Links links,
                                        Real* const x, int vectors, std::size_t stride, int begin,

@@ -11,7 +11,7 @@ struct Ball;
 struct Box;
 struct Capsule;
 
-/// The place of a surface to which a point belongs: the half-space normal . x >= offset.
+/// The half-space normal . x >= offset that touches a surface where a point belongs to it.
 template <class T, class Normal = Vec3T<T>>
 struct Tangent {
   Normal normal;
@@ -23,25 +23,25 @@ template <class Mask, class T>
   return {select(mask, yes.normal, no.normal), select(mask, yes.offset, no.offset)};
 }
 
-/// Where a path meets a solid; `tangent` means something only where `hits`.
+/// Where a path meets a solid; `tangent` is valid only where `hits`.
 template <class T>
 struct Entry {
   decltype(T() < T()) hits;
   Tangent<T> tangent;
 };
 
-// Colliders at one moment, as the contact loops want them: closed forms in the solver's own
-// precision, for a point or one in every lane. surface() of core/model/collider.hpp is their
+// Colliders at one moment, in the form that the contact loops need: closed forms in the solver's
+// own precision, for a point or one in every lane. surface() of core/model/collider.hpp is their
 // oracle.
 //
 //   clear(x, t)       quick and conservative: true only if x is at least t from the surface
-//   beyond(x, w2, t)  the same for all of a path that ends in x and whose squared length is w2
+//   beyond(x, w2, t)  the same for a whole path that ends in x and whose squared length is w2
 //   misses(from, to)  quick and conservative: true only if entry(from, to) hits nothing
 //   nearest(x)        tangent at the surface point nearest to x
 //   entry(from, to)   tangent where a straight path first meets the solid; the one nearest to
 //                     `from` if it starts inside
 
-/// The normal (0, 1, 0), known when compiling: what multiplies by its zeros is left out.
+/// The normal (0, 1, 0) as a compile-time constant: multiplications by its zeros are left out.
 struct Up {};
 template <class T>
 [[gnu::always_inline]] inline T dot(Up, const Vec3T<T>& a) {
@@ -55,7 +55,7 @@ template <class T>
 [[gnu::always_inline]] inline Vec3T<T> add_along(const Vec3T<T>& a, T by, const Vec3T<T>& normal) {
   return a + by * normal;
 }
-/// The part of `a` that lies in the surface.
+/// The part of `a` that is tangential to the surface.
 template <class T>
 [[gnu::always_inline]] inline Vec3T<T> across(const Vec3T<T>& a, Up) {
   return {a.x, T(0), a.z};
@@ -80,7 +80,7 @@ struct LevelPlaneSurface {
   }
 };
 
-/// A half-space has no other side to pass to: nearest() says all.
+/// A half-space has no other side to pass to, so nearest() is enough.
 template <class Real>
 struct PlaneSurface {
   using Shape = Plane;
@@ -99,25 +99,26 @@ struct PlaneSurface {
   }
 };
 
-/// The sphere of a ball, or the one of a capsule that a point or a path has to do with; one in
+/// The sphere of a ball, or the sphere of a capsule that matters for a point or a path; one in
 /// every lane.
 template <class T>
 struct SphereSurface {
   Vec3T<T> center;
   T radius;         ///< m
-  Vec3T<T> beside;  ///< the normal at its centre
+  Vec3T<T> beside;  ///< normal at the centre
 
   [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
     const T reach = radius + thickness;
     return squared_norm(x - center) >= reach * reach;
   }
-  /// Farther away than reach + way, without the roots and by more than they would be rounded.
+  /// Farther away than reach plus path length, without the roots and with a margin for their
+  /// rounding.
   [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
     const T reach = radius + thickness, reach2 = reach * reach;
     const T more = squared_norm(x - center) - reach2 - way2;
     return more >= T(0) && more * more >= T(4.001) * reach2 * way2;
   }
-  /// Both ends lie beyond the plane that touches the sphere towards `from`.
+  /// Whether both ends lie beyond the plane that touches the sphere towards `from`.
   [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
     const Vec3T<T> a = from - center;
     const T aa = squared_norm(a), ab = dot(a, to - center);
@@ -183,14 +184,14 @@ struct BallSurface {
   }
 };
 
-/// Every place of its surface is one of a sphere about a point of its axis.
+/// A capsule: every point of its surface is on a sphere about a point of its axis.
 template <class Real>
 struct CapsuleSurface {
   using Shape = Capsule;
-  Vec3T<Real> start, along;  ///< m, one end of the axis, and from there to the other
-  Real per_length2;          ///< 1/m^2, 1 / along . along; 0 if it has no length
+  Vec3T<Real> start, along;  ///< m, one end of the axis, and the vector to the other
+  Real per_length2;          ///< 1/m^2, 1 / along . along; 0 if the axis has no length
   Real radius;               ///< m
-  Vec3T<Real> beside;        ///< unit, across the axis
+  Vec3T<Real> beside;        ///< unit vector across the axis
 
   template <class T>
   [[gnu::always_inline]] auto clear(const Vec3T<T>& x, T thickness) const {
@@ -200,7 +201,7 @@ struct CapsuleSurface {
   [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
     return nearest_sphere(x).beyond(x, way2, thickness);
   }
-  /// The plane that touches the sphere nearest to `from` touches the whole capsule.
+  /// Tests the sphere nearest to `from`: the plane that touches it there touches the whole capsule.
   template <class T>
   [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
     return nearest_sphere(from).misses(from, to);
@@ -228,10 +229,10 @@ struct CapsuleSurface {
   [[gnu::always_inline]] SphereSurface<T> nearest_sphere(const Vec3T<T>& x) const {
     return sphere_at(share_of(x - spread_out<T>(start)));
   }
-  /// The sphere by which a straight path comes in. A path from outside the endless cylinder about
-  /// the axis enters that first: there, if it is between the ends, else by the end to that side,
-  /// for on its way to the other it would be inside. One from within the cylinder has only the
-  /// end that is nearest to it.
+  /// The sphere through which a straight path enters. A path from outside the infinite cylinder
+  /// about the axis first enters that cylinder. If it does so between the ends, it is there;
+  /// otherwise it is at the end on that side, because on its way to the other end it would be
+  /// inside. A path from within the cylinder can only enter at the end nearest to it.
   template <class T>
   [[gnu::always_inline]] SphereSurface<T> entered_sphere(const Vec3T<T>& from,
                                                          const Vec3T<T>& to) const {
@@ -254,7 +255,7 @@ template <class Real, bool along_axes>
 struct AnyBoxSurface {
   using Shape = Box;
   Vec3T<Real> center, half;
-  Vec3T<Real> axes[3];  ///< the box's own, in the world
+  Vec3T<Real> axes[3];  ///< axes of the box in world coordinates
   Real far;             ///< m, from the centre to a corner
 
   bool is_aligned() const {
@@ -272,21 +273,21 @@ struct AnyBoxSurface {
     const T reach = T(far) + thickness;
     return squared_norm(out) >= reach * reach || largest(excess(turned(out))) >= thickness;
   }
-  /// clear(), and also where x is over an edge or a corner and only less than that beyond each of
-  /// its sides.
+  /// clear(), and also true where x is over an edge or a corner, at least `thickness` away but less
+  /// than that beyond each side.
   bool apart(const Vec3T<Real>& x, Real thickness) const {
     const Vec3T<Real> past = excess(local(x));
     const Vec3T<Real> out{greater(past.x, Real(0)), greater(past.y, Real(0)),
                           greater(past.z, Real(0))};
     return clear(x, thickness) || (largest(past) > 0 && squared_norm(out) >= thickness * thickness);
   }
-  /// Farther than the way beyond one side.
+  /// Farther beyond one side than the path is long.
   template <class T>
   [[gnu::always_inline]] auto beyond(const Vec3T<T>& x, T way2, T thickness) const {
     const T more = largest(excess(local(x))) - thickness;
     return more >= T(0) && more * more >= T(1.001) * way2;
   }
-  /// Both ends lie beyond the same side.
+  /// Whether both ends lie beyond the same side.
   template <class T>
   [[gnu::always_inline]] auto misses(const Vec3T<T>& from, const Vec3T<T>& to) const {
     const Vec3T<T> a = local(from), b = local(to), h = spread_out<T>(half);
@@ -308,8 +309,8 @@ struct AnyBoxSurface {
   [[gnu::always_inline]] Entry<T> entry(const Vec3T<T>& from, const Vec3T<T>& to) const {
     const Vec3T<T> a = local(from), d = turned(to - from);
     const auto inside = largest(excess(a)) <= T(0);
-    // The path is inside the slab between two faces from `enters` to `leaves`; where it runs along
-    // them it is so for ever or never.
+    // The path is inside the slab between two faces from `enters` to `leaves`. Where it runs along
+    // them, it is inside for ever or never.
     constexpr Real kEver = std::numeric_limits<Real>::max();
     T in(-kEver), out(1);
     Tangent<T> side = face(0, T(1));
@@ -354,7 +355,7 @@ struct AnyBoxSurface {
     return {sum(axes[0].x, axes[1].x, axes[2].x), sum(axes[0].y, axes[1].y, axes[2].y),
             sum(axes[0].z, axes[1].z, axes[2].z)};
   }
-  /// Beyond each pair of faces; negative between them.
+  /// Distance beyond each pair of faces; negative between them.
   template <class T>
   [[gnu::always_inline]] Vec3T<T> excess(const Vec3T<T>& at) const {
     return {magnitude(at.x) - T(half.x), magnitude(at.y) - T(half.y), magnitude(at.z) - T(half.z)};
@@ -374,7 +375,7 @@ struct AnyBoxSurface {
     const Vec3T<T> normal = sign * spread_out<T>(axes[axis]);
     return {normal, dot(normal, spread_out<T>(center)) + T(most[axis])};
   }
-  /// Out of the nearest face; from outside, over that face and no other, away from it.
+  /// The half-space of the nearest face; from outside, over a single face, that face's.
   template <class T>
   [[gnu::always_inline]] Tangent<T> over_face(const Vec3T<T>& at, const Vec3T<T>& past) const {
     const auto sign = [](T v) __attribute__((always_inline)) {
@@ -383,7 +384,7 @@ struct AnyBoxSurface {
     const Tangent<T> xy = select(past.y > past.x, face(1, sign(at.y)), face(0, sign(at.x)));
     return select(past.z > greater(past.x, past.y), face(2, sign(at.z)), xy);
   }
-  /// From outside, away from the nearest point, of an edge or corner.
+  /// From outside, the half-space at the nearest point of an edge or corner.
   template <class T>
   [[gnu::always_inline]] Tangent<T> over_corner(const Vec3T<T>& at) const {
     const Vec3T<T> h = spread_out<T>(half);
@@ -399,7 +400,7 @@ struct AnyBoxSurface {
 
 template <class Real>
 using BoxSurface = AnyBoxSurface<Real, false>;
-/// One whose axes are the world's.
+/// A box whose axes are the world's.
 template <class Real>
 using AlignedBoxSurface = AnyBoxSurface<Real, true>;
 

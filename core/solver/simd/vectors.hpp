@@ -13,7 +13,7 @@ struct Vec3T {
   T x, y, z;
 };
 
-/// The point of three numbers that stand one after the other.
+/// The point whose three numbers follow one another at `at`.
 template <class T>
 [[gnu::always_inline]] inline Vec3T<T> point_at(const T* at) {
   return {at[0], at[1], at[2]};
@@ -55,8 +55,8 @@ template <class T>
   return sqrt(squared_norm(a));
 }
 
-// Decisions, lane by lane: a bool is the mask of a number. Lanes bring masks of their own; && and
-// || of those evaluate both sides, so code for any width must divide by nothing that may be zero.
+// Decisions, lane by lane: a bool is the mask of a number. Lanes have masks of their own, whose &&
+// and || evaluate both sides, so code for any width must not divide by what may be zero.
 [[gnu::always_inline]] inline bool any(bool mask) { return mask; }
 [[gnu::always_inline]] inline unsigned bits(bool mask) { return mask ? 1 : 0; }
 template <class Real>
@@ -80,13 +80,13 @@ template <class T>
   return select(a < T(0), T(0) - a, a);
 }
 
-/// The same in every lane.
+/// The same point in every lane.
 template <class T, class Real>
 [[gnu::always_inline]] inline Vec3T<T> spread_out(const Vec3T<Real>& a) {
   return {T(a.x), T(a.y), T(a.z)};
 }
 
-/// x, y, z and a fourth number, at once: a packed particle as it lies in memory.
+/// x, y, z and a fourth number at once: a packed particle as it lies in memory.
 template <class Real>
 struct Vec4T {
   using V [[gnu::vector_size(4 * sizeof(Real))]] = Real;
@@ -99,7 +99,7 @@ struct Vec4T {
     return {a.v - b.v};
   }
   [[gnu::always_inline]] friend Vec4T operator*(Real s, const Vec4T& a) { return {s * a.v}; }
-  /// Of x, y, z; the same bits as of Vec3T.
+  /// Over x, y, z only; the same bits as for Vec3T.
   [[gnu::always_inline]] friend Real dot(const Vec4T& a, const Vec4T& b) {
     const V product = a.v * b.v;
     return product[0] + (product[1] + product[2]);
@@ -113,13 +113,13 @@ struct Vec4T {
   }
 };
 
-/// Which number the x of a packed particle is: four times its place, with nothing to compute where
-/// much is gathered.
+/// Index of the number that is the x of a packed particle: four times its place, so that gathering
+/// has nothing to compute.
 struct PackedSlot {
   std::uint32_t number;
 };
 
-/// Where the particle at a slot is (layout/particles.hpp); packed: `stride` is 1.
+/// Loads the particle at a slot (layout/particles.hpp); packed: `stride` is 1.
 template <bool packed, class Real>
 [[gnu::always_inline]] inline Vec4T<Real> load_vec4(const Real* x, std::size_t stride) {
   Vec4T<Real> q;

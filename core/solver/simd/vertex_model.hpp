@@ -11,13 +11,13 @@ template <class T>
   return select(a > T(0), a, T(0));
 }
 
-/// An energy of one vertex, all others held, to second order around where it is: the force on it
+/// Energy of one vertex, with all others held, to second order around its position: the force on it
 /// and its Hessian, for every width and precision.
 template <class T>
 struct VertexModel {
   Vec3T<T> force{T(0), T(0), T(0)};                                    ///< N
   T xx = T(0), yy = T(0), zz = T(0), xy = T(0), xz = T(0), yz = T(0);  ///< N/m
-  T isotropic = T(0);  ///< N/m, H has it times I, too
+  T isotropic = T(0);  ///< N/m, adds to H that number times I
 
   /// Adds s u u^T.
   [[gnu::always_inline]] void add_along(T s, const Vec3T<T>& u) {
@@ -29,7 +29,7 @@ struct VertexModel {
     xz += su.x * u.z;
     yz += su.y * u.z;
   }
-  /// Before what reads the whole Hessian: adds `isotropic` to its diagonal.
+  /// Adds `isotropic` to the diagonal. Call it before anything that reads the whole Hessian.
   [[gnu::always_inline]] void fold() {
     xx += isotropic;
     yy += isotropic;
@@ -48,8 +48,8 @@ struct VertexModel {
     return {xx * v.x + (xy * v.y + xz * v.z), xy * v.x + (yy * v.y + yz * v.z),
             xz * v.x + (yz * v.y + zz * v.z)};
   }
-  /// H^-1 force by L D L^T. H is `least` times I and something positive, so no element of D is less
-  /// than `least`, unless by rounding where links are a million times as stiff.
+  /// H^-1 force by L D L^T. H is `least` times I plus something positive, so no element of D is
+  /// less than `least`, except by rounding where links are a million times as stiff.
   [[gnu::always_inline]] Vec3T<T> minimum(T least) const {
     const T one(1), inverse_x = one / xx, lxy = xy * inverse_x, lxz = xz * inverse_x;
     const T inverse_y = one / greater(yy - lxy * xy, least);
@@ -61,7 +61,7 @@ struct VertexModel {
   }
 };
 
-/// A link seen from one end. With kTinyLength, as in distance.hpp, one of length 0 has the
+/// A link seen from one end. With kTinyLength, as in distance.hpp, a link of length 0 has the
 /// direction 0: it neither pulls nor stiffens.
 template <class T>
 struct LinkWay {
@@ -75,7 +75,7 @@ template <class T>
   return {length, inverse, inverse * way};
 }
 
-/// Lanes l, l + 1, .. of a slot; way: from the vertex to the link's other end.
+/// Adds the links in lanes l, l + 1, .. of a slot; way: from the vertex to the link's other end.
 ///
 ///     f += K C u,   H += K [ u u^T + max(0, C/n) (I - u u^T) ]
 template <class T, class Real>
@@ -89,13 +89,15 @@ template <class T, class Real>
   m.isotropic += across;
 }
 
-/// sqrt(1 - c^2): the norm of a column of I - u u^T, a projection.
+/// Norm of a column of the projection I - u u^T, whose entry of u is c: sqrt(1 - c^2).
 template <class T>
 [[gnu::always_inline]] inline T column_norm(T c) {
   using std::sqrt;
   return sqrt(not_negative(T(1) - c * c));
 }
 
+/// Adds links with a multiplier:
+///
 ///     F = k (C - alpha C_0) + l,   f += F u,   H += k u u^T + diag |columns of F (I - u u^T)/n|
 template <class T, class Real>
 [[gnu::always_inline]] inline void add_link(VertexModel<T>& m, const AugmentedSlot<Real>& slot,
@@ -112,8 +114,8 @@ template <class T, class Real>
   m.zz += turn * column_norm(link.u.z);
 }
 
-/// Of lanes l, l + 1, .. of group g at x: links in the order of their slots, so that every width
-/// gives the same bits.
+/// Model of the vertices in lanes l, l + 1, .. of group g at x. Links are added in the order of
+/// their slots, so that every width gives the same bits.
 template <class T, class Slot, class Real>
 [[gnu::always_inline]] inline VertexModel<T> vertex_model(const VertexSweep<Real>& v,
                                                           const Slot* slots, std::size_t g, int l,
@@ -122,7 +124,7 @@ template <class T, class Slot, class Real>
   VertexModel<T> m;
   for (std::uint32_t s = group.first_slot; s < group.end_slot; ++s)
     add_link(m, slots[s], l, gather_packed<T>(v.x, slots[s].other + l) - x);
-  if (v.damping > 0) {  // as published: of each vertex' own way
+  if (v.damping > 0) {  // as published: by each vertex' own displacement
     m.fold();
     const T damping(v.damping);
     const Vec3T<T> way = x - gather_packed<T>(v.previous, group.particle + l);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include "core/solver/simd/vertex_model.hpp"
 
@@ -19,8 +20,8 @@ void sweep_vertices(const VertexSweep<Real>& sweep, const Slot* slots, std::size
     }
 }
 
-/// Calls f(slot, l, length) for the lanes l, l + 1, .. of every slot of groups [begin, end), whose
-/// links have that length at `x`.
+/// Calls f(slot, l, length) for lanes l, l + 1, .. of every slot of groups [begin, end). length: of
+/// these links at `x`.
 template <class T, class Real, class F>
 [[gnu::always_inline]] inline void visit_slots(const AugmentedStep<Real>& step, const Real* x,
                                                std::size_t begin, std::size_t end, const F& f) {
@@ -34,7 +35,9 @@ template <class T, class Real, class F>
     }
 }
 
-///     l *= alpha gamma;   k = clamp(gamma k, k_min, k_max);   C_0 is the stretch at x_t
+/// At a substep's start, with the stretch C_0 at x_t:
+///
+///     l *= alpha gamma;   k = clamp(gamma k, k_min, k_max)
 template <class T, class Real>
 void begin_augmented(const AugmentedStep<Real>& step_in, std::size_t begin, std::size_t end) {
   const AugmentedStep<Real> step = step_in;
@@ -50,6 +53,8 @@ void begin_augmented(const AugmentedStep<Real>& step_in, std::size_t begin, std:
       });
 }
 
+/// After a sweep:
+///
 ///     l += k (C - alpha C_0);   k = min(k + beta |C - alpha C_0|, k_max)
 template <class T, class Real>
 void augment(const AugmentedStep<Real>& step_in, std::size_t begin, std::size_t end) {

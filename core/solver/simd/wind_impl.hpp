@@ -1,14 +1,15 @@
 #pragma once
 
-// Included by kernels_impl.hpp, once for each instruction set; its rules hold here, too.
+// Included by kernels_impl.hpp, whose rules apply here, too; compiled once for each instruction
+// set.
 
 #include "core/solver/simd/kernels.hpp"
 #include "core/solver/simd/lanes.hpp"
 
 namespace taut {
 
-/// The force on each corner of a face [N]: wind_on_corner() of core/model/wind.hpp. `moved`: the
-/// sum of the corners' motions [m]. Nothing without an area or where there is no face.
+/// Force on each corner of a face [N]: wind_on_corner() of core/model/wind.hpp. moved: sum of the
+/// corners' motions [m]. The force is 0 on a face without area and where there is no face.
 template <class T, class Mask, class Real>
 [[gnu::always_inline]] inline Vec3T<T> wind_on_corner(const WindStep<Real>& wind,
                                                       const Vec3T<T>& twice_area,
@@ -25,7 +26,8 @@ template <class T>
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// The four corners of the quads of one vector; each lane splits its quad along one diagonal.
+/// Wind on the quads of one vector, given by their corners; each lane splits its quad along one
+/// diagonal.
 ///
 ///     0 - 1     along 02: faces 012 and 023, both with corners 0 and 2
 ///     |   |     along 13: faces 123 and 130
@@ -57,7 +59,7 @@ template <class T, int lanes, class Real>
   });
 }
 
-/// Rows [begin, end) of the quads of an interleaved sheet.
+/// Wind on rows [begin, end) of the quads of an interleaved sheet.
 template <class T, int lanes, class Real>
 void wind_on_sheet(const WindStep<Real>& wind_in, const SheetFaces<Real>& faces_in, int begin,
                    int end) {
@@ -83,7 +85,7 @@ void wind_on_sheet(const WindStep<Real>& wind_in, const SheetFaces<Real>& faces_
   }
 }
 
-/// Faces of packed particles, in their order.
+/// Wind on faces of packed particles, in their order.
 template <class T, class Real>
 void wind_on_faces(const WindStep<Real>& wind_in, std::span<const FaceBatch<Real>> batches) {
   const WindStep<Real> wind = wind_in;  // a copy, which no store changes

@@ -9,18 +9,20 @@ namespace taut {
 enum class AssertionVerdict { holds, holds_if, does_not_hold, cannot_be_tested };
 std::string_view to_string(AssertionVerdict);
 
-/// What a publication asserts of a solver, and what became of it here.
+/// An assertion of a publication about a solver, and its verdict here.
 struct Assertion {
-  std::string_view source;     ///< "Macklin et al., Small Steps in Physics Simulation, SCA 2019"
-  std::string_view place;      ///< where it says so, as far as its text was seen: "6.1", "Fig. 4"
-  std::string_view assertion;  ///< with its numbers as printed
+  std::string_view source;  ///< "Macklin et al., Small Steps in Physics Simulation, SCA 2019"
+  /// Where the publication says so, as far as its text was seen: "6.1", "Fig. 4".
+  std::string_view place;
+  std::string_view assertion;  ///< the assertion, with its numbers as printed
   AssertionVerdict verdict;
-  std::string_view because;      ///< the condition, the figure, or why it cannot be tested
-  std::string_view truth;        ///< by name: `taut verify` holds the verdict to it; "": none can
-  std::string_view figure = "";  ///< how the truth's number that is quoted begins; "": the first
+  std::string_view because;  ///< condition, figure, or why it cannot be tested
+  /// Name of the truth to which `taut verify` holds the verdict; "": none can.
+  std::string_view truth;
+  std::string_view figure = "";  ///< beginning of the truth's number to quote; "": the first
 };
 
-/// All of them, source by source.
+/// All assertions, source by source.
 const std::vector<Assertion>& assertions();
 
 std::span<const Assertion> assertions_of_vasilovici();

@@ -14,8 +14,8 @@ std::string figure_text(const Finding& f) {
                           : formatted(" (%.4g +- %.3g)", f.expected, f.tolerance));
 }
 
-/// What speaks for an assertion: a number that breaks it, else the first that is measured and
-/// begins so.
+/// The finding to quote for an assertion: one that breaks it, otherwise the first measured one
+/// whose quantity begins with this text.
 const Finding* beginning_with(const std::vector<Finding>& findings, std::string_view begins) {
   const Finding* told = nullptr;
   for (const Finding& f : findings) {

@@ -10,17 +10,18 @@
 
 namespace taut {
 
-/// An assertion of a publication with the verdict that its truth has now.
+/// An assertion of a publication with the present verdict of its truth.
 struct JudgedAssertion {
   std::string source, section, assertion;
-  std::string verdict;  ///< to_string(AssertionVerdict), or "overturned": its truth is broken
-  std::string figure;  ///< of the truth: "jakobsen: RMS stretch 0.061 (0.06 +- 0.01)"; may be empty
+  std::string verdict;  ///< to_string(AssertionVerdict), or "overturned" if its truth is broken
+  /// Quoted from the truth: "jakobsen: RMS stretch 0.061 (0.06 +- 0.01)"; may be empty.
+  std::string figure;
 };
 
-/// The findings of a truth by name; nullptr: it was not checked.
+/// The findings of a truth by name; nullptr if it was not checked.
 using FindingsOf = std::function<const std::vector<Finding>*(std::string_view truth)>;
 
-/// Every assertion whose truth was checked, and those that no truth can hold.
+/// Every assertion whose truth was checked, and those for which there is no truth.
 std::vector<JudgedAssertion> judge_assertions(const FindingsOf&);
 
 }  // namespace taut
