@@ -50,10 +50,10 @@ class ClothMesher {
 
 /// How colliders are drawn.
 struct ColliderLook {
-  double inset =
-      0;  ///< m by which they are drawn smaller, so that they do not pierce cloth that lies on them
-  double rounding = 0;  ///< m: radius at the edges of a box, which would cut into coarse triangles
-                        ///< if they were sharp
+  /// m by which colliders are drawn smaller, so that they do not pierce cloth that lies on them.
+  double inset = 0;
+  /// m: radius of a box's edges, so that coarse triangles of cloth do not cut into them.
+  double rounding = 0;
   Vec3 centre = Vec3::Zero();  ///< a plane is drawn as a square patch around this point
   double reach = 1;            ///< m, half the side of that patch
   int segments = 72;           ///< of a full circle; flat faces get a proportional number

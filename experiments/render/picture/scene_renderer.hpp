@@ -53,14 +53,13 @@ LiveFigures live_figures(const Scene&, const State&, double t);
 /// Camera, ground and region of interest, shared by all runs and all moments of a picture or video.
 struct Placing {
   Vec3 up = Vec3::UnitY();
-  Camera camera;         ///< relative to the cloth's centroid if `follows`
-  bool follows = false;  ///< the camera moves with cloth that nothing holds
-  Vec3 centre =
-      Vec3::Zero();    ///< m, of the region of interest; relative to the centroid if `follows`
-  double radius = 1;   ///< m, of the region of interest
-  double ground = 0;   ///< m, height along up
-  double cell = 0.25;  ///< m between ground lines
-  double inset = 0;    ///< m by which colliders are drawn smaller
+  Camera camera;                    ///< relative to the cloth's centroid if `follows`
+  bool follows = false;             ///< the camera moves with cloth that nothing holds
+  Vec3 centre = Vec3::Zero();       ///< m, of the region of interest, relative as the camera is
+  double radius = 1;                ///< m, of the region of interest
+  double ground = 0;                ///< m, height along up
+  double cell = 0.25;               ///< m between ground lines
+  double inset = 0;                 ///< m by which colliders are drawn smaller
   const Collider* floor = nullptr;  ///< a level plane at rest, drawn as the ground
 
   /// The level ground below a point.
