@@ -45,7 +45,7 @@ struct EffectTrial {
 struct Requirement {
   Case full;
   std::vector<KeptQuantity> answers;  ///< answers that are kept
-  std::vector<double> values;         ///< of the full model; 0 for the shape
+  std::vector<double> values;         ///< their values in the full model; 0 for the shape
   /// Noise of each answer: its largest difference between any two of the full model and the
   /// variants of it that start with a rounding error.
   std::vector<double> noise;

@@ -46,7 +46,7 @@ std::vector<std::pair<std::string, std::string>> ran_by(const Store&, const std:
 
 /// Cost of a step of one build relative to another build's, timed in turns.
 struct BuildRatio {
-  std::string id;                                         ///< of the case
+  std::string id;                                         ///< id of the case
   std::string before, now;                                ///< builds
   std::string host, clock;                                ///< "cpu" or "wall"
   double low = 0, ratio = 0, high = 0;                    ///< now over before, with 95 % interval

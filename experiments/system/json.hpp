@@ -50,10 +50,11 @@ class JsonReader {
 
   JsonReader at(const char* key) const;  ///< throws if the object lacks the key
   std::optional<JsonReader> find(const char* key) const;
-  std::vector<JsonReader> items() const;  ///< of an array
+  std::vector<JsonReader> items() const;  ///< throws unless it is an array
   /// The items of an array; throws unless there are `count` of them.
   std::vector<JsonReader> items(std::size_t count) const;
-  std::vector<std::pair<std::string, JsonReader>> members() const;  ///< of an object
+  /// Throws unless it is an object.
+  std::vector<std::pair<std::string, JsonReader>> members() const;
 
   bool is_null() const { return json_->is_null(); }
   bool is_text() const { return json_->is_string(); }
