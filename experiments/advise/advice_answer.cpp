@@ -12,7 +12,7 @@ namespace taut {
 
 namespace {
 
-constexpr std::size_t kMostRefused = 4;  ///< printed unless all are asked for
+constexpr std::size_t kMostRefused = 4;  ///< printed unless all are requested
 
 std::string command(const AdviceWanted& wanted, const Advice& advice) {
   std::string text = "taut bench " + shell_word(wanted.scene);
@@ -26,7 +26,7 @@ std::string command(const AdviceWanted& wanted, const Advice& advice) {
   return text + (wanted.metric == kErrorMetric ? "" : " --metric " + wanted.metric);
 }
 
-/// The best setting, how sure it is, and the command that compares it again.
+/// Adds the best setting, its certainty, and the command that compares it again.
 void add_best(Answer& answer, const AdviceWanted& wanted, const Advice& advice) {
   const Recommendation& chosen = advice.recommendation;
   const Record& record = advice.best().record;
@@ -47,7 +47,7 @@ void add_best(Answer& answer, const AdviceWanted& wanted, const Advice& advice) 
   answer.add({"command", "compare again"}, command(wanted, advice));
 }
 
-/// How near anything came, where nothing meets the target.
+/// Adds the closest miss if nothing meets the target.
 void add_nearest(Answer& answer, const AdviceWanted& wanted, const Advice& advice) {
   const auto miss = [&](const Candidate& c) { return advice.target.error ? c.error : c.cost.mid; };
   const Candidate* nearest = nullptr;
@@ -69,8 +69,7 @@ void add_nearest(Answer& answer, const AdviceWanted& wanted, const Advice& advic
   answer.add({"quick_cost", "CPU time", wanted.frame()}, nearest->cost.mid);
 }
 
-/// A solver that was not among those timed at the end: the cells of its row up to the error, and
-/// why.
+/// Row of a solver that was not timed at the end: its cells up to the error, and the reason.
 std::vector<Cell> not_timed(const AdviceWanted& wanted, const Advice& advice,
                             const std::string& solver) {
   const auto refused = std::ranges::find(advice.unsupported, solver, &Refused::solver);
@@ -97,7 +96,8 @@ std::vector<Cell> not_timed(const AdviceWanted& wanted, const Advice& advice,
                     ": " + tried->failure};
 }
 
-/// Every solver's best beside the best of all; one that is missing there stands there with why.
+/// A table of every solver's best, compared with the best of all. A solver without one has a row
+/// with the reason.
 Table solvers_of(const AdviceWanted& wanted, const Advice& advice) {
   Table table{"solvers",
               advice.cut.empty() ? "every solver's best" : "the cheapest so far of each solver",
@@ -140,7 +140,7 @@ Table solvers_of(const AdviceWanted& wanted, const Advice& advice) {
   return table;
 }
 
-/// What is kept beside the error, and what the best makes of it.
+/// A table of the limits kept beside the error, and the values of the best setting.
 Table limits_of(const AdviceWanted& wanted, const Advice& advice) {
   Table table{"kept", "kept beside the error", {{"value"}, {"limit", "at most"}, {"best", "here"}}};
   const bool any = advice.recommendation.best.has_value();
@@ -182,7 +182,7 @@ Table tried_of(const AdviceWanted& wanted, const Advice& advice) {
   return table;
 }
 
-/// What was refused, a line each.
+/// A table of everything refused.
 Table refused_of(const Advice& advice) {
   Table table{"refused", "refused", {{"setting"}, {"why"}}};
   for (const auto& [solver, why] : advice.unsupported)

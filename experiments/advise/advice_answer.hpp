@@ -5,8 +5,8 @@
 
 namespace taut {
 
-/// The best setting, how sure it is, every solver's best beside it, and all that was refused or not
-/// done.
+/// The answer of `taut advise`: the best setting, its certainty, every solver's best, and
+/// everything that was refused or not done.
 Answer answer_of(const AdviceWanted&, const Advice&);
 
 }  // namespace taut

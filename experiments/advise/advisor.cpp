@@ -20,11 +20,15 @@ namespace taut {
 
 namespace {
 
-constexpr std::size_t kMostFinalists = 5;  ///< timed against each other
-constexpr double kSurelyDearer = 1.3;      ///< than a budget: more than a quick cost may be off
-constexpr double kFinalShare = 0.25;  ///< of the patience, kept from the search to time finalists
+constexpr std::size_t kMostFinalists = 5;  ///< most candidates that are timed against each other
+/// A setting whose quick cost exceeds the budget by this factor is certainly over it: quick costs
+/// are not that inaccurate.
+constexpr double kSurelyDearer = 1.3;
+/// Share of the patience kept for timing the finalists.
+constexpr double kFinalShare = 0.25;
 constexpr std::size_t kFewestFinalists = 2;
-constexpr int kFewestRounds = 2;  ///< with which finalists are timed where the time is short
+/// Fewest rounds in which finalists are timed if time is short.
+constexpr int kFewestRounds = 2;
 
 /// Searches, times the finalists and verifies the best, all within the patience.
 class Advisor {
@@ -56,35 +60,37 @@ class Advisor {
 
   SteadyClock::time_point at(double seconds) const { return after(start_, seconds); }
 
-  /// Wall time that timing and verifying the best `most` takes, by their quick costs [s].
+  /// Wall time for timing the best `most` candidates and verifying the winner, from their quick
+  /// costs [s].
   double seconds_of_final(std::size_t most, int rounds) const {
     double all = 0;
     const auto chosen = finalists(result_.tried, result_.target, most);
     const auto of = [&](const Candidate& c) {
-      const double run = c.cost.mid * duration_;  // a sample is a run at most
+      const double run = c.cost.mid * duration_;  // a sample is at most one run
       return run + 2 * rounds * (std::min(wanted_.seconds, run) + 5 * c.cost.mid * dt_);
     };
     for (const std::size_t i : chosen) all += of(result_.tried[i]);
-    // The control, its and the best's second session, and the best's second run with its metrics.
+    // The control; second sessions of the control and of the best; the second run of the best, with
+    // metrics.
     if (!chosen.empty())
       all += 3 * of(result_.tried[chosen.front()]) +
              2 * result_.tried[chosen.front()].cost.mid * duration_;
     return slowdown() * all;
   }
 
-  /// Wall over CPU time now, as others use the machine: the middle of all pilots, for a single one
-  /// is so short that to wait once makes it a hundred times as long.
+  /// Ratio of wall time to CPU time, as others use the machine. It is the median over all pilots,
+  /// since a pilot is so short that a single wait can make it a hundred times as long.
   double slowdown() const { return slowdowns_.empty() ? 1 : std::max(1.0, median(slowdowns_)); }
 
-  /// When the search has to end, so that there is time for the final; that makes do with less where
-  /// it would take a large share [s].
+  /// Time at which the search has to end to leave time for the final [s]. If a full final would
+  /// take a large share, a smaller one has to do.
   double end_of_search() const {
     return wanted_.patience - std::max(seconds_of_final(kFewestFinalists, kFewestRounds),
                                        std::min(seconds_of_final(kMostFinalists, wanted_.rounds),
                                                 kFinalShare * wanted_.patience));
   }
 
-  /// Physics and quick cost of a setting, run at most once; nothing when the time is up.
+  /// Physics and quick cost of a setting, run at most once. Nothing if time is up.
   std::optional<Candidate> evaluate(const std::string& text, double deadline) {
     const std::string setting = parse_solver(text).canonical();
     const auto known = std::ranges::find(result_.tried, setting, &Candidate::setting);
@@ -112,7 +118,7 @@ class Advisor {
     return found;
   }
 
-  /// Those that can run the scene.
+  /// The solvers that can run the scene.
   std::vector<std::string> supported() {
     std::vector<std::string> all;
     for (const std::string& solver : wanted_.solvers) {
@@ -132,7 +138,7 @@ class Advisor {
     return all;
   }
 
-  /// CPU s per simulated s of a few steps; nothing: it cannot be timed.
+  /// CPU s per simulated s, from a few steps; nothing if it cannot be timed.
   std::optional<double> quick_cost(const CaseSpec& spec) const {
     try {
       const Case one = make_case(spec);
@@ -142,8 +148,8 @@ class Advisor {
     }
   }
 
-  /// Whether any solver's cheapest setting may be within the budget. If none is, says what costs
-  /// most in the cheapest of all.
+  /// Whether the cheapest setting of any solver may be within the budget. If not, records the
+  /// cheapest of all and what it would cost without each effect.
   bool fits(const std::vector<std::string>& solvers) {
     std::optional<Candidate> least;
     for (const std::string& solver : solvers) {
@@ -169,8 +175,8 @@ class Advisor {
     return false;
   }
 
-  /// Every solver is searched before one is refined; each gets an equal share of the time that
-  /// those before it have left.
+  /// Searches every solver before it refines any. Each solver gets an equal share of the time that
+  /// those before it left.
   void search(std::vector<std::string> solvers) {
     if (solvers.size() > 1) {
       solvers = by_expected_cost(std::move(solvers), wanted_.scene, wanted_.settings, store_);
@@ -184,7 +190,8 @@ class Advisor {
         result_.unrefined.push_back(solver);
   }
 
-  /// Those for which there was too little time; what the others leave of it is theirs.
+  /// Searches these solvers and returns those that ran out of time. Time that others leave is then
+  /// given to them.
   std::vector<std::string> search(const std::vector<std::string>& solvers, SearchDepth depth) {
     std::vector<std::string> cut = search_once(solvers, depth);
     for (std::size_t before = 0;
@@ -250,8 +257,8 @@ class Advisor {
   SteadyClock::time_point start_ = SteadyClock::now();
   Store& store_;
   CaseMaker maker_;
-  double duration_ = 0, dt_ = 0;   ///< of the scene [s]
-  std::vector<double> slowdowns_;  ///< wall over CPU time of each pilot
+  double duration_ = 0, dt_ = 0;   ///< duration and time step of the scene [s]
+  std::vector<double> slowdowns_;  ///< ratio of wall to CPU time, for each pilot
   Advice result_;
 };
 

@@ -12,26 +12,27 @@
 
 namespace taut {
 
-/// What is asked of a search: the best setting of a scene for an error or a budget.
+/// What a search is to find: the best setting on a scene for an error or a budget.
 struct AdviceWanted {
   std::string scene;                  ///< name or path
-  std::vector<std::string> settings;  ///< of the scene, "key=value"
-  std::vector<std::string> solvers;   ///< what their texts fix is not searched
+  std::vector<std::string> settings;  ///< settings of the scene, "key=value"
+  std::vector<std::string> solvers;   ///< parameters fixed in their texts are not searched
   Target target;
   std::string metric = kErrorMetric;
-  std::vector<Limit> limits = {};  ///< of values beside the error
-  double fps = 1 / kFrame;         ///< frames a second, in which costs are shown
-  double patience = 120;           ///< s for all of it
-  int rounds = 8;                  ///< of the timing of the finalists
-  double seconds = 0.05;           ///< of a sample
+  std::vector<Limit> limits = {};  ///< limits on values beside the error
+  double fps = 1 / kFrame;         ///< frames per second, for the unit in which costs are shown
+  double patience = 120;           ///< s for everything
+  int rounds = 8;                  ///< rounds in the timing of the finalists
+  double seconds = 0.05;           ///< CPU time of a sample
   double tolerance = kTolerance;
-  std::function<void(const std::string&)> news = {};  ///< a line for each setting that was tried
+  /// Receives a line for each setting that was tried.
+  std::function<void(const std::string&)> news = {};
   std::function<void(std::size_t done, std::size_t total)> timing_round = {};
 
   Unit frame() const { return frame_cost(fps); }
 };
 
-/// What a step of the cheapest setting costs without one effect of the scene.
+/// Cost of a step of the cheapest setting without one effect of the scene.
 struct Without {
   std::string effect;
   double cost = 0;  ///< CPU s per simulated s
@@ -41,33 +42,32 @@ struct Refused {
   std::string solver, why;
 };
 
-/// What was searched and found.
+/// Result of a search.
 struct Advice {
   Target target;
-  /// Where not even the cheapest settings fit the budget: the cheapest of all with its quick cost,
-  /// and what it would cost without each effect, the least first.
+  /// If not even the cheapest settings fit the budget: the cheapest of all, with its quick cost.
   std::optional<Candidate> too_dear;
-  std::vector<Without> without;
+  std::vector<Without> without;  ///< its cost without each effect, the least first
   std::vector<Candidate> tried;
-  std::vector<Refused> unsupported;    ///< solvers that cannot run the scene
-  std::vector<std::string> cut;        ///< solvers whose search --patience ended
-  std::vector<std::string> unrefined;  ///< and those of which it ended what follows the search
+  std::vector<Refused> unsupported;  ///< solvers that cannot run the scene
+  std::vector<std::string> cut;      ///< solvers whose search ended because --patience was used up
+  std::vector<std::string> unrefined;  ///< solvers whose refinement ended for that reason
   SceneBench bench;
   Recommendation recommendation;
-  Interval cost;  ///< of the best, as it is expected in a second session
+  Interval cost;  ///< expected cost of the best in a second session
   bool same_bits = false;
-  Interval again;      ///< cost of the best in a second session
-  double elapsed = 0;  ///< s that all of it took
+  Interval again;      ///< measured cost of the best in a second session
+  double elapsed = 0;  ///< s that everything took
 
   const BenchedCase& best() const { return bench.cases[*recommendation.best]; }
   bool complete() const { return cut.empty() && unrefined.empty(); }
-  /// What the best is called: that of a search that was ended is not the best.
+  /// Name of the best: if the search was cut short, it is only the best so far.
   std::string called() const;
   bool confirmed() const { return cost.contains(again.mid); }
 };
 
 /// Searches, times the finalists against each other and verifies the best, all within the patience.
-/// Throws InputError: the scene, a solver or what is kept cannot be.
+/// Throws InputError if the scene, a solver or a limit is not valid.
 Advice find_advice(const AdviceWanted&, Store&);
 
 }  // namespace taut

@@ -14,9 +14,11 @@ namespace taut {
 namespace {
 
 constexpr double kShareWithoutAccelerators = 0.5;
-constexpr double kShareOfOneRun = 0.5;  ///< of the time of an error, to which substeps are doubled
+/// Largest share of an error's CPU time that one run may take; substeps are doubled up to it.
+constexpr double kShareOfOneRun = 0.5;
 
-/// "jakobsen:omega=1,levels=1,tethers=off": what its text fixes is not searched.
+/// "jakobsen:omega=1,levels=1,tethers=off". Parameters that the text already fixes stay as they
+/// are.
 std::string without_accelerators(const std::string& solver) {
   const SolverChoice choice = parse_solver(solver);
   const auto colon = solver.find(':');
@@ -66,7 +68,7 @@ class SolverSearch {
         {parse_study_scene(scene_).name, settings_, parse_solver(solver).canonical()});
   }
 
-  /// Each error with an equal share of what those before it have left.
+  /// Searches each error, with an equal share of the time that the errors before it left.
   void search(const std::string& solver, const std::vector<double>& errors, double seconds) {
     auto left = static_cast<double>(errors.size());
     for (const double error : errors) {
@@ -75,9 +77,9 @@ class SolverSearch {
       const Evaluation run = [&](const std::string& setting) { return evaluate(setting, end); };
       const Target target{error, {}};
       const double most = kShareOfOneRun * (end - cpu_) / duration_;
-      // Cheap settings first: one column of dear ones would use up the time of all others. And all
-      // columns before any alternative: where nothing reaches the error yet, each alternative
-      // walks all columns again.
+      // Cheap settings come first, since one column of expensive ones could use up all the time.
+      // All columns come before any alternative: as long as nothing reaches the error, each
+      // alternative walks all columns again.
       for (const SearchDepth depth : {SearchDepth::columns, SearchDepth::repeated})
         for (double dearest = most / 256; dearest <= most && !cut_off_; dearest *= 4) {
           const auto tried = search_settings(solver, target, run, {}, depth, dearest);
@@ -148,10 +150,10 @@ class SolverSearch {
   CaseMaker maker_;
   std::vector<Limit> limits_;
   std::vector<Candidate> tried_;
-  std::map<std::string, std::size_t> at_;  ///< index into tried_ of a setting
+  std::map<std::string, std::size_t> at_;  ///< index into tried_, by setting
   double cpu_ = 0, duration_ = 0;
-  bool cut_off_ = false;        ///< of the error that is being searched
-  std::map<double, bool> cut_;  ///< of each, the last time
+  bool cut_off_ = false;        ///< whether the search for the current error ran out of time
+  std::map<double, bool> cut_;  ///< its last value, by error
 };
 
 }  // namespace

@@ -15,16 +15,16 @@ struct EqualSearch {
   std::string scene;  ///< as in Study::scenes
   std::string solver;
   std::vector<SearchedSetting> rows;
-  /// For which errors no setting was found, and why, a sentence each.
+  /// Errors for which no setting was found, with the reason, one sentence each.
   std::vector<std::string> missing;
-  double cpu = 0;        ///< s that the solver took; the last run may go beyond what it had
-  bool cut_off = false;  ///< it would have tried more
+  double cpu = 0;        ///< s that the solver took; its last run may exceed the limit
+  bool cut_off = false;  ///< whether time ended the search
 };
 
-/// Searches every solver of the study on every scene for the cheapest setting within each error,
-/// each solver with as much CPU time as any other [s a scene]: half of it without accelerators
-/// that others may lack, the rest with all of its levers. Who is dear is not given up because
-/// others are cheap. Throws InputError: the study has axes, or a scene is wrong; Interrupted.
+/// Searches every solver of the study on every scene for the cheapest setting within each error.
+/// Each solver gets the same CPU time, `seconds` per scene: half without the accelerators that
+/// other solvers may lack, half with all parameters. An expensive solver is not abandoned because
+/// others are cheap. Throws InputError if the study has axes or a scene has errors; or Interrupted.
 std::vector<EqualSearch> search_equally(const Study&, Store&, const std::string& metric,
                                         const std::vector<double>& errors, double seconds,
                                         const std::function<void(const EqualSearch&)>& after_each);

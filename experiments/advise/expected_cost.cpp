@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// CPU s per simulated s of each solver's cheapest case on the scene.
+/// CPU s per simulated s of each solver's cheapest timed case on the scene.
 std::map<std::string, double> last_known(const std::string& scene, const Store& store) {
   std::map<std::string, double> costs;
   for (const StudyBench& bench : stored_benches(store, ""))
@@ -32,7 +32,7 @@ std::map<std::string, double> last_known(const std::string& scene, const Store& 
   return costs;
 }
 
-/// Items that the passes of a simulated second visit.
+/// Number of items that the passes visit per simulated second.
 double items_of(const Case& one) {
   double items = 0;
   for (const PassCost& pass : one.choice.entry->make(*one.scene, one.choice.params)->step_cost())
@@ -57,10 +57,10 @@ std::vector<std::string> by_expected_cost(std::vector<std::string> solvers,
       name_of[solver] = one.choice.entry->name;
       items[solver] = items_of(one);
     } catch (const std::runtime_error&) {
-      // of another program: it has to be run to be known
+      // an external program: it would have to be run
     }
   const std::map<std::string, double> known = last_known(name, store);
-  std::vector<double> each;  // what an item costs [s]
+  std::vector<double> each;  // cost per item [s]
   for (const auto& [solver, n] : items)
     if (const auto cost = known.find(name_of[solver]); cost != known.end() && n < kUnknown)
       each.push_back(cost->second / n);

@@ -7,16 +7,17 @@
 
 namespace taut {
 
-/// The solvers, the cheapest first, by what a simulated second of this scene is expected to cost
-/// with the cheapest setting of each: the least that was timed on a scene of this name, on whatever
-/// machine; of a solver that was never timed, the items that its step visits, each as dear as those
-/// of the timed solvers in the mean. Who cannot be asked is last. Nothing is run.
+/// Sorts the solvers by the expected cost of a simulated second of this scene with their cheapest
+/// setting, cheapest first. This is the least cost that was timed on a scene of this name, on any
+/// machine. For a solver that was never timed, it is the number of items that its step visits,
+/// times the median cost per item of the timed solvers. Solvers that cannot be estimated come last.
+/// Nothing is run.
 std::vector<std::string> by_expected_cost(std::vector<std::string> solvers,
                                           const std::string& scene,
                                           const std::vector<std::string>& settings, const Store&);
 
-/// What the best of a search is called that was not finished: "cheapest so far; 3 solvers not
-/// tried, 2 not searched to the end".
+/// Name of the best of an unfinished search: "cheapest so far; 3 solvers not tried, 2 not searched
+/// to the end".
 std::string so_far(const std::string& best, std::size_t not_tried, std::size_t cut_short);
 
 }  // namespace taut

@@ -10,7 +10,7 @@ namespace taut {
 
 namespace {
 
-/// What is written above the rows of a file of searched settings.
+/// Heading of a file of searched settings.
 std::string heading(const Study& study, const std::string& metric, double cpu) {
   return "# Written by `taut advise --study " + study.name +
          (study.preset.empty() ? "" : " --preset " + study.preset) + " --cpu " + number_text(cpu) +

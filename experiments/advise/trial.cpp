@@ -11,7 +11,8 @@ namespace taut {
 
 namespace {
 
-constexpr int kQuickSteps = 48;  ///< of the quick cost that guides a search
+/// Number of steps for the quick cost that guides a search.
+constexpr int kQuickSteps = 48;
 
 }  // namespace
 

@@ -11,20 +11,21 @@
 
 namespace taut {
 
-/// A setting that a search tried: its physics over the whole run, its cost by a few steps.
+/// A setting that a search tried: its physics over the whole run, and its cost over a few steps.
 struct SettingTrial {
   Candidate candidate;
-  double cpu = 0;       ///< s that the solver took for both, of what is stored already too
-  double slowdown = 1;  ///< wall over CPU time of the few steps
+  double cpu = 0;       ///< s that the solver took for both, including stored results
+  double slowdown = 1;  ///< ratio of wall to CPU time of the few steps
 };
 
-/// Runs and times it; nothing: not done by the deadline. Refused is what fails, goes beyond the
-/// limits, or hardly moves where the error is a strain.
+/// Runs and times a setting; nothing if it is not done by the deadline. It is refused if it fails,
+/// exceeds the limits, or hardly moves and the error is a strain.
 std::optional<SettingTrial> try_setting(const Case&, Store&, const std::string& metric,
                                         const std::vector<Limit>& limits,
                                         std::chrono::steady_clock::time_point deadline);
 
-/// CPU s per simulated s of a few steps. Throws std::runtime_error (it cannot be timed), TimeIsUp.
+/// Mean time of a step over a few steps [s]. Throws std::runtime_error if it cannot be timed, or
+/// TimeIsUp.
 StepTime quick_time(const CaseSpec&, int steps, std::chrono::steady_clock::time_point deadline);
 
 }  // namespace taut

@@ -13,31 +13,32 @@
 
 namespace taut {
 
-/// One value of an answer: nothing (it has no meaning, or was not measured), a text, a number or an
-/// interval in SI units, yes or no.
+/// One value of an answer: nothing (meaningless or not measured), a text, a number or an interval
+/// in SI units, or yes or no.
 struct Cell {
-  /// Whether there is a value. What has none may say so in words ("not run"), which are its text.
+  /// Whether there is a value. A cell without one may explain that in words ("not run"), which are
+  /// then its text.
   enum class State {
     value,
-    none,         ///< no meaning, not reached, or the case failed
+    none,         ///< meaningless, not reached, or the case failed
     refused,      ///< the solver cannot run it
-    not_run,      ///< nobody ran or timed it
-    hardly_moves  ///< of cloth that stands still: where there is a number, it is not compared
+    not_run,      ///< not run, or not timed
+    hardly_moves  ///< the cloth hardly moves: a number is shown but not compared
   };
 
   std::variant<std::monostate, std::string, double, Interval, bool> value;
   State state = State::none;
-  std::string note;   ///< what a reader has to know of it
-  std::string key;    ///< of the case that it comes from
-  std::string scene;  ///< of a row's first cell: the name of the scene that the row is of
-  bool best = false;  ///< of its row, by more than what is noise
+  std::string note;   ///< what a reader has to know about the value
+  std::string key;    ///< key of the case that it comes from
+  std::string scene;  ///< in a row's first cell: name of the scene to which the row belongs
+  bool best = false;  ///< best of its row, by more than noise
 
   Cell() = default;
   Cell(std::string text) : value(std::move(text)), state(State::value) {}
   Cell(std::string_view text) : Cell(std::string(text)) {}
   Cell(const char* text) : Cell(std::string(text)) {}
   Cell(bool yes) : value(yes), state(State::value) {}
-  Cell(double number);  ///< nothing if it is not finite
+  Cell(double number);  ///< empty if the number is not finite
   template <std::integral Number>
   requires(!std::same_as<Number, bool>) Cell(Number number) : Cell(static_cast<double>(number)) {}
   Cell(const Interval&);
@@ -46,32 +47,32 @@ struct Cell {
     if (one) *this = Cell(*one);
   }
 
-  /// These words in place of a value.
+  /// A cell with these words in place of a value.
   static Cell lacking(State why, std::string words);
 
   Cell with(std::string a_note) const;
   Cell of_scene(std::string name) const;
   bool empty() const { return value.index() == 0; }
-  /// The text; "" of anything else.
+  /// The text; "" for other values.
   std::string text() const;
   bool is_true() const { return value == decltype(value)(true); }
-  /// The number, or the middle of the interval; NaN of anything else.
+  /// The number or the middle of the interval; NaN for other values.
   double number() const;
   bool operator==(const Cell&) const = default;
 };
 std::string_view to_string(Cell::State);
 
-/// What a cell says: its name in data ("cpu"), in words, and its unit.
+/// Description of a column: its name in data ("cpu"), its heading and its unit.
 struct Column {
   std::string name;
   std::string heading;  ///< without the unit
   std::string unit = "1";
-  std::string shown = {};  ///< the unit that people are shown: `shown = scale * SI`
+  std::string shown = {};  ///< the unit shown to people: `shown = scale * SI`
   double scale = 1;
-  int digits = 3;       ///< significant ones that people are shown
-  bool detail = false;  ///< people see it if they ask for details; data always have it
+  int digits = 3;       ///< significant digits shown to people
+  bool detail = false;  ///< shown to people only if they ask for details; data always include it
 
-  /// Without a heading: the name, with blanks for what separates its words.
+  /// An empty heading is replaced by the name, with blanks between its words.
   Column(std::string name, std::string heading = {}, const Unit& = kNumber, int digits = 3);
   Column in_detail() const;
   Unit as_unit() const { return {unit, shown, scale}; }
@@ -90,11 +91,11 @@ struct Table {
   std::string title;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows = {};  ///< each has as many cells as there are columns
-  std::string caption = {};                  ///< what a reader has to know of it, below
+  std::string caption = {};  ///< what a reader has to know about the table; shown below it
   bool detail = false;
-  std::size_t most = 0;  ///< rows that people see unless they ask for details; 0: all
+  std::size_t most = 0;  ///< most rows shown to people unless they ask for details; 0: all
 
-  /// Whether people see any of it.
+  /// Whether people see any of the table.
   bool is_shown(bool details) const {
     return !rows.empty() &&
            (details || (!detail && !std::ranges::all_of(columns, &Column::detail)));
@@ -103,65 +104,67 @@ struct Table {
     return details || most == 0 ? rows.size() : std::min(most, rows.size());
   }
 
-  /// The cell of that column; throws InputError: there is no such column.
+  /// The cell in this column. Throws InputError if there is no such column.
   const Cell& at(const std::vector<Cell>& row, std::string_view column) const;
   bool operator==(const Table&) const = default;
 };
 
-/// What a verb found: a value that is printed on a terminal, written as JSON, CSV and Markdown,
-/// kept and compared, each by one piece of code. Names of facts, of tables and of a table's columns
-/// are unique.
+/// The findings of a verb. One piece of code each prints it on a terminal, writes it as JSON, CSV
+/// and Markdown, keeps it and compares it. Facts, tables, and columns within a table have unique
+/// names.
 struct Answer {
-  std::string kind;     ///< the verb: "check", "bench effects"
-  std::string subject;  ///< of what: "regression", "hang jakobsen:iterations=8"
+  std::string kind;  ///< the verb: "check", "bench effects"
+  /// What the verb was applied to: "regression", "hang jakobsen:iterations=8".
+  std::string subject;
   std::vector<Fact> facts = {};
   std::vector<Table> tables = {};
 
   void add(Column, Cell);
   Table& add(Table);
-  const Cell& fact(std::string_view name) const;    ///< an empty one: there is none
-  const Table& table(std::string_view name) const;  ///< one without rows: there is none
+  const Cell& fact(std::string_view name) const;    ///< an empty cell if there is none
+  const Table& table(std::string_view name) const;  ///< a table without rows if there is none
   bool operator==(const Answer&) const = default;
 };
 
-/// The cell for people, with its unit or, as in a column whose heading has it, without:
-/// "2.3 (2.1 to 2.5) ms"; "-": nothing. A note follows.
+/// A cell for people, followed by its note. `with_unit` adds the unit, which a table has in the
+/// heading instead: "2.3 (2.1 to 2.5) ms"; "-" if the cell is empty.
 std::string text(const Cell&, const Column&, bool with_unit = true);
 /// The heading with the unit: "CPU time [ms]".
 std::string label(const Column&);
 
-/// For a terminal: the subject, a line for every fact, tables in columns. Words are broken into
-/// lines where a row would have more than `width` characters.
+/// Text for a terminal: the subject, a line for each fact, and tables in columns. Words are wrapped
+/// where a row would exceed `width` characters.
 std::string to_text(const Answer&, bool details = false, std::size_t width = std::string::npos);
 
-/// The schema of all verbs (experiments/cli/README.md): every number in SI, to the bit.
+/// JSON in the schema that all verbs share (experiments/cli/README.md), with every number in SI, to
+/// the bit.
 std::string to_json(const Answer&);
-/// The answer of that text; throws InputError that names the file and the place in it.
+/// Inverse of to_json(). Throws InputError that names the file and the place in it.
 Answer answer_from_json(std::string_view text, const std::string& file);
 
-/// One table for spreadsheets and data frames, by name; "facts" or "": the facts, or the first
-/// table where there is one. Numbers in SI, to the bit; an interval has three columns, what has
-/// notes one more. Throws InputError: no such table.
+/// One table, by name, for spreadsheets and data frames; "facts" gives the facts, and "" the first
+/// table, or the facts if there is no table. Numbers are in SI, to the bit. An interval takes three
+/// columns, and a column with notes one more. Throws InputError if there is no such table.
 std::string to_csv(const Answer&, std::string_view table = "");
-/// A field of a CSV file; what a spreadsheet would take for a formula is marked as text.
+/// A field of a CSV file. A text that a spreadsheet would take for a formula is marked as text.
 std::string csv_field(std::string_view text);
-/// Letters, digits, '-', '_' and '.' only, '-' and '.' not first, at most 129: safe as a file name
-/// and as an HTML id. A text of which something was replaced or cut off gets a digest: two texts
-/// never share one.
+/// A text that is safe as a file name and as an HTML id: only letters, digits, '-', '_' and '.',
+/// without '-' or '.' at the start, at most 129 characters. If characters were replaced or cut off,
+/// a digest is appended, so that different texts stay different.
 std::string slug(std::string_view);
 
 /// A row that differs between two tables.
 struct Difference {
   std::string text;    ///< "jakobsen, mass ratio: bad 16.62 -> 18.1"
-  bool moved = false;  ///< both tables have the row; false: one alone
+  bool moved = false;  ///< false: only one of the tables has the row
 };
-/// Rows have the name that their cells of `names` make. Compared are the cells of `held`, numbers
-/// within `relative` of what they were.
+/// Compares the cells in the columns `held`; numbers agree within `relative` of the old value. Rows
+/// are matched by their cells in the columns `names`.
 std::vector<Difference> differences(const Table& before, const Table& now,
                                     const std::vector<std::string>& names,
                                     const std::vector<std::string>& held, double relative = 0);
 
-/// As on a terminal, for documents.
+/// Markdown for documents, with the content of to_text().
 std::string to_markdown(const Answer&, bool details = false);
 
 }  // namespace taut

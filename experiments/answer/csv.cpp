@@ -11,8 +11,7 @@ namespace taut {
 
 namespace {
 
-/// How many fields a column has: an interval's ends and what has notes stand in fields of their
-/// own.
+/// The fields that a column takes: an interval adds two for its ends, and notes add one.
 struct Shape {
   bool interval = false, notes = false;
 };
@@ -54,7 +53,7 @@ std::string csv_of(const Table& table) {
   return out;
 }
 
-/// Name, value and unit of each: texts and numbers are of one column here.
+/// A table with name, value and unit of each fact. Its value column mixes texts and numbers.
 Table as_table(const std::vector<Fact>& facts) {
   Table table{"facts", "", {{"name"}, {"value"}, {"unit"}}};
   for (const Fact& fact : facts)
@@ -88,7 +87,7 @@ std::string to_csv(const Answer& answer, std::string_view name) {
 }
 
 std::string slug(std::string_view text) {
-  constexpr std::size_t kMost = 120;  // a file name has 255 bytes, with extensions and more
+  constexpr std::size_t kMost = 120;  // a file name may have 255 bytes, including extensions
   std::string out;
   for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -101,7 +100,7 @@ std::string slug(std::string_view text) {
   out.resize(std::min(out.size(), kMost));
   while (!out.empty() && (out.back() == '-' || out.back() == '.')) out.pop_back();
   if (!out.empty() && out == text) return out;
-  // What was replaced or cut off still tells names apart.
+  // The digest keeps texts apart that differ only where characters were replaced or cut off.
   return (out.empty() ? "x" : out) +
          formatted("-%08zx", std::hash<std::string_view>{}(text)&0xFFFFFFFFU);
 }

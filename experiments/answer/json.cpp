@@ -16,7 +16,7 @@ Json json_of(const Cell& cell) {
   return nullptr;
 }
 
-/// What a cell is unless its notes say otherwise.
+/// State of a cell that its JSON notes do not override.
 Cell::State usual_state(const Cell& cell) {
   return cell.empty() ? Cell::State::none : Cell::State::value;
 }
@@ -34,7 +34,7 @@ void add_notes(Json& json, const Cell& cell) {
   if (cell.best) json["best"] = true;
 }
 
-/// Without what is as it is by default.
+/// Adds a column without the members that have their default values.
 void add_column(Json& json, const Column& column) {
   json["heading"] = column.heading;
   json["unit"] = column.unit;

@@ -5,7 +5,7 @@ namespace taut {
 
 namespace {
 
-/// Nothing that would end a cell, begin a tag or a line.
+/// Escapes whatever would end a cell, a line or begin a tag.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {

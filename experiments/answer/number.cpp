@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
 
-/// Without zeros at the end of its decimals.
+/// Removes trailing zeros of the decimals.
 std::string stripped(std::string decimal) {
   if (decimal.find('.') == std::string::npos) return decimal;
   decimal.erase(decimal.find_last_not_of('0') + 1);
@@ -21,9 +21,10 @@ std::string stripped(std::string decimal) {
   return decimal;
 }
 
-/// A size rounded to so many digits: first, so that 9.96 with two becomes "10" and not "10.0".
+/// A size rounded to `digits` digits. The exponent is taken after rounding, so that 9.96 with two
+/// digits becomes "10" and not "10.0".
 struct Rounded {
-  std::string mantissa, decimal;  ///< "3.4" of 3.4e-13; the whole number without exponent
+  std::string mantissa, decimal;  ///< of 3.4e-13: "3.4", and the same number without an exponent
   int exponent = 0;
 
   Rounded(double size, int digits) {

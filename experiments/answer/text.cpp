@@ -20,8 +20,8 @@ std::string padded(const std::string& text, std::size_t width, bool left) {
   return left ? text + blanks : blanks + text;
 }
 
-/// The text in lines of at most that many characters, broken at blanks; a longer word has a line.
-/// A command stays in one, for it is copied.
+/// Breaks a text at blanks into lines of at most `most` characters. A longer word has a line to
+/// itself. A command stays on one line, since people copy it.
 std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
   if (characters(text) <= most || text.starts_with("taut ")) return {text};
   std::vector<std::string> lines;
@@ -34,8 +34,8 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
   return lines;
 }
 
-/// As wide as what is in them, but of words at most as wide as lets a line fit into `most`
-/// characters and as their longest word needs.
+/// Widths of columns: as wide as their content. If a line would exceed `most` characters, columns
+/// of words shrink until it fits, but not below their longest word.
 std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows,
                                    const std::vector<bool>& left, std::size_t most) {
   std::vector<std::size_t> all(left.size());
@@ -54,7 +54,7 @@ std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& 
   return fit;
 }
 
-/// Columns of words are flush left, those of numbers flush right.
+/// Columns of words are aligned left, columns of numbers right.
 std::string lines_of(const std::vector<std::vector<std::string>>& rows,
                      const std::vector<bool>& left, std::size_t most) {
   const std::vector<std::size_t> width = widths_of(rows, left, most);

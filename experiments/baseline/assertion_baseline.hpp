@@ -8,12 +8,12 @@
 
 namespace taut {
 
-/// Where a folder of baselines keeps the verdicts of assertions of publications.
+/// File in a folder of baselines that keeps the verdicts on assertions of publications.
 std::filesystem::path assertion_baseline(const std::filesystem::path& folder);
-/// Keeps the table `assertions` of an answer of `taut verify` there.
+/// Writes the table `assertions` of an answer of `taut verify` to that file.
 void keep_assertions(const Answer&, const std::filesystem::path& file);
-/// Verdicts that differ from those kept; nothing: none are kept. Figures may differ: the truth's
-/// tolerance judges them.
+/// Verdicts that differ from the kept ones; nothing if none are kept. Figures may differ: the
+/// tolerance of the truth judges them.
 std::optional<std::vector<Difference>> changes_of_assertions(const Answer&,
                                                              const std::filesystem::path& file);
 

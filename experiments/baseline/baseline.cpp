@@ -27,17 +27,17 @@ std::string digits(double value, int count) { return formatted("%.*g", count, va
 
 std::string readable(double value) { return std::isnan(value) ? "none" : number_text(value, 7); }
 
-/// "stretch.max 0.0123 -> 0.0145 (+18 %; allowed 1e-06)".
+/// "stretch.max 0.0123 -> 0.0145 (by 0.0022, allowed 1e-06)".
 std::string moved_text(const std::string& name, double before, double now, const Tolerance& t) {
   std::string text = name + " " + readable(before) + " -> " + readable(now);
-  if (readable(before) == readable(now))  // the difference is beyond the seventh digit
+  if (readable(before) == readable(now))  // the difference lies beyond the seventh digit
     text = name + " " + digits(before, 17) + " -> " + digits(now, 17);
   if (std::isnan(before) || std::isnan(now)) return text;
   const double allowed = t.absolute + t.relative * std::abs(before);
   return text + " (by " + number_text(now - before) + ", allowed " + number_text(allowed) + ")";
 }
 
-/// The same number with no more digits than the tolerance asks for.
+/// The number rounded to as few digits as the tolerance allows.
 double rounded(double value, const Tolerance& t) {
   if (!std::isfinite(value)) return value;
   const double slack = (t.absolute + t.relative * std::abs(value)) / 100;
@@ -48,7 +48,7 @@ double rounded(double value, const Tolerance& t) {
   return value;
 }
 
-/// Compares the answers of two rows that ask the same question.
+/// Compares two rows that ask the same question.
 class RowComparison {
  public:
   RowComparison(const BaselineRow& before, const BaselineRow& now, const Tolerances& tolerances,
@@ -115,7 +115,7 @@ std::set<std::string> solvers_of(const Baseline& rows) {
   return names;
 }
 
-/// Rows of `of` that `in` has under another id.
+/// A row of `in` that asks the same question as `row` under an id that `own` does not have.
 const BaselineRow* renamed(const BaselineRow& row, const Baseline& in, const Baseline& own) {
   for (const BaselineRow& other : in)
     if (same_question(row, other) && !find_row(own, other.id)) return &other;
@@ -188,7 +188,7 @@ Comparison compare(const Baseline& before, const Baseline& now, const Tolerances
     if (!old_solvers.count(solver))
       result.findings.push_back({Change::Kind::solver_new, "", solver,
                                  "the study runs this solver, which has no baseline"});
-  std::set<std::string> known;  // a value of any row; a value of none is of a new metric
+  std::set<std::string> known;  // values of some row; any other value belongs to a new metric
   for (const BaselineRow& row : before)
     for (const auto& [name, value] : row.values) known.insert(name);
   for (const BaselineRow& row : now)

@@ -14,134 +14,134 @@
 
 namespace taut {
 
-/// How the case or the frontier of a row ended.
+/// How the case or frontier of a row ended.
 struct RowStatus {
   std::string kind;         ///< "ok", "exploded", "bracketed"
-  std::string reason = {};  ///< "energy"; "" if unsupported, whose reason is a sentence
+  std::string reason = {};  ///< "energy"; "" for unsupported, whose reason is a sentence
   std::string text() const { return reason.empty() ? kind : kind + " (" + reason + ")"; }
   bool operator==(const RowStatus&) const = default;
 };
 
-/// One case of a baseline: what was run and what came out of it.
+/// One row of a baseline: a case (or frontier) and its results.
 struct BaselineRow {
-  std::string id;  ///< of the case in its study
+  std::string id;  ///< id of the case in its study
   CaseSpec spec;
-  std::string scene;  ///< digest of the scene's content: another digest is another task
+  std::string scene;  ///< digest of the scene's content; another digest means another task
   RowStatus status;
   std::size_t projections = 0;           ///< constraint projections per step
-  std::map<std::string, double> values;  ///< by metric value; NaN: no meaning for this case
+  std::map<std::string, double> values;  ///< by metric value; NaN: meaningless for this case
   std::string frontier;                  ///< options of `taut frontier`; "": the row is a case
-  bool flaky = false;  ///< two runs differed in a bit: only its status is compared
+  bool flaky = false;  ///< two runs differed in some bit: only its status is compared
 
   std::string solver() const { return solver_name(spec.solver); }
 };
 /// Sorted by id.
 using Baseline = std::vector<BaselineRow>;
-const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullptr: there is none
+const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullptr if there is none
 
-/// `scene` is digest(Scene) of the scene that the record's spec names. The solver is kept with only
-/// those parameters that differ from their defaults, so that a new parameter changes no row.
+/// Row for a record. `scene` is digest(Scene) of the scene that the record's spec names. The solver
+/// keeps only parameters that differ from their defaults, so that a new parameter changes no row.
 BaselineRow baseline_row(const Record&, const std::string& scene);
 
-/// One difference between a baseline and what was run.
+/// A difference between a baseline and the results of a run.
 struct Change {
   enum class Kind {
-    // the same task, another result
+    // The same task, but another result:
     value_moved,
     status_changed,
-    // another task: the baseline does not match the study
+    // Another task, so that the baseline does not match the study:
     case_missing,      ///< in the baseline, not in the study
     case_new,          ///< in the study, not in the baseline
     case_renamed,      ///< the same scene and solver under another id
-    scene_changed,     ///< same id, other content
+    scene_changed,     ///< the same id, other content
     solver_missing,    ///< the baseline has a solver that the study does not run
     solver_new,        ///< the study runs a solver that has no baseline
     value_missing,     ///< the baseline has a metric value that no longer exists
-    value_unrecorded,  ///< the baseline lacks a value in this row that it has in others
-    // for information: no failure
-    value_new  ///< a new metric: the baseline has it in no row
+    value_unrecorded,  ///< the baseline lacks a value in this row that other rows have
+    // For information only, not a failure:
+    value_new  ///< a value of a new metric, which no row of the baseline has
   };
   Kind kind = Kind::value_moved;
-  std::string id;                      ///< of the case; empty for a solver
-  std::string solver;                  ///< name
-  std::string text;                    ///< one line: what it was -> what it is
-  std::string scene = {}, value = {};  ///< of a moved value: its scene's and the metric value's
-                                       ///< name, or "status"
-  double before = 0, now = 0;          ///< of a moved value, in its unit; NaN: no meaning
+  std::string id;      ///< id of the case; empty for a solver
+  std::string solver;  ///< name
+  std::string text;    ///< one line: old -> new
+  /// Of a moved value: the scene's name and the value's name, or "status".
+  std::string scene = {}, value = {};
+  double before = 0, now = 0;  ///< of a moved value, in its unit; NaN: meaningless
   bool is_regression() const { return kind <= Kind::status_changed; }
   bool is_mismatch() const { return !is_regression() && kind != Kind::value_new; }
 };
 
 /// "value moved", "case new", ...
 std::string_view to_string(Change::Kind);
-Change::Kind change_kind(std::string_view);  ///< the inverse; throws InputError
+Change::Kind change_kind(std::string_view);  ///< inverse of to_string(); throws InputError
 
 struct Comparison {
   std::vector<Change> findings;  ///< sorted by solver and id
-  std::size_t cases = 0;         ///< compared
-  std::size_t values = 0;        ///< compared, statuses apart
+  std::size_t cases = 0;         ///< number compared
+  std::size_t values = 0;        ///< number compared, without statuses
 
   bool regressed() const;
   bool mismatched() const;
 };
 
-/// How values moved, over all cases of a solver.
+/// How a value or group of values moved, over all cases of a solver.
 struct MovedValue {
-  std::string solver, group;  ///< the name of a value or of several; "status"
+  std::string solver, group;  ///< name of a value or of a group of values, or "status"
   std::size_t cases = 0;
-  std::size_t less = 0, more = 0;   ///< of these: now below, above what it was
+  std::size_t less = 0, more = 0;   ///< how many are now below, above the old value
   const Change* largest = nullptr;  ///< by relative change; points into the comparison
 
-  /// (now - before) / |before| of the largest; infinite where there was 0 or no number, and
-  /// for a status.
+  /// (now - before) / |before| of the largest change; infinite for a status, and where `before` is
+  /// 0 or there is no number.
   double relative() const;
 };
 
-/// Statuses that changed and values that moved, by solver and by group, which `group_of` gives for
-/// a value's name; in the order of their first change.
+/// Counts changed statuses and moved values by solver and group, in the order of their first
+/// change. `group_of` returns the group of a value's name.
 std::vector<MovedValue> roll_up(const Comparison&,
                                 const std::function<std::string(const std::string&)>& group_of);
 
-/// The command that runs a case in the foreground: "taut case hang jakobsen:iterations=8 --set
-/// ...".
+/// Command that runs a case in the foreground: "taut case hang jakobsen:iterations=8 --set ...".
 std::string reproduce(const CaseSpec&);
-/// The same for a row: a case, or "taut frontier ...".
+/// Command that runs the case or frontier of a row: "taut case ..." or "taut frontier ...".
 std::string reproduce(const BaselineRow&);
 
-/// A comparison as a JUnit <testsuite>: a test case for every row, and for every finding without a
-/// row.
+/// The comparison as a JUnit <testsuite>, with a test case for each row and for each finding
+/// without a row.
 std::string junit(const std::string& study, const Baseline& now, const Comparison&);
 
-/// The differences in `now`. Rows whose scene, solver or id do not match are not compared.
+/// Compares `now` with `before`. Rows whose scene, solver or id do not match are reported, not
+/// compared.
 Comparison compare(const Baseline& before, const Baseline& now, const Tolerances&);
 
-/// The new baseline: values that moved by no more than the tolerance stay as they are, to the
-/// digit; the others are those of `now`, rounded to a hundredth of the tolerance.
+/// The new baseline. Values within the tolerance of the old ones keep the old digits; others come
+/// from `now`, rounded to a hundredth of the tolerance.
 Baseline updated(const Baseline& before, const Baseline& now, const Tolerances&);
 
-/// Reads every <solver>.jsonl of a study's folder. Empty if there is none. Throws InputError with
+/// Reads every <solver>.jsonl in a study's folder; empty if there is none. Throws InputError with
 /// file and line.
 Baseline read_baseline(const std::filesystem::path& folder);
 
-/// Writes <solver>.jsonl, one row a line, sorted by id; leaves files alone that would not change
-/// and removes those of solvers that have no row. Each file is replaced in one step.
+/// Writes <solver>.jsonl with one row per line, sorted by id. Leaves unchanged files alone and
+/// removes files of solvers without rows. Replaces each file in one step.
 void write_baseline(const std::filesystem::path& folder, const Baseline&);
 
-/// Reads tolerances.toml of a study's folder: tables with absolute, relative or ignored, and a
-/// reason, each named by a value, a metric or "default". No file: the built-in default. Throws
-/// InputError.
+/// Reads tolerances.toml in a study's folder. Each table is named after a value, a metric or
+/// "default" and has absolute, relative or ignored, and a reason. Without the file, returns the
+/// built-in default. Throws InputError.
 Tolerances read_tolerances(const std::filesystem::path& folder);
 
-/// Which frontiers belong to a study's baseline: frontiers.toml of its folder, tables [[frontier]]
-/// with scene, solver, of, from, to, tolerance and set (scene overrides). No file: none. Throws
-/// InputError with file and line.
+/// Reads the frontiers of a study's baseline from frontiers.toml in its folder: tables [[frontier]]
+/// with scene, solver, of, from, to, tolerance and set (scene overrides). Without the file, returns
+/// none. Throws InputError with file and line.
 std::vector<FrontierQuestion> read_frontiers(const std::filesystem::path& folder);
 
-/// A frontier that was found, as a row: its status is the kind of frontier, its values are the ends
-/// of the bracket and the number of stable values above it.
+/// The row of a frontier: its status is the kind of the frontier, and its values are the ends of
+/// the bracket and the number of stable values above it.
 BaselineRow frontier_row(const FrontierQuestion&, const CaseFrontier&);
 
-/// Id of the row of a question.
+/// Id of a question's row.
 std::string frontier_id(const FrontierQuestion&);
 
 }  // namespace taut

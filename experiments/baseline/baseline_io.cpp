@@ -1,4 +1,4 @@
-// Baselines on disk: JSON lines and tolerances.toml.
+// Baselines on disk: JSON lines, and tolerances.toml.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -30,13 +30,13 @@ std::string line_of(const BaselineRow& row) {
   json["projections"] = row.projections;
   if (!row.frontier.empty()) json["frontier"] = row.frontier;
   if (row.flaky) json["flaky"] = true;
-  json["values"] = row.values;  // null: no meaning
+  json["values"] = row.values;  // null: the value has no meaning
   return to_text(json) + "\n";
 }
 
 BaselineRow row_of(const JsonReader& json) {
   BaselineRow row;
-  row.id = printable(json.at("id").text());  // goes to the terminal
+  row.id = printable(json.at("id").text());  // it is printed on terminals
   read_into(json, row.spec, kSpec);
   row.scene = json.at("content").text();
   row.status.kind = json.at("status").text();

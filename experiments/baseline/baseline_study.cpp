@@ -22,7 +22,7 @@ void run_all(const std::vector<Case>& cases, Store& store, const BaselineOptions
   result.interrupted = campaign.interrupted;
 }
 
-/// Runs all cases again, beside the store, and marks those whose result is not the same to the bit.
+/// Runs all cases again, into a separate store, and marks those whose results differ in any bit.
 void mark_flaky(const std::vector<Case>& cases, Store& store, const BaselineOptions& options,
                 BaselineStudy& result) {
   const std::filesystem::path folder = std::filesystem::path(options.out) / "again";

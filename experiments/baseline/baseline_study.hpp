@@ -14,36 +14,36 @@ struct BaselineOptions {
   std::string baselines;
   std::string out;  ///< results folder
   int jobs = 1;
-  bool repeat = false;  ///< run every case a second time, to mark those that differ as flaky
-  /// Runs what the store lacks, in a session of this command.
+  bool repeat = false;  ///< run every case twice and mark those that differ as flaky
+  /// Runs the cases that the store lacks, in a session with this command.
   std::function<CampaignProgress(const std::vector<StudyCases>&, Store&, const std::string& command,
                                  CampaignOptions)>
       run;
-  /// Is told news for people, a line each.
+  /// Receives news for people, one line at a time.
   std::function<void(const std::string&)> say;
-  /// What a value is called where it is counted by its name; "": it is one of the other values.
+  /// Title under which a value is counted; "" if it counts among the other values.
   std::function<std::string(const std::string& value)> title;
 };
 
-/// A study beside its baseline.
+/// A study and its baseline.
 struct BaselineStudy {
   std::string name;
-  std::filesystem::path folder;  ///< of its baseline
+  std::filesystem::path folder;  ///< folder of its baseline
   Tolerances tolerances;
   Baseline before, now;
   std::vector<std::string> not_run;  ///< ids of cases without a result
-  std::string toolchain;             ///< under which the baseline was made; "": not recorded
+  std::string toolchain;             ///< with which the baseline was made; "" if not recorded
   bool conflict = false, interrupted = false;
 
-  /// Cases that were not run are left out on both sides.
+  /// Compares both, leaving out cases that were not run.
   Comparison compare() const;
 };
 
-/// Loads the study and its baseline and runs the cases that the store does not have; nothing is run
-/// if there is no baseline and `needs_baseline`. Throws InputError.
+/// Loads the study and its baseline and runs the cases that the store lacks. If there is no
+/// baseline and `needs_baseline` is set, runs nothing. Throws InputError.
 BaselineStudy baseline_study(const std::string& study, const BaselineOptions&, bool needs_baseline);
 
-/// File in a baseline's folder that says what it was made with.
+/// File in a baseline's folder that records the toolchain with which it was made.
 inline constexpr const char* kToolchainFile = "toolchain.txt";
 
 }  // namespace taut

@@ -20,7 +20,7 @@ namespace taut {
 
 namespace {
 
-/// Whether the baseline was made with this program's toolchain; if not, says so.
+/// Whether the baseline was made with this program's toolchain. Reports it if not.
 bool same_toolchain(const BaselineStudy& study, const BaselineOptions& options, bool strict) {
   const std::string mine(toolchain());
   if (study.toolchain == mine) return true;
@@ -41,10 +41,10 @@ CheckEnd end_of(const BaselineStudy& study, const Comparison& comparison) {
   return study.not_run.empty() ? CheckEnd::passed : CheckEnd::not_run;
 }
 
-constexpr std::size_t kMostRows = 12;  ///< of what moved, printed unless all is asked for
+constexpr std::size_t kMostRows = 12;  ///< moved values printed unless all are asked for
 constexpr const char* kOthers = "other values";
 
-/// Names the rows in which values that moved are counted.
+/// Returns the name of the row in which a moved value is counted.
 using GroupOf = std::function<std::string(const std::string& value)>;
 
 GroupOf groups_of(const BaselineOptions& options) {
@@ -55,7 +55,7 @@ GroupOf groups_of(const BaselineOptions& options) {
   };
 }
 
-/// "strip, 2.64 -> 2.81 %": the largest change.
+/// The largest change: "strip, 2.64 -> 2.81 %".
 std::string largest_text(const Change& change, const GroupOf& group_of) {
   const Unit unit = unit_of_value(change.value);
   std::string text = change.scene;
@@ -72,11 +72,11 @@ std::string largest_text(const Change& change, const GroupOf& group_of) {
          (unit.shown.empty() ? "" : " " + std::string(unit.shown));
 }
 
-/// What the studies' comparisons come to.
+/// Collects the comparisons of studies.
 class Report {
  public:
   explicit Report(const BaselineOptions& options) : group_of_(groups_of(options)) {}
-  /// `typed`: as the study was asked for.
+  /// `typed`: the study as the user named it.
   void add(const std::string& typed, const BaselineStudy& study, const Comparison& comparison,
            CheckEnd end) {
     const auto moved = std::ranges::count_if(comparison.findings, &Change::is_regression);
@@ -122,7 +122,7 @@ class Report {
                              largest_text(*m.largest, group_of_), m.relative(),
                              judged ? "less is better" : "", m.largest->id});
     }
-    // statuses first, then what moved most
+    // statuses first, then the largest changes
     std::ranges::stable_sort(moved_.rows, {}, [](const std::vector<Cell>& row) {
       constexpr double kMost = std::numeric_limits<double>::infinity();
       const double relative = std::abs(row[7].number());
@@ -130,7 +130,7 @@ class Report {
     });
     moved_.most = kMostRows;
   }
-  /// Cases and solvers without a counterpart, a row for each kind and solver.
+  /// Adds cases and solvers without a counterpart, one row for each kind and solver.
   void add_mismatches(const BaselineStudy& study, const Comparison& comparison) {
     for (const Change& c : comparison.findings) {
       if (!c.is_mismatch()) continue;

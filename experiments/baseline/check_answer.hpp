@@ -8,14 +8,14 @@
 
 namespace taut {
 
-// What of an answer of `taut check` is read back from a results file.
+// The parts of an answer of `taut check` that are read back from a results file.
 
-/// How much was compared; people see it in the table of studies.
+/// Adds the numbers of compared cases and values. People see them in the table of studies.
 void add_compared(Answer&, std::size_t cases, std::size_t values);
 
-/// A table of findings, empty: every change with the command that runs its case again.
+/// An empty table of findings: every change with the command that runs its case again.
 Table findings_table();
-/// `now`: the rows that were compared.
+/// Adds findings. `now` holds the rows that were compared.
 void add_findings(Table&, const std::string& study, const Baseline& now, const Comparison&);
 
 struct Regressions {
@@ -26,7 +26,7 @@ struct Regressions {
   std::size_t cases = 0, values = 0;  ///< compared
   std::vector<Row> rows;
 };
-/// Throws InputError: it is no such answer.
+/// Throws InputError if it is not an answer of `taut check`.
 Regressions regressions_in(const Answer&);
 
 }  // namespace taut

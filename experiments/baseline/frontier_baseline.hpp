@@ -11,13 +11,13 @@
 
 namespace taut {
 
-/// Where a folder of baselines keeps the frontiers of a solver ("jakobsen:iterations=8").
+/// File in a folder of baselines that keeps the frontiers of a solver ("jakobsen:iterations=8").
 std::filesystem::path frontier_baseline(const std::filesystem::path& folder,
                                         const std::string& solver);
-/// Keeps an answer of `taut frontier --all SOLVER` there.
+/// Writes an answer of `taut frontier --all SOLVER` to that file.
 void keep_frontiers(const Answer&, const std::filesystem::path& file);
-/// Keeps it, or compares it with what is kept: what became of it in `news`, what differs in
-/// `changes`.
+/// Result of keeping or comparing frontiers: `news` says what was done, `changes` lists
+/// differences.
 struct FrontierCheck {
   CheckEnd end = CheckEnd::passed;
   std::string news;
@@ -25,11 +25,11 @@ struct FrontierCheck {
 };
 FrontierCheck check_frontiers(const Answer&, const std::string& solver,
                               const std::filesystem::path& folder, bool update);
-/// How an answer differs from the one kept; nothing: none is kept.
+/// Differences between an answer and the kept one; nothing if none is kept.
 std::optional<std::vector<Difference>> changes_of_frontiers(const Answer&,
                                                             const std::filesystem::path& file);
 
-/// The commands that run the cases beyond.
+/// The commands that run the cases just beyond the frontiers.
 Table commands_of(const std::vector<ParameterFrontier>&);
 
 }  // namespace taut

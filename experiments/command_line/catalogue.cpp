@@ -42,7 +42,7 @@ void list_scenes(Answer& all) {
   all.add(std::move(table));
 }
 
-/// All solvers, or the one of this name.
+/// Adds a table of all solvers, or of the one with this name.
 void list_solvers(Answer& all, const std::string& only) {
   Table table{"solvers", "solvers", {{"name"}, {"summary"}, {"source"}}},
       parameters{"parameters",
@@ -128,7 +128,8 @@ void list_record(Answer& all) {
   all.add(std::move(table));
 }
 
-/// What each verb prints with --json: a row for its facts, a row for each table.
+/// Adds a table of what each verb prints with --json, with a row for its facts and a row for each
+/// table.
 void list_answers(Answer& all) {
   Table table{"answers", "answers of verbs", {{"verb"}, {"table"}, {"columns", "names"}}};
   for (const VerbEntry* verb : verbs())
@@ -137,7 +138,7 @@ void list_answers(Answer& all) {
   all.add(std::move(table));
 }
 
-/// What publications assert.
+/// Adds a table of what publications assert.
 void list_assertions(Answer& all) {
   Table table{"assertions",
               "what publications assert",
@@ -171,7 +172,7 @@ Answer catalogue(const std::string& what) {
   for (const auto& [kind, list] : kKinds)
     if (what.empty() || what == kind) list(all);
   if (!all.tables.empty()) return all;
-  // Solvers are looked up here alone: that may start the programs of registered ones.
+  // Look up solvers only here, since it may start the programs of registered ones.
   list_solvers(all, what);
   std::vector<std::string> known;
   for (const auto& [kind, list] : kKinds) known.emplace_back(kind);

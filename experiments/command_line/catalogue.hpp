@@ -6,9 +6,9 @@
 
 namespace taut {
 
-/// Tables of what there is: "scenes", "solvers", "metrics", "studies", "keys", "fabrics",
-/// "assertions", "record", "answers"; all for "", one solver with its parameters for its name.
-/// Throws InputError: there is nothing of this name.
+/// Tables of what exists: "scenes", "solvers", "metrics", "studies", "keys", "fabrics",
+/// "assertions", "record", "answers". "" stands for all; the name of a solver gives that solver
+/// with its parameters. Throws InputError if nothing has this name.
 Answer catalogue(const std::string& what);
 
 }  // namespace taut

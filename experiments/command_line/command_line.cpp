@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kGroups[] = {"Studies", "One case", "Cost", "Trust", "Extremes"};
 
-/// Discards what is written to stdout for as long as it lives.
+/// Discards everything written to stdout during its lifetime.
 class DiscardedOutput {
  public:
   DiscardedOutput() : stdout_(dup(1)) {
@@ -44,8 +44,8 @@ class DiscardedOutput {
   int stdout_;
 };
 
-/// What stderr shows of names, files and other programs holds no control character that a terminal
-/// would obey, for as long as this lives: only what taut itself writes, "\r" and "\033[K".
+/// During its lifetime, stderr shows no control characters from names, files or other programs,
+/// which a terminal might obey. Only those that taut itself writes remain: "\r" and "\033[K".
 class PrintableErrors : public std::streambuf {
  public:
   PrintableErrors() : stderr_(std::cerr.rdbuf(this)) {}
@@ -61,7 +61,7 @@ class PrintableErrors : public std::streambuf {
     std::string shown;
     for (std::size_t end, begin = 0; begin < all.size(); begin = end) {
       end = std::min(all.find('\n', begin), all.size() - 1) + 1;
-      shown += printable(all.substr(begin, end - begin));  // which cuts what is very long: a line
+      shown += printable(all.substr(begin, end - begin));  // this cuts very long lines
     }
     stderr_->sputn(shown.data(), static_cast<std::streamsize>(shown.size()));
     return size;
@@ -77,13 +77,14 @@ class PrintableErrors : public std::streambuf {
   std::streambuf* stderr_;
 };
 
-/// A verb with its parser.
+/// A verb and its parser.
 struct Verb {
   CLI::App* app;
   std::function<int()> run;
 };
 
-/// Adds the verb's options and --quiet to its parser; returns what to do once they are parsed.
+/// Adds the verb's options and --quiet to its parser. Returns the function to call once they are
+/// parsed.
 std::function<int()> bind(const VerbEntry& entry, CLI::App& app) {
   if (!entry.bind) app.require_subcommand(1);
   std::function<int()> run = entry.bind ? entry.bind(app) : [] { return int{kUsage}; };
@@ -107,8 +108,8 @@ void add_verb(CLI::App& parent, const VerbEntry& entry, std::vector<Verb>& all) 
   all.push_back({app, bind(entry, *app)});
 }
 
-/// The parser of one verb and its verbs, or of all ("", of which most is never asked for): verbs in
-/// the order of their groups, then verbs of verbs.
+/// Adds the parser of one verb and its subverbs, or of all verbs if `only` is "", although most are
+/// not needed then. Verbs come in the order of their groups, followed by subverbs.
 std::vector<Verb> add_verbs(CLI::App& app, const std::string& only) {
   std::vector<const VerbEntry*> entries(verbs().begin(), verbs().end());
   if (!only.empty())
@@ -163,7 +164,7 @@ void add_entry(std::string& out, const CLI::App& verb, const std::string& before
   for (const CLI::App* inner : verb.get_subcommands({})) add_entry(out, *inner, name + " ");
 }
 
-/// What may follow a verb: its verbs, its options, and names that its positions take.
+/// Words that may follow a verb: its subverbs, its options, and names for its positional arguments.
 std::string words_after(const CLI::App& verb) {
   std::vector<std::string> words;
   for (const CLI::App* inner : verb.get_subcommands({})) words.push_back(inner->get_name());
@@ -185,7 +186,7 @@ void add_completion(std::string& out, const CLI::App& verb, const std::string& b
   out += "    '" + before + verb.get_name() + " '*) words='" + words_after(verb) + "' ;;\n";
 }
 
-/// A manual page, in roff: every verb with its options and example.
+/// A manual page in roff, with every verb, its options and its example.
 std::string man_page(const CLI::App& app, const std::string& version) {
   std::string out = ".TH TAUT 1 \"\" \"taut " + version + "\"\n.SH NAME\ntaut \\- " +
                     roff(app.get_description()) +
@@ -202,7 +203,7 @@ same key. 130: interrupted.
 )";
 }
 
-/// A completion for bash: verbs, their options, names of scenes, studies and solvers.
+/// A completion script for bash: verbs, their options, and names of scenes, studies and solvers.
 std::string bash_completion(const CLI::App& app) {
   std::vector<std::string> verbs;
   std::string cases;
@@ -222,14 +223,14 @@ void flush_output() {
     throw InputError("standard output cannot be written");
 }
 
-/// CLI11 takes the word after "--out=" for its value, an option too.
+/// Refuses "--out=": CLI11 would take the next word for its value, even an option.
 void refuse_empty_values(int argc, char** argv) {
   for (const std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1))
     if (word.starts_with("--") && word.find('=') == word.size() - 1)
       throw InputError(std::string(word) + ": a value is missing");
 }
 
-/// Whatever is typed may be started, in whatever option it stands.
+/// Allows everything typed to be started, in whatever option it stands.
 void admit_solvers(int argc, char** argv) {
   for (std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
     if (word.starts_with("--")) word.remove_prefix(std::min(word.size(), word.find('=') + 1));
@@ -251,7 +252,7 @@ int parse_and_run(int argc, char** argv) {
   const std::vector<Verb> all = add_verbs(app, has_verb ? argv[1] : "");
   refuse_empty_values(argc, argv);
   admit_solvers(argc, argv);
-  const std::string first = argc == 2 ? argv[1] : "";  // for `cmake --install`
+  const std::string first = argc == 2 ? argv[1] : "";  // used by `cmake --install`
   if (first == "--man" || first == "--bash-completion") {
     std::cout << (first == "--man" ? man_page(app, TAUT_VERSION) : bash_completion(app));
     flush_output();
@@ -267,15 +268,16 @@ int parse_and_run(int argc, char** argv) {
     flush_output();
     return kPass;
   }
-  const auto chosen = std::find_if(all.rbegin(), all.rend(),  // a verb of a verb is the last
+  const auto chosen = std::find_if(all.rbegin(), all.rend(),  // a subverb comes last
                                    [](const Verb& verb) { return verb.app->parsed(); });
   const int code = chosen->run();
   flush_output();
   return code;
 }
 
-/// A file that this program opens would else become its standard input, output or error. Nothing
-/// can be written to this standard output: that it is missing is said, not passed over.
+/// Opens descriptors 0 to 2 if they are closed, since otherwise a file that this program opens
+/// would take their place. A missing standard output is opened read-only, so that writing to it
+/// fails and is reported.
 void open_standard_descriptors() {
   for (const int mode : {O_RDONLY, O_RDONLY, O_WRONLY}) {
     const int fd = open("/dev/null", mode);
@@ -295,7 +297,7 @@ const VerbEntry* find_verb(const std::string& name) {
 int command_line(int argc, char** argv) {
   open_standard_descriptors();
   const PrintableErrors printable_errors;
-  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit on files a write fails, and says so
+  std::signal(SIGXFSZ, SIG_IGN);  // writes beyond a file size limit then fail and are reported
   if (argc > 1 && argv[1][0] != '-' && !find_verb(argv[1])) {
     std::vector<std::string> names;
     for (const VerbEntry* verb : verbs()) names.emplace_back(verb->name);
@@ -315,7 +317,7 @@ int command_line(int argc, char** argv) {
     std::cerr << failure.status << ": " << failure.what() << '\n' << failure.log;
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << error.path1().string() << ": " << error.code().message() << '\n';
-  } catch (const std::system_error& error) {  // as of a thread that cannot be started
+  } catch (const std::system_error& error) {  // for example, if a thread cannot be started
     std::cerr << error.what() << '\n';
   } catch (const std::exception& error) {
     std::cerr << "taut" << (argc > 1 ? std::string(" ") + argv[1] : "")

@@ -1,4 +1,4 @@
-// The program: `taut VERB ...`. Each verb is a file in experiments/cli, in the folder of its group.
+// The program `taut VERB ...`. Each verb is a file in experiments/cli, in the folder of its group.
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/external.hpp"
 

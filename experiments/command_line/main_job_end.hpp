@@ -8,19 +8,20 @@
 
 namespace taut {
 
-/// What the main job will do, on stderr, and that its first part begins.
+/// Reports on stderr what the main job will do, and that its first part begins.
 void tell_main_job(const std::vector<StudyCases>&);
 
 struct MainJobEnd {
   std::string preset, results;
   int jobs = 1;
-  bool print_check = true;  ///< how the committed baselines compare, on standard output
+  /// Whether to print the comparison with the committed baselines on standard output.
+  bool print_check = true;
 };
 
-/// Parts 2 to 6: what accuracy costs, exclusive and so after all cases have ended; one step;
-/// truths; baselines; the page, report.html. Numbers of a machine too noisy to judge are kept, for
-/// the page shows how noisy it was, and a truth that fails ends nothing, for the page says which.
-/// Returns the answer in a few lines, and where the page is. Throws Interrupted.
+/// Runs parts 2 to 6: the cost of accuracy, which is timed after all cases have ended; one step;
+/// truths; baselines; the page, report.html. Times from a machine too noisy to judge are kept, and
+/// a failed truth ends nothing, since the page shows both. Returns the answer in a few lines, and
+/// where the page is. Throws Interrupted.
 std::string end_main_job(const MainJob&, const MainJobEnd&);
 
 }  // namespace taut

@@ -69,7 +69,7 @@ CLI::Option* add_preset(CLI::App& app, std::string& preset) {
   return app.add_option("--preset", preset, "A smaller or larger version that the study defines");
 }
 
-/// Throws InputError that names both, if two settings of a scene are of the same key.
+/// Throws InputError that names both settings if two of a scene have the same key.
 static void refuse_same_key(const std::vector<std::string>& settings) {
   std::map<std::string, std::string> by_key;
   for (const std::string& setting : settings) {
@@ -90,7 +90,8 @@ CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
   return app
       .add_option_function<std::vector<std::string>>(
           "--set",
-          [&settings](const std::vector<std::string>& all) {  // beside what --fabric has set
+          // In addition to what --fabric has set.
+          [&settings](const std::vector<std::string>& all) {
             settings.insert(settings.end(), all.begin(), all.end());
             refuse_same_key(settings);
           },

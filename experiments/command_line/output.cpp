@@ -26,7 +26,7 @@ namespace {
 
 bool g_shown = true;
 
-/// The verdicts of a text in colour: words that stand in a line by themselves.
+/// Colours the verdicts in a text, where they stand as words of their own.
 std::string with_verdicts(const std::string& text) {
   static const std::pair<std::string_view, Colour> kVerdicts[] = {
       {"passed", Colour::green},  {"ok", Colour::green},        {"holds", Colour::green},
@@ -46,7 +46,7 @@ std::string with_verdicts(const std::string& text) {
   return out;
 }
 
-/// Of the terminal that standard output is; a file's or a pipe's lines are as long as they are.
+/// Width of the terminal if standard output is one; lines in a file or a pipe are not limited.
 std::size_t columns_of_output() {
   winsize size{};
   return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col
@@ -62,7 +62,8 @@ std::string coloured(std::string_view text, Colour colour) {
 }
 
 void print(const Answer& answer, const Format& format) {
-  // Cells hold what programs and files say; JSON escapes it.
+  // Cells contain texts from programs and files, which may hold control characters; JSON escapes
+  // them.
   const auto shown = [](const std::string& text) { return printable(text, std::string::npos); };
   if (format.json)
     std::cout << to_json(answer);
@@ -122,7 +123,7 @@ Countdown::Countdown(std::string what)
     : what_(std::move(what)), terminal_(isatty(2) == 1), start_(std::chrono::steady_clock::now()) {}
 
 void Countdown::operator()(std::size_t done, std::size_t total) const {
-  if (done == 0) return;  // nobody knows yet how long a part takes
+  if (done == 0) return;  // the time per part is not known yet
   if (!g_shown || (!terminal_ && done != total && done % std::max<std::size_t>(1, total / 10) != 0))
     return;
   const double each = seconds_since(start_) / static_cast<double>(done);

@@ -17,60 +17,61 @@ namespace taut {
 
 enum class Colour { red = 31, green = 32, yellow = 33 };
 
-/// The text in a colour if stdout is a terminal and $NO_COLOR is not set; else as it is.
+/// The text in a colour if stdout is a terminal and $NO_COLOR is not set; otherwise unchanged.
 std::string coloured(std::string_view text, Colour);
 
-/// How an answer is printed: add_format().
+/// Format of a printed answer; see add_format().
 struct Format {
   bool json = false, markdown = false;
-  std::string csv;       ///< the table; "true": the first; "": no CSV
-  bool details = false;  ///< people see all that the data have
+  std::string csv;       ///< name of the table; "true": the first one; "": no CSV
+  bool details = false;  ///< whether people see everything that data contain
 
-  /// Whether it is for programs: standard output then holds nothing else.
+  /// Whether the output is for programs; standard output then contains nothing else.
   bool is_data() const { return json || markdown || !csv.empty(); }
 };
 
-/// Prints the answer on stdout: on a terminal verdicts in colour; as Markdown with the command that
-/// makes it. Throws InputError: no such table.
+/// Prints the answer on stdout: with coloured verdicts on a terminal, and as Markdown with the
+/// command that makes it. Throws InputError if there is no such table.
 void print(const Answer&, const Format&);
 
-/// The files that a verb wrote: a line each, or {"files": [...]}.
+/// Prints the files that a verb wrote: one line each, or {"files": [...]}.
 void print_files(const std::vector<std::string>& files, bool json);
 
-/// What ran, how it ended, every value that has a meaning.
+/// The answer for one case: what ran, how it ended, and every meaningful value.
 Answer answer_of(const Record&, std::string kind);
 
-/// Shows a campaign on stderr: one line that is rewritten, with the time left, on a terminal; else
-/// a line for every tenth part, and one per case if there are few or all are asked for.
+/// Shows a campaign on stderr. On a terminal, one line is rewritten and includes the time left.
+/// Otherwise there is a line for every tenth of the work, and one per case if there are few or
+/// `verbose` is set.
 class Progress {
  public:
   explicit Progress(bool verbose = false);
   void show(const CampaignProgress&, const Record*);
-  void finish(const CampaignProgress&);  ///< the last line: how the cases ended
+  void finish(const CampaignProgress&);  ///< prints the last line: how the cases ended
 
  private:
   std::chrono::steady_clock::time_point start_;
   bool terminal_, verbose_;
-  std::size_t told_ = 0;  ///< tenths of the work
+  std::size_t told_ = 0;  ///< tenths of the work reported so far
 };
-/// A campaign's `progress` that shows it as each case ends.
+/// A `progress` function for a campaign that reports each case as it ends.
 std::function<void(const CampaignProgress&, const Record*)> show_ended_cases();
 
-/// Runs what the store lacks, each case once, in a session that `command` names, with progress on
-/// stderr.
+/// Runs the cases that the store lacks, each once, in a session with this command. Shows progress
+/// on stderr.
 CampaignProgress run_missing(const std::vector<StudyCases>&, Store&, const std::string& command,
                              CampaignOptions, bool verbose = false);
 
-/// The same on all cores, and what is then stored of each case. Throws InputError, Interrupted.
+/// run_missing() on all cores. Returns the stored records. Throws InputError, Interrupted.
 std::vector<Record> run_and_collect(const StudyCases&, Store&, const std::string& command);
 
-/// The exit code of a campaign; says where the results are that differ from those stored.
+/// Exit code of a campaign. If results differ from stored ones, reports where they are.
 int exit_code(const CampaignProgress&, const Store&);
-/// The exit code of a comparison with baselines.
+/// Exit code of a comparison with baselines.
 int exit_code(CheckEnd);
 
-/// "frame 12/80  left 0:14" on stderr, rewritten on a terminal; every tenth part elsewhere. The end
-/// says what one took: "frame 80/80  0.15 s each".
+/// Shows "frame 12/80  left 0:14" on stderr, rewritten on a terminal, otherwise for every tenth
+/// part. The last line gives the time per part: "frame 80/80  0.15 s each".
 class Countdown {
  public:
   explicit Countdown(std::string what);
@@ -82,14 +83,14 @@ class Countdown {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// What bench_study() asks before each scene: these options, with a line for the scene and a
+/// A function for bench_study() that prints a line for each scene and returns these options with a
 /// countdown of its rounds.
 std::function<TimingOptions(const std::string& scene, std::size_t cases)> tell_timing(
     TimingOptions);
 
-/// Whether progress is shown; --quiet switches it off.
+/// Switches progress on or off; --quiet switches it off.
 void show_progress(bool);
-/// Where news of progress go: stderr, or nowhere.
+/// Stream for progress: stderr, or one that discards everything.
 std::ostream& progress();
 
 /// "ok 88, exploded 4".

@@ -35,7 +35,7 @@ std::string command_of(const PageRequest& options) {
   return "./taut run" + what + (options.studies.empty() ? "" : " && ./taut report" + what + films);
 }
 
-/// Every solver with what it cannot do on the shipped scenes at its default settings.
+/// Every solver, with what it cannot do on the shipped scenes at its default settings.
 std::vector<report::SolverInfo> introductions() {
   std::vector<report::SolverInfo> all;
   for (const SolverEntry* entry : solvers())
@@ -51,14 +51,15 @@ std::vector<report::SolverInfo> introductions() {
   return all;
 }
 
-/// Bodies that deform take Bullet minutes: `--film` films such a scene.
+/// Whether a scene is drawn without being requested. Bullet needs minutes for bodies that deform;
+/// `--film` films such a scene.
 bool is_drawn_unasked(const std::string& name) {
   const Scene scene = load_scene(find_scene(name));
   return std::ranges::none_of(scene.colliders,
                               [](const Collider& c) { return c.frames != nullptr; });
 }
 
-/// "20261121T205040Z" as people write it: "2026-11-21 20:50 UTC".
+/// Converts "20261121T205040Z" to "2026-11-21 20:50 UTC".
 std::string readable(const std::string& stamp) {
   return stamp.substr(0, 4) + "-" + stamp.substr(4, 2) + "-" + stamp.substr(6, 2) + " " +
          stamp.substr(9, 2) + ":" + stamp.substr(11, 2) + " UTC";
@@ -70,7 +71,7 @@ std::vector<Study> load_all(const std::vector<std::string>& names, const std::st
   return studies;
 }
 
-/// `taut report A B [STUDY...]`: what differs, and what B has.
+/// Input of `taut report A B [STUDY...]`: what differs, and the contents of B.
 report::ReportInput compared_folders(const PageRequest& options) {
   if (options.studies.size() < 2 || !Store::is_at(options.studies[1]))
     throw InputError("report " + options.studies[0] +
@@ -100,7 +101,7 @@ report::ReportInput compared_folders(const PageRequest& options) {
   return input;
 }
 
-/// What other verbs found of this build; says and leaves out what cannot be read.
+/// Adds what other verbs found with this build. Reports and leaves out what cannot be read.
 void add_findings(report::ReportInput& input, const Store& store, const std::string& program) {
   const auto add = [&](const char* verb, auto& to, const auto& stored) {
     try {

@@ -5,23 +5,25 @@
 
 namespace taut {
 
-/// What `taut report` writes.
+/// Request of `taut report`.
 struct PageRequest {
-  /// None: the main job. The first two may be results folders: what differs between them.
+  /// Studies; none: those of the main job. If the first two are results folders, the page shows
+  /// what differs between them.
   std::vector<std::string> studies;
   std::vector<std::string> films;  ///< scenes to film that no study ran
   std::string preset, results;
-  std::string output;  ///< file that the text is for; "": none
-  bool media = true;   ///< with pictures and videos
-  bool model = false;  ///< the model of the page instead, without them
+  std::string output;  ///< file for which the text is meant; "": none
+  bool media = true;   ///< whether to include pictures and videos
+  /// Whether to return the model of the page instead, without pictures and videos.
+  bool model = false;
 };
 
 struct Page {
   std::string text;                       ///< HTML, or the model
-  std::vector<std::string> in_few_lines;  ///< its answer, for a terminal
+  std::vector<std::string> in_few_lines;  ///< its answer in a few lines, for a terminal
 };
 
-/// The page of stored results. Throws InputError, of an output that cannot be written before
+/// Makes the page of stored results. Throws InputError; if the output cannot be written, before
 /// anything is done.
 Page make_page(const PageRequest&);
 

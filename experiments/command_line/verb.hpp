@@ -20,43 +20,43 @@
 
 namespace taut {
 
-/// What a verb's process returns; the same for all verbs.
+/// Exit codes, the same for all verbs.
 enum ExitCode : int {
   kPass = 0,
-  kRegression = 1,   ///< a regression, a status change, a broken truth, an external program failed
-  kUsage = 2,        ///< bad usage or input; nothing was run, nothing was written
-  kIncomplete = 3,   ///< some cases are missing
-  kNothing = 4,      ///< nothing was compared: a check never passes vacuously
+  kRegression = 1,  ///< a regression, a status change, a broken truth, or a failed external program
+  kUsage = 2,       ///< bad usage or input; nothing was run or written
+  kIncomplete = 3,  ///< some cases are missing
+  kNothing = 4,     ///< nothing was compared: a check never passes without a comparison
   kEnvironment = 5,  ///< environment mismatch under --strict-env
   kConflict = 6,     ///< the same key with another result: a determinism alarm
   kInterrupted = kInterruptedExit
 };
 
-/// The headings of `taut --help`, in this order.
+/// Groups of verbs: the headings of `taut --help`, in this order.
 enum class VerbGroup { studies, one_case, cost, trust, extremes };
 
-/// Names in an answer: of its facts (`of` is "facts"), or of the columns of a table.
+/// Names in an answer: those of its facts (`of` is "facts"), or those of a table's columns.
 struct AnswerPart {
   std::string_view of;
-  std::string_view names;  ///< "cases ran"; "*": names that depend on what was asked for
+  std::string_view names;  ///< "cases ran"; "*": names that depend on the request
 };
 
-/// How `taut VERB` introduces itself: one per file in experiments/cli, found by its TAUT_VERB
-/// line.
+/// Description of `taut VERB`. Each file in experiments/cli has one, which is found by its
+/// TAUT_VERB line.
 struct VerbEntry {
-  std::string_view name;  ///< "run"; "bench effects" is a verb of the verb bench
+  std::string_view name;  ///< "run"; "bench effects" is a subverb of bench
   VerbGroup group = VerbGroup::studies;
   std::string_view summary;  ///< one line
-  std::string_view example;  ///< one or more full command lines, shown below --help
-  /// What --json has; empty: no answer (answer.hpp).
+  std::string_view example;  ///< one or more complete command lines, shown below --help
+  /// Contents of the answer with --json; empty: no answer (answer.hpp).
   std::vector<AnswerPart> answer;
-  /// Adds options to the verb's parser and returns what to do once they are parsed. It may throw
-  /// InputError (printed, exit 2). Data go to stdout, progress and logs to stderr. nullptr: a verb
-  /// that only has verbs of its own.
+  /// Adds options to the verb's parser and returns the function to call once they are parsed. That
+  /// function may throw InputError (printed, exit code 2). Data go to stdout, progress and logs to
+  /// stderr. nullptr for a verb that only has subverbs.
   std::function<int()> (*bind)(CLI::App&) = nullptr;
 };
 
-/// A verb's `bind`, of void add_options(CLI::App&, Options&) and int run(Options).
+/// Makes a verb's `bind` from void add_options(CLI::App&, Options&) and int run(Options).
 template <auto add_options, auto run, class Options>
 std::function<int()> bind_options(CLI::App& app, void (*)(CLI::App&, Options&)) {
   const auto options = std::make_shared<Options>();
@@ -71,7 +71,7 @@ std::function<int()> bind_verb(CLI::App& app) {
 /// All verbs, sorted by identifier (generated; see cmake/registry.cmake).
 std::span<const VerbEntry* const> verbs();
 
-/// What main() does: finds the verb, parses its options, runs it; returns the exit code.
+/// Body of main(): finds the verb, parses its options, runs it, and returns the exit code.
 int command_line(int argc, char** argv);
 
 }  // namespace taut

@@ -29,7 +29,7 @@ std::string Command::text() const { return join(words, " ", shell_word); }
 namespace {
 
 /// Splits a command into words as a POSIX shell would, with quotes, `~` and `$NAME`, but expands no
-/// pattern and starts nothing. What a variable holds stays one word.
+/// file name patterns and runs nothing. The value of a variable stays one word.
 class Splitter {
  public:
   explicit Splitter(const std::string& text) : text_(text) {}
@@ -104,8 +104,8 @@ class Splitter {
 
   const std::string& text_;
   std::size_t at_ = 0;
-  char quote_ = 0;      ///< the quote that is open; 0: none
-  bool begun_ = false;  ///< a word has begun, be it an empty one in quotes
+  char quote_ = 0;      ///< the open quote; 0: none
+  bool begun_ = false;  ///< a word has begun, which may be empty in quotes
   std::string word_;
   std::vector<std::string> words_;
 };
@@ -129,9 +129,10 @@ namespace {
 bool allowed(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; }
 
 constexpr std::size_t kLongestLine = 1 << 20, kLog = 4000;
-constexpr std::size_t kMostErrors = std::size_t{64} << 20;  ///< its standard error, bytes
+/// Limit on the program's standard error.
+constexpr std::size_t kMostErrors = std::size_t{64} << 20;
 
-/// The beginning of what it said, for a message: one line of visible characters.
+/// The beginning of an output, for a message: one line of visible characters.
 std::string excerpt(std::string_view text) {
   std::string shown;
   for (const char c : text.substr(0, 200))
@@ -148,7 +149,7 @@ ProcessOptions options(const Command& command, const fs::path& errors) {
           .limits = {.file_bytes = kMostErrors}};
 }
 
-/// Every language has words of its own for it.
+/// Whether a log reports that memory ran out. Each language words it differently.
 bool names_memory(const std::string& log) {
   for (const char* word : {"MemoryError", "bad_alloc", "out of memory", "Cannot allocate memory"})
     if (log.find(word) != log.npos) return true;
@@ -184,7 +185,7 @@ std::string Connection::log() const {
 }
 
 void Connection::fail(const std::string& status, const std::string& reason) {
-  process_.wait(0);  // and all that it started
+  process_.wait(0);  // also kills all processes that it started
   throw SolverFailure(status, reason, log());
 }
 
@@ -252,7 +253,8 @@ Json parse_answer(const std::string& line) {
 
 Json Connection::answer() {
   const std::string said = take_line();
-  if (ticks_at_start_ < 0) ticks_at_start_ = children_ticks();  // those of a script that became it
+  // Counted from here: a script may exec the program.
+  if (ticks_at_start_ < 0) ticks_at_start_ = children_ticks();
   try {
     return parse_answer(said);
   } catch (const InputError& error) {
@@ -295,7 +297,7 @@ long Connection::children_ticks() const {
   std::getline(in, text);
   std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
   std::string skipped;
-  for (int i = 3; i < 16; ++i) fields >> skipped;  // proc(5): cutime is the 16th, cstime the 17th
+  for (int i = 3; i < 16; ++i) fields >> skipped;  // proc(5): cutime is field 16, cstime 17
   long user = 0, system = 0;
   fields >> user >> system;
   return user + system;

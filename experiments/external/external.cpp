@@ -33,7 +33,7 @@ constexpr ParamSpec kLeading[] = {
      .kind = ParamSpec::Kind::text,
      .help = "Name of the state of its sources, in place of command, files and version"}};
 
-/// Stands for all programs where none is named.
+/// Entry for a solver text "external" that names no program.
 const SolverEntry kAny = {
     .name = "external",
     .summary = "Any program that speaks taut-solver/1 to /4: external:cmd='python3 mine.py'",
@@ -48,7 +48,7 @@ const SolverEntry kAny = {
         },
     .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
 
-/// A solver's file in the registered folder.
+/// A solver's file in registered_folder().
 struct Registered {
   Command command;
   std::vector<std::string> files;
@@ -86,7 +86,7 @@ Registered read_registered(const fs::path& file) {
 fs::path file_of(const std::string& name) { return registered_folder() / (name + ".toml"); }
 
 bool is_registered(const std::string& name) {
-  std::error_code unreadable;  // the folder of another user: none
+  std::error_code unreadable;  // another user's folder counts as empty
   return fs::is_regular_file(file_of(name), unreadable);
 }
 
@@ -116,13 +116,14 @@ struct Programs {
   std::map<std::string, std::shared_ptr<Program>> all;
 };
 
-/// Those that were started.
+/// All programs that were started.
 Programs& started() {
   static Programs all;
   return all;
 }
 
-/// Programs by name, command and, if they did not introduce themselves, all that was typed.
+/// Returns the entry of a program, which is started once for each name, command and build. If the
+/// program does not introduce itself, each text of parameters has an entry.
 const SolverEntry* program(const std::string& name, std::string_view params,
                            const Registered& solver, std::vector<ParamSpec> leading) {
   const std::lock_guard lock(started().mutex);
@@ -134,7 +135,8 @@ const SolverEntry* program(const std::string& name, std::string_view params,
   if (!known) {
     const std::string called = name == kAny.name ? "" : name;
     known = std::make_shared<Program>(called, solver.command, leading, params, solver.files);
-    programs[std::string(known->entry().name) + command] = known;  // its canonical text names it so
+    // Its canonical text uses this name.
+    programs[std::string(known->entry().name) + command] = known;
   }
   if (known->silence().empty()) return &known->entry();
   auto& one = programs[name + command + '\n' + std::string(params)];
@@ -142,8 +144,7 @@ const SolverEntry* program(const std::string& name, std::string_view params,
   return &one->entry();
 }
 
-/// What a solver's text would start or open: a registered name, a command, or files. Empty:
-/// nothing.
+/// What a solver text would start or open: a registered name, a command or files. Empty if nothing.
 std::set<std::string> named_by(const std::string& name, std::string_view params) {
   if (!is_solver_name(name)) return {};
   if (is_registered(name)) return {"solver " + name};
@@ -156,7 +157,7 @@ std::set<std::string> named_by(const std::string& name, std::string_view params)
   return files;
 }
 
-/// What the command line and studies have named so far.
+/// The programs and files that the command line and studies have named so far.
 class Admitted {
  public:
   void add(const std::set<std::string>& named) {
@@ -182,7 +183,7 @@ void admit(std::string_view name, std::string_view params) {
   admitted().add(named_by(std::string(name), params));
 }
 
-/// A program or file that was not admitted: its parameters are texts, as they are stored.
+/// Entry for a program or file that was not admitted. Its parameters are texts, as they are stored.
 class Unstarted {
  public:
   Unstarted(std::string name, std::string_view given) : name_(std::move(name)) {
@@ -219,7 +220,8 @@ const SolverEntry* unstarted(const std::string& name, std::string_view params) {
   return &entries.try_emplace(name + ':' + std::string(params), name, params).first->second.entry();
 }
 
-/// "mine:cmd='...'" and "mine:file=..." give a name to what they call.
+/// Finds an entry. "mine:cmd='...'" and "mine:file=..." also name the program or file that they
+/// call.
 const SolverEntry* find(std::string_view name, std::string_view params) {
   const std::string called(name);
   if (!is_solver_name(name)) return nullptr;
@@ -262,19 +264,20 @@ Command command_of(const std::string& text) {
     const bool name = text.find_first_of(" /'\"") == text.npos && is_registered(text);
     return name ? read_registered(file_of(text)).command : split_command(text, "");
   }
-  std::string ours;  // the parameters that are not the program's
+  std::string ours;  // parameters of taut, not of the program
   std::string cmd;
   for (const ParamItem& item : param_items(std::string_view(text).substr(9)))
     if (item.key == "timeout")
       ours += "timeout=" + item.value;
     else if (item.key == "cmd") {
-      if (!item.problem.empty()) throw InputError(item.problem);  // half a command is not called
+      // An incomplete command is not run.
+      if (!item.problem.empty()) throw InputError(item.problem);
       cmd = item.value;
     }
   Command command = split_command(cmd, value_in(std::string_view(text).substr(9), "folder"));
   try {
     command.seconds = Params("external", kLeading, ours).real("timeout");
-  } catch (const InputError&) {  // whoever reads all parameters says so, with its column
+  } catch (const InputError&) {  // reading all parameters reports this, with its column
   }
   return command;
 }

@@ -45,7 +45,7 @@ MotionOptions options_of(const Params& params) {
           .rest = params.value("rest")};
 }
 
-/// Of all bytes that the results depend on.
+/// Digest of all bytes on which the results depend.
 std::string digest_of(const MotionOptions& options) {
   std::string all;
   for (const std::filesystem::path& file : {options.file, options.rest}) {

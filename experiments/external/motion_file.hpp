@@ -9,28 +9,29 @@
 
 namespace taut::external {
 
-/// User-supplied options; missing ones are inferred.
+/// Options of a motion that a file holds. Missing ones are inferred.
 struct MotionOptions {
-  std::filesystem::path file;  ///< positions (core/io/positions)
-  double fps = 0;              ///< frames in a second; 0: one a step of the scene
+  std::filesystem::path file;  ///< positions; core/io/positions lists the formats
+  double fps = 0;              ///< frames per second; 0: one frame for each step of the scene
   double scale = 1;            ///< m per unit of the file
-  bool z_up = false;           ///< else y
-  std::filesystem::path rest;  ///< its first frame is the cloth at rest, in the file's order;
-                               ///< empty: the file's own first frame is the scene's start
+  bool z_up = false;           ///< the file's up axis: z if true, y otherwise
+  /// File whose first frame is the cloth at rest, in the same order of vertices. Empty: the first
+  /// frame of `file` itself is the start of the scene.
+  std::filesystem::path rest;
 };
 
-/// Throws InputError: unreadable or malformed.
+/// Opens the files. Throws InputError if one is unreadable or malformed.
 ComputedFrames opened(const MotionOptions&);
 
-/// Stands for all files of positions where none is named.
+/// Entry for a solver text "positions" that names no file.
 extern const SolverEntry kPositions;
 
-/// The entry of "positions:file=...", or of another name: plays what another program computed as if
-/// it computed it now, without cost. Lives as long as this program. Throws InputError if the file
-/// cannot be read.
+/// Entry of "positions:file=...", or of the same under another name. It plays back what another
+/// program computed as if it were computed now, at no cost. The entry lives until this program
+/// ends. Throws InputError if the file cannot be read.
 const SolverEntry* recorded(const std::string& name, std::string_view params);
 
-/// The text that names this motion as a solver.
+/// Solver text that stands for this motion.
 std::string solver_text(const MotionOptions&);
 
 }  // namespace taut::external

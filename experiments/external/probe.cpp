@@ -17,7 +17,7 @@ using Verdict = Check::Verdict;
 constexpr double kDt = 1.0 / 64;  ///< s
 constexpr int kSteps = 32;
 
-/// A sheet of `side` x `side` vertices, 1 m wide, at its rest shape; links along its sides.
+/// A sheet of `side` x `side` vertices, 1 m wide and in its rest shape, with links along its sides.
 Scene sheet(int side, std::vector<int> pins) {
   Scene scene;
   scene.name = "probe";
@@ -34,7 +34,7 @@ std::string text(double value) { return formatted("%.4g", value); }
 
 std::string text(const Vec3& v) { return formatted("(%.4g, %.4g, %.4g)", v.x(), v.y(), v.z()); }
 
-/// The vertex that is farthest from where it should be. NaN counts as farthest.
+/// The vertex farthest from its expected position. NaN counts as farthest.
 std::pair<std::size_t, double> farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   std::pair<std::size_t, double> worst{0, 0};
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -42,11 +42,11 @@ std::pair<std::size_t, double> farthest(const std::vector<Vec3>& a, const std::v
   return worst;
 }
 
-/// What is wrong; the check ends there.
+/// Thrown to end a check, with what is wrong.
 struct CheckFailed {
   std::string said;
 };
-/// The program refuses the scene.
+/// Thrown if the program refuses the scene.
 struct Refused {
   std::string said;
 };
@@ -58,7 +58,7 @@ class Prober {
       std::function<void(const Check&)> report = [](const Check&) {})
       : command_(command), params_(std::move(params)), report_(std::move(report)) {}
 
-  /// The sentence that `look` returns, or throws.
+  /// Runs a check: `look` returns a sentence on success and throws otherwise.
   void check(const std::string& name, const std::function<std::string()>& look) {
     Check one{name, Verdict::passed, {}};
     try {
@@ -97,7 +97,8 @@ class Prober {
     if (!answer.cannot.empty()) throw Refused{answer.cannot.front()};
   }
 
-  /// The state after so many steps of the scene's dt, from its start or from where it is.
+  /// Takes `steps` steps of the scene's dt, from its start or from the current state, and returns
+  /// the state.
   State run(const Scene& scene, int steps, bool from_start = true) {
     if (from_start) {
       load_state(connection(), scene.start);
@@ -122,12 +123,13 @@ class Prober {
   int step_ = 0;
 };
 
-/// x = x0 + v0 t + g t^2/2 (1 + c/n), v = v0 + g (t + c dt/2), -1 <= c <= 1 whatever the integrator
-/// (explicit Euler -1, exact 0, symplectic Euler and Verlet 1; substeps are between).
+/// Checks free fall: x = x0 + v0 t + g t^2/2 (1 + c/n) and v = v0 + g (t + c dt/2) after n steps,
+/// with -1 <= c <= 1 for every integrator (explicit Euler -1, exact 0, symplectic Euler and Verlet
+/// 1; substeps lie between).
 std::string falls(Prober& probe, double dt) {
   Scene scene = sheet(4, {});
   scene.dt = dt;
-  scene.gravity = Vec3(2.25, -3, 9);  // |g| = 9.75 m/s^2, along no axis
+  scene.gravity = Vec3(2.25, -3, 9);  // |g| = 9.75 m/s^2, parallel to no axis
   const Vec3 v0(1, 2, -0.5);
   std::ranges::fill(scene.start.v, v0);
   probe.give(scene);

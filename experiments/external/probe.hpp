@@ -8,23 +8,23 @@
 
 namespace taut::external {
 
-/// One thing that a program has to do, and whether it does.
+/// One requirement on a program, and whether the program meets it.
 struct Check {
   enum class Verdict { passed, failed, skipped };
   std::string name;
   Verdict verdict = Verdict::passed;
-  std::string said;              ///< what was seen, or what is wrong: a sentence
-  std::string status = "error";  ///< of a case that fails so
+  std::string said;              ///< a sentence that says what was observed or what is wrong
+  std::string status = "error";  ///< status of a case whose program fails this check
 };
 std::string_view to_string(Check::Verdict);
 
-/// What every program has to pass before any of its results counts, at these values of its
-/// parameters: free fall, time step, pins, the same bits twice and after a reload, restart from a
-/// state. On sheets of 16 vertices, some 300 steps in all.
+/// Checks that a program has to pass, at these values of its parameters, before any of its results
+/// counts: free fall, time step, pins, the same bits twice and after a reload, restart from a
+/// state. They use sheets of 16 vertices and some 300 steps in all.
 std::vector<Check> quick_probe(const Command&, const Json& params);
 
-/// The same at the default parameters, and: bad requests, the end of its input, its own word about
-/// its time. `report` is called after each.
+/// The checks of quick_probe() at the default parameters, and further ones: bad requests, the end
+/// of the program's input, and the time that the program reports. Calls `report` after each check.
 std::vector<Check> full_probe(const Command&, const std::function<void(const Check&)>& report);
 
 }  // namespace taut::external

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A scene in a program of its own. Solver calls are requests.
+/// A scene in a process of its own. Each call of the solver is a request to it.
 class ExternalSolver final : public Solver {
  public:
   ExternalSolver(std::unique_ptr<Connection> connection, int vertices, std::vector<PassCost> plan,
@@ -76,7 +76,7 @@ class ExternalSolver final : public Solver {
   }
 
  private:
-  /// What an exchange costs the program that asks for no step: the least of three means.
+  /// Measures what an exchange without a step costs the program: the least of three means.
   void measure_empty_exchange() const {
     constexpr int kExchanges = 50;
     timed_ = true;
@@ -93,11 +93,13 @@ class ExternalSolver final : public Solver {
   std::vector<PassCost> plan_;
   std::string unmeasurable_;
   mutable bool timed_ = false;
-  mutable double empty_ = 0;   ///< CPU s of an exchange without a step
-  mutable double clock_ = 0;   ///< CPU s of the steps since timing began, as measured: what the
-                               ///< first state after them costs beyond a second one is theirs too
-  mutable bool owed_ = false;  ///< steps were asked for, and no state since: they may be undone
-  double said_ = 0;            ///< CPU s of the steps, its word
+  mutable double empty_ = 0;  ///< CPU s of an exchange without a step
+  /// CPU s measured for the steps since timing began. If the first state after them costs more than
+  /// a second one, the difference counts too, since the program may postpone work until then.
+  mutable double clock_ = 0;
+  /// Steps were requested but no state since: their work may be postponed.
+  mutable bool owed_ = false;
+  double said_ = 0;  ///< CPU s of the steps that the program reports
   int steps_ = 0;
 };
 
@@ -105,7 +107,7 @@ std::string key_of(const Scene& scene, const Params& params) {
   return digest(scene) + params.canonical();
 }
 
-/// What its results depend on and this program can see.
+/// Digest of everything visible here on which the program's results depend.
 std::string digest_of(const Command& command, const std::vector<std::string>& files,
                       const std::string& version) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 28;
@@ -118,7 +120,7 @@ std::string digest_of(const Command& command, const std::vector<std::string>& fi
   return sha256(all);
 }
 
-/// What the results of a build that is named depend on: wherever the program lies.
+/// Digest for a build that the user named. It does not depend on where the program lies.
 std::string digest_of(const Command& command, const std::string& build) {
   return sha256("build " + build + "\n" + join(command.words, "\n", [](const fs::path& word) {
                   return word.filename().string();
@@ -167,7 +169,7 @@ Program::Program(const Program& silent, std::vector<ParamSpec> leading, std::str
 
 void Program::introduce(std::string_view given) {
   if (!hello_)
-    for (const ParamItem& item : param_items(given))  // nobody knows them: as they are typed
+    for (const ParamItem& item : param_items(given))  // unknown parameters stay texts, as typed
       if (std::ranges::find(specs_, item.key, &ParamSpec::name) == specs_.end())
         specs_.push_back({.name = texts_.emplace_back(item.key), .kind = ParamSpec::Kind::text});
   entry_ = {.name = name_,
@@ -200,8 +202,8 @@ Program::Loaded Program::load(const Scene& scene, const Params& params) const {
 }
 
 std::vector<std::string> Program::unsupported(const Scene& scene, const Params& params) {
-  if (!hello_) return {};                     // make() says why
-  const Scene first = stages(scene).front();  // a program gets them one by one
+  if (!hello_) return {};                     // make() reports why
+  const Scene first = stages(scene).front();  // a program gets the stages one by one
   if (std::vector<std::string> unknown = beyond(hello_->version_spoken, first); !unknown.empty())
     return unknown;
   const std::lock_guard lock(mutex_);

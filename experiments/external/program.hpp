@@ -15,25 +15,25 @@
 
 namespace taut::external {
 
-/// A value of the parameters of a solver's text; "": it has none.
+/// Value of a key in the parameters of a solver text; "" if it is absent.
 std::string value_in(std::string_view params, std::string_view key);
 
-/// One program as a solver: its entry, for as long as this program lives.
+/// An external program as a solver. Its entry lives until this program ends.
 class Program {
  public:
-  /// Says hello. A program that answers it badly has an entry all the same, whose cases end as the
-  /// hello did: it costs its own cases, not the study. `name`: "" names it after itself
-  /// (name_for). `leading` are the parameters that come before its own, `given` the text of all,
-  /// `files` what it is made of beside the files that the command names. Throws InputError if it
-  /// cannot be started.
+  /// Starts the program and says hello. If it answers badly, its entry exists all the same, and its
+  /// cases end as the hello did: a bad program costs its own cases, not the study. An empty `name`
+  /// is replaced by one from name_for(). `leading` are parameters that come before the program's
+  /// own, `given` is the text of all parameters, and `files` belong to the program beside the files
+  /// that the command names. Throws InputError if the program cannot be started.
   Program(std::string name, Command, std::vector<ParamSpec> leading, std::string_view given,
           const std::vector<std::string>& files);
-  /// A program that did not introduce itself, called with other parameters.
+  /// The same program as `silent`, which did not introduce itself, with other parameters.
   Program(const Program& silent, std::vector<ParamSpec> leading, std::string_view given);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   const SolverEntry& entry() const { return entry_; }
-  /// Why it did not introduce itself; "": it did.
+  /// Why the program did not introduce itself; "" if it did.
   std::string silence() const { return failure_ ? failure_->what() : ""; }
 
  private:
@@ -49,17 +49,19 @@ class Program {
   void require_probed(const Params&);
 
   std::string name_, implementation_, build_;
-  bool told_ = false;  ///< the build, by whoever starts it
+  bool told_ = false;  ///< whether the user named the build
   Command command_;
   std::unique_ptr<const Hello> hello_;
-  std::optional<SolverFailure> failure_;  ///< of the hello
+  std::optional<SolverFailure> failure_;  ///< why the hello failed
   std::deque<std::string> texts_;
   std::vector<ParamSpec> specs_;
   SolverEntry entry_;
 
   std::mutex mutex_;
-  std::map<std::string, std::optional<SolverFailure>> probed_;  ///< by values of its parameters
-  std::map<std::string, Loaded> waiting_;  ///< asked whether it can, until make() takes it
+  /// Result of the quick probe, by parameter values.
+  std::map<std::string, std::optional<SolverFailure>> probed_;
+  /// Started and given a scene by unsupported(), until make() takes them.
+  std::map<std::string, Loaded> waiting_;
   std::map<std::string, ResolvedSettings> settings_;
 };
 

@@ -36,7 +36,7 @@ requires std::is_enum_v<Enumeration> Json json_of(Enumeration value, const Scene
   return parts_of(key.choices)[static_cast<std::size_t>(value)];
 }
 
-/// The keys of the section that are members of the part.
+/// Values of those keys of the section that are members of `part`.
 template <class Part>
 Json json_of(std::string_view section, const Part& part) {
   Json all = Json::object();
@@ -78,14 +78,15 @@ Json json_of(const Collider& collider) {
   return one;
 }
 
-/// Each knows what was there before it, too; beyond() names what came with it.
+/// Versions of the protocol and of the scene file. Each includes the ones before it; beyond() names
+/// what each adds.
 constexpr std::string_view kProtocols[] = {"taut-solver/1", "taut-solver/2", "taut-solver/3",
                                            "taut-solver/4"};
 constexpr std::string_view kFormats[] = {"taut-scene/1", "taut-scene/2", "taut-scene/3",
                                          "taut-scene/4"};
 constexpr double kLargestInteger = 2147483647;
 
-/// Calls `read`; whatever it finds wrong in an answer breaks the protocol.
+/// Returns read(). An error that `read` finds in an answer is a breach of the protocol.
 template <class Read>
 auto judged(Connection& connection, Read read) {
   try {
@@ -106,7 +107,8 @@ std::string text_or(const JsonReader& j, const char* key, const std::string& fal
   return found ? found->text() : fallback;
 }
 
-/// A parameter as the program describes it, with a default that its own range holds.
+/// Reads the specification of a parameter from a program's answer. Its default has to lie in its
+/// own range.
 class SpecReader {
  public:
   SpecReader(Hello& hello, const std::string& name, const JsonReader& j) : hello_(hello), j_(j) {
@@ -176,7 +178,7 @@ Json typed(const ParamSpec& spec, std::string_view value) {
   }
 }
 
-/// By family [N/m]; null: rigid.
+/// Stiffness by family [N/m]; null: rigid.
 Json stiffness(const Scene& scene) {
   Json all;
   for (const Family family : kFamilies) {
@@ -249,7 +251,8 @@ std::string scene_file(const Scene& scene) {
       releases.push_back({{"t", release.step * scene.dt}, {"vertices", release.vertices}});
   }
   if (scene.bending) {
-    file["bending"] = json_of("bending", *scene.bending);  // whose key `warp` is the direction
+    // Its key `warp` is the direction of the warp.
+    file["bending"] = json_of("bending", *scene.bending);
     file["bending"].update({{"warp", scene.bending->warp},
                             {"weft", scene.bending->weft},
                             {"direction", json_of(scene.bending->direction)}});

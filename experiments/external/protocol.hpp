@@ -11,55 +11,56 @@
 
 namespace taut::external {
 
-/// What a program answers to "hello".
+/// A program's answer to "hello".
 struct Hello {
   std::string name, version, summary, source;
   int version_spoken = 1;    ///< n of taut-solver/n
-  std::string unmeasurable;  ///< why its time says nothing; "": it does
+  std::string unmeasurable;  ///< why its time means nothing; "" if it is valid
   std::vector<ParamSpec> params;
-  std::deque<std::string> texts;  ///< what the views of `params` see
+  std::deque<std::string> texts;  ///< storage behind the views in `params`
 };
 
-/// What a program answers to "scene".
+/// A program's answer to "scene".
 struct SceneAnswer {
-  std::vector<std::string> cannot;  ///< why it would misread the scene; empty: it has loaded it
+  /// Why it would misread the scene; empty: it has loaded the scene.
+  std::vector<std::string> cannot;
   std::vector<PassCost> plan;
   ResolvedSettings settings;
 };
 
-/// The answers to "hello", "scene", "step" and "store". Each throws InputError that says what is
-/// wrong; members that nobody knows are ignored.
+/// Readers of the answers to "hello", "scene", "step" and "store". Each throws InputError that says
+/// what is wrong and ignores unknown members.
 std::unique_ptr<const Hello> read_hello(const Json&);
 SceneAnswer read_scene_answer(const Json&, int vertices);
-double read_step(const Json&);  ///< s of CPU time as the program says; NaN: it does not say
-std::size_t read_store(const Json&, int vertices);  ///< bytes of a state that follow
+double read_step(const Json&);  ///< s of CPU time that the program reports, or NaN
+std::size_t read_store(const Json&, int vertices);  ///< size in bytes of the state that follows
 
-/// Says hello. Throws SolverFailure with what is wrong in the answer.
+/// Says hello. Throws SolverFailure that says what is wrong with the answer.
 std::unique_ptr<const Hello> say_hello(Connection&);
 
 /// Gives the program a scene and the values of its own parameters.
 SceneAnswer give_scene(Connection&, const Scene&, const Json& params);
 
-/// The values of the program's own parameters: numbers for numbers, texts for the others.
+/// Values of the program's own parameters: numbers as JSON numbers, all others as texts.
 Json own_params(const Hello&, const Params&);
 
-/// load, step and store.
+/// Gives the program a state to start from.
 void load_state(Connection&, const State&);
-/// Advances `count` steps of dt from t; returns the CPU seconds that the program says it took, NaN
-/// if it does not say.
+/// Advances `count` steps of dt from t. Returns the CPU seconds that the program reports, or NaN.
 double take_steps(Connection&, double t, double dt, int count);
-/// Whether a program's word about its time agrees with its CPU clock: within a tenth and two empty
-/// exchanges, what a busy machine's caches cost. [s] a step.
+/// Whether the time that a program reports (`word`) agrees with its CPU clock, all in s per step.
+/// The tolerance is a tenth plus the cost of two empty exchanges, which allows for the caches of a
+/// busy machine.
 bool agrees(double word, double clock, double empty);
 void store_state(Connection&, int vertices, State&);
 
-/// What of a scene came after that version of the protocol, a few words each: with the second
-/// elastic links, capsules, bending and keys that came later; with the third bodies of triangles. A
-/// program that speaks an earlier one is not asked for such a scene.
+/// Features of a scene that came after that version of the protocol, in a few words each. Version 2
+/// added elastic links, capsules, bending and later keys; version 3 bodies of triangles; version 4
+/// bodies that deform. A program that speaks an earlier version is not asked to run such a scene.
 std::vector<std::string> beyond(int version, const Scene&);
 
-/// The scene as a program gets it: JSON, everything resolved, SI units, doubles in shortest exact
-/// form. Every key stands in experiments/external/README.md.
+/// The scene as a program gets it: JSON with everything resolved, in SI units, each double in its
+/// shortest exact form. experiments/external/README.md explains every key.
 std::string scene_file(const Scene&);
 
 }  // namespace taut::external

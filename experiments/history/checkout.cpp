@@ -31,8 +31,9 @@ struct GitAnswer {
   std::string text, complaint;
 };
 
-/// Nothing that a repository's files or configuration name is started. `folder` is the top of a
-/// checkout, so that git looks for no other one above it, or `anywhere` in one.
+/// Runs git so that nothing named by a repository's files or configuration is started. `folder` is
+/// the top of a checkout, so that git does not search above it; with `anywhere` it may be any
+/// folder in one.
 GitAnswer git(const fs::path& folder, const std::vector<std::string>& words,
               bool anywhere = false) {
   std::vector<std::string> all{
@@ -85,7 +86,7 @@ double bytes_in(const fs::path& folder) {
   return bytes;
 }
 
-/// Why a disk is too full to go on; "": it is not.
+/// Why the disk is too full to continue; "" if it is not.
 std::string full(const fs::path& folder) {
   constexpr std::uintmax_t kLeast = std::uintmax_t{200} << 20;
   std::error_code error;
@@ -101,7 +102,7 @@ Repository::Repository(const fs::path& folder) : folder_(fs::absolute(folder).le
   if (!on_path("git")) throw InputError("git is not installed");
   std::error_code none;
   if (!fs::is_directory(folder_, none)) throw InputError(folder.string() + ": no such folder");
-  // of a hook, which would lead git elsewhere
+  // A hook sets these, and they would redirect git.
   for (const char* name : {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX"})
     unsetenv(name);
   const GitAnswer top = git(folder_, {"rev-parse", "--absolute-git-dir"}, true);
@@ -157,7 +158,7 @@ Checkout::Checkout(const Repository& repository, const fs::path& folder)
     throw InputError(folder_.string() + ": another taut history is at work there");
   std::error_code none;
   if (!git(folder_, {"rev-parse", "--git-dir"}).good) {
-    fs::remove_all(folder_, none);  // half a clone of a process that was killed
+    fs::remove_all(folder_, none);  // an incomplete clone by a process that was killed
     git_or_throw(repository.folder(),
                  {"clone", "--quiet", "--shared", "--no-checkout", repository.folder().string(),
                   folder_.string()},

@@ -8,16 +8,17 @@
 
 namespace taut {
 
-/// A repository of git, read alone: nothing is written into it, and neither its hooks nor what its
-/// configuration names is started.
+/// A git repository that is only read. Nothing is written into it, and neither its hooks nor
+/// programs that its configuration names are run.
 class Repository {
  public:
-  /// Throws InputError: there is no git, or no repository.
+  /// Throws InputError if git is not installed or the folder is no repository.
   explicit Repository(const std::filesystem::path& folder);
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// A, and what follows it to B along first parents, of "A..B": its commits as builds, the oldest
-  /// first. Throws InputError: no such commit, the wrong way round, none in between.
+  /// The commits of the range "A..B" as builds, oldest first: A, and the line of first parents that
+  /// leads from it to B. Throws InputError if a commit does not exist, A does not precede B, or the
+  /// range is empty.
   std::vector<Build> line(const std::string& range) const;
 
  private:
@@ -26,33 +27,34 @@ class Repository {
   std::filesystem::path folder_;
 };
 
-/// How much a build of a commit may take.
+/// Limits on the build of a commit.
 struct BuildLimits {
   double seconds = 3600;
-  double bytes = 20e9;  ///< of its folder
+  double bytes = 20e9;  ///< size of its folder
 };
 
-/// A folder that holds the files of one commit after another, so that the next commit finds what
-/// was built of the last. It borrows the repository's objects and writes nothing there.
+/// A folder that contains the files of one commit after another, so that each build can reuse the
+/// previous one. It borrows the repository's objects and writes nothing into the repository.
 class Checkout {
  public:
-  /// Takes up what an earlier process left. Throws InputError: another process uses the folder.
+  /// Reuses what an earlier process left there. Throws InputError if another process uses the
+  /// folder.
   Checkout(const Repository&, const std::filesystem::path& folder);
   ~Checkout();
   Checkout(const Checkout&) = delete;
   Checkout& operator=(const Checkout&) = delete;
   const std::filesystem::path& folder() const { return folder_; }
-  const std::string& commit() const { return commit_; }  ///< "": none yet
+  const std::string& commit() const { return commit_; }  ///< "" until one is built
 
-  /// Checks out a commit and, unless it is "", runs a command of the shell there. Returns why that
-  /// failed, in one sentence; "" if it did not. Throws InputError: the disk is full, or git
-  /// refuses.
+  /// Checks out a commit and runs `command`, unless it is "", in a shell there. Returns "" on
+  /// success, otherwise a sentence that says why it failed. Throws InputError if the disk is full
+  /// or git refuses.
   std::string build(const std::string& commit, const std::string& command, const BuildLimits&);
-  /// What somebody changed in the files of the commit since build(), one sentence; "": nothing.
+  /// A sentence that says what changed in the commit's files since build(); "" if nothing did.
   std::string changed() const;
 
  private:
-  std::string state() const;  ///< the commit, and files that are not as it has them
+  std::string state() const;  ///< the commit, and the files that differ from it
   std::filesystem::path folder_;
   std::string commit_, state_;
   int lock_ = -1;

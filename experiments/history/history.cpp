@@ -25,7 +25,7 @@ MetricValues values_of(Database& database, std::int64_t case_id,
   return values;
 }
 
-/// Rows of a study; an point for each result that is not that of another build.
+/// Reads the rows of a study. Each distinct result becomes one point.
 void read_rows(Database& database, History& history) {
   std::map<std::int64_t, std::string> names;
   {
@@ -103,14 +103,15 @@ std::size_t build_of(const History& history, const std::string& id) {
   return at == history.builds.end() ? kNone : static_cast<std::size_t>(at - history.builds.begin());
 }
 
-/// Whether no build between the two has a result of the case: a bisection times others, too.
+/// Whether no build between the two has a result for the case. A bisection also times builds that
+/// are not neighbours.
 bool are_neighbours(const HistoryRow& row, std::size_t before, std::size_t now) {
   for (std::size_t i = before + 1; i < now; ++i)
     if (row.points[i]) return false;
   return before < now;
 }
 
-/// Of two neighbours that were timed in turns.
+/// Adds the steps in cost between neighbours that were timed in turns.
 void add_cost_steps(History& history) {
   for (const BuildRatio& one : history.ratios) {
     const std::size_t row = row_of(history, one.id), before = build_of(history, one.before),
@@ -124,7 +125,7 @@ void add_cost_steps(History& history) {
   }
 }
 
-/// No step rests on what does not match its digest.
+/// Removes the steps that involve a result that does not match its digest.
 void leave_out_unsound(const Store& store, History& history) {
   std::map<std::string, bool> sound;
   const auto is_sound = [&](const std::string& key) {

@@ -12,61 +12,62 @@ namespace taut {
 
 class Store;
 
-/// What a build found of a case. Builds whose results are the same to the bit have one together.
+/// Result of a build for a case. Builds whose results agree to the bit share one point.
 struct HistoryPoint {
-  std::string key;         ///< of a case that is stored with it
+  std::string key;         ///< key of a stored case with this result
   std::string status;      ///< "ok", "exploded (energy)"
-  bool completed = false;  ///< its values may be compared
+  bool completed = false;  ///< whether its values may be compared
   MetricValues values;
 };
 
-/// A case of a study, build by build.
+/// A case of a study, across builds.
 struct HistoryRow {
   std::string id;             ///< "hang jakobsen:iterations=8"
-  std::string scene, solver;  ///< names
-  /// By build; nullptr: it has no result of this case.
+  std::string scene, solver;  ///< their names
+  /// By build; nullptr: the build has no result for this case.
   std::vector<std::shared_ptr<const HistoryPoint>> points;
-  std::vector<std::string> keys;  ///< by build; "": the build did not plan it
+  std::vector<std::string> keys;  ///< by build; "": the build did not plan this case
 };
 
-/// A value that is not what it was in the build before, beyond what is noise.
+/// A value that differs from the previous build's by more than tolerance or noise.
 struct HistoryStep {
   std::size_t row = 0;
-  std::size_t before = 0, now = 0;  ///< builds; those between them have no result of the case
-  std::string value;                ///< "stretch.rms", "status", "cpu.per_step", "wall.per_step"
-  double was = 0, is = 0;           ///< SI; of a cost 1 and the ratio
-  std::string text;                 ///< of a status: "ok to exploded (energy)"
-  double relative = 0;              ///< relative_change()
+  /// Indices of builds; builds between them have no result for the case.
+  std::size_t before = 0, now = 0;
+  std::string value;       ///< "stretch.rms", "status", "cpu.per_step", "wall.per_step"
+  double was = 0, is = 0;  ///< SI; for a cost, 1 and the ratio
+  std::string text;        ///< for a status: "ok to exploded (energy)"
+  double relative = 0;     ///< relative_change()
   bool of_time() const { return value.ends_with(".per_step"); }
 };
 
 struct History {
   std::string study;
   std::vector<Build> builds;
-  std::vector<HistoryRow> rows;    ///< by id
-  std::vector<BuildRatio> ratios;  ///< of pairs of these builds
-  std::vector<HistoryStep> steps;  ///< the largest first
-  std::size_t compared = 0;        ///< pairs of neighbouring results, costs included
+  std::vector<HistoryRow> rows;    ///< sorted by id
+  std::vector<BuildRatio> ratios;  ///< cost ratios of pairs of these builds
+  std::vector<HistoryStep> steps;  ///< largest first
+  std::size_t compared = 0;        ///< pairs of neighbouring results, including costs
 
   bool is_gap(std::size_t build) const { return !builds[build].gap.empty(); }
-  /// Cases that the build planned and has no result of; of the last one also those that the one
-  /// before planned and it did not.
+  /// Number of cases that the build planned but has no result for. For the last build this includes
+  /// cases that only the previous build planned.
   std::size_t missing(std::size_t build) const;
-  /// How many cases of a build have the address that the build before has for them.
+  /// Number of cases to which this build and the previous one give the same key.
   std::size_t shared(std::size_t build) const;
-  /// Whether the last build that has a result differs from what was before it.
+  /// Whether the last build with a result differs from the one before.
   bool last_stepped() const;
 };
 
-/// What is stored of a study, of these builds in this order; without any: of all builds in their
-/// own. Values step beyond `tolerances`, costs beyond interval and control of two builds that were
-/// timed in turns. What does not match its digest is reported, and no step rests on it. Throws
-/// InputError: the file is damaged.
+/// The stored history of a study over these builds, in this order; if none are given, over all
+/// builds in the order of the store. A value steps if it moves beyond `tolerances`, a cost if it
+/// moves beyond interval and control of two builds that were timed in turns. Results that do not
+/// match their digest are reported, and cause no step. Throws InputError if the file is damaged.
 History history_of(const Store&, const std::string& study, const Tolerances&,
                    const std::vector<Build>& builds = {});
 
-/// A cost of a build over another one's that is a difference beyond noise: CPU time, else wall
-/// time. nullptr: there is none.
+/// The ratio between the costs of two builds, if it differs beyond noise: of CPU time, or else of
+/// wall time. nullptr if neither does.
 const BuildRatio* cost_step(const std::vector<BuildRatio>&, const std::string& id,
                             const std::string& before, const std::string& now);
 

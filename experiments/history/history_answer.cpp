@@ -15,14 +15,14 @@ namespace taut {
 
 namespace {
 
-constexpr std::size_t kMostRows = 12;  ///< that people see unless they ask for all
+constexpr std::size_t kMostRows = 12;  ///< rows shown to people unless they ask for all
 
 /// "3f2a9c1d0e (2026-05-04)".
 std::string dated(const Build& build) {
   return short_build(build.id) + " (" + build.made.substr(0, 10) + ")";
 }
 
-/// "2.1 to 2.6 %": both with as many digits as it takes to tell them apart.
+/// "2.1 to 2.6 %", with enough digits to distinguish the two numbers.
 std::string from_to(const std::string& value, double before, double now) {
   const Unit unit = unit_of_value(value);
   const auto texts = [&](int digits) {
@@ -52,7 +52,7 @@ std::string what_happened(const History& history, const HistoryStep& step) {
          from_to(step.value, step.was, step.is);
 }
 
-/// Where it happened; builds in between that have no result may have done it, too.
+/// The build of a step. Builds just before it that have no result may be its cause as well.
 std::string where(const History& history, const HistoryStep& step) {
   const std::size_t between = step.now - step.before - 1;
   return " at " + dated(history.builds[step.now]) +
@@ -117,7 +117,7 @@ Table table_of_builds(const History& history) {
   return table;
 }
 
-/// A row for each case: first, last, and how often it stepped.
+/// A row for each case: first value, last value and number of steps.
 Table table_of_rows(const History& history, const std::string& value) {
   const Unit unit = unit_of_value(value);
   Table table{"rows",
@@ -146,7 +146,7 @@ Table table_of_rows(const History& history, const std::string& value) {
   return table;
 }
 
-/// One value over all builds, for data.
+/// A value of all cases over all builds, as data.
 Table table_of_values(const History& history, const std::string& value) {
   Table table{
       "values",
@@ -164,7 +164,7 @@ Table table_of_values(const History& history, const std::string& value) {
   return table;
 }
 
-/// Costs of two builds that were timed in turns.
+/// Cost ratios of pairs of builds that were timed in turns.
 Table table_of_ratios(const History& history) {
   Table table{
       "ratios", "", {{"case"}, {"before"}, {"now"}, {"host"}, {"clock"}, {"ratio"}, {"control"}}};
@@ -200,7 +200,7 @@ std::vector<SteppedValue> stepped_values(const History& history) {
       one.sentence += "; and of " + std::to_string(one.cases - 1) +
                       (one.cases == 2 ? " other case" : " other cases");
   }
-  // statuses, costs, values that answer a question, and the others
+  // order: statuses, costs, values that answer a question, other values
   std::ranges::stable_sort(all, {}, [&](const SteppedValue& one) {
     const HistoryStep& step = *one.largest;
     return step.value == "status" ? 0 : step.of_time() ? 1 : roles.contains(step.value) ? 2 : 3;

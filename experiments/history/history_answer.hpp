@@ -8,26 +8,26 @@
 
 namespace taut {
 
-/// "3f2a9c1d0e" of a commit, others as they are.
+/// Short form of a commit's hash, "3f2a9c1d0e"; any other id is returned unchanged.
 std::string short_build(const std::string& id);
 
-/// Steps of one value of one solver at one build, in one sentence: "stretch.rms of hang rose from
+/// Steps of one value of one solver at one build, with a sentence: "stretch.rms of hang rose from
 /// 2.1 to 2.6 % at 3f2a9c1d0e (2026-05-04)".
 struct SteppedValue {
   const HistoryStep* largest = nullptr;
   std::size_t cases = 0;
   std::string sentence;
 };
-/// Statuses, costs, values that answer a question (a role), then the others; of each the largest
-/// first.
+/// Sorted by kind: statuses, costs, values that answer a question (with a role), other values;
+/// within each kind the largest step comes first.
 std::vector<SteppedValue> stepped_values(const History&);
 
-/// Sentences, and tables of steps, of builds, of gaps and, of `value`, of rows and of all that was
-/// measured.
+/// The history as sentences and as tables of steps, builds and gaps, and for `value` tables of rows
+/// and of all measurements.
 Answer answer_of(const History&, const std::string& value);
 
-/// A <testsuites> of JUnit: a test for every case of the last build that has results, failed where
-/// it stepped; skipped where it has none.
+/// A JUnit <testsuites> with a test for each case of the last build that has results. The test
+/// fails if the case stepped and is skipped if it has no result.
 std::string junit(const History&);
 
 }  // namespace taut

@@ -30,14 +30,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// 'a quote is written twice', as in a solver's text.
+/// Quotes a text for a solver's parameters, where '' stands for a quote.
 std::string in_solver_quotes(const std::string& text) {
   std::string all = "'";
   for (const char c : text) all += c == '\'' ? std::string("''") : std::string(1, c);
   return all + "'";
 }
 
-/// The solver's text as it runs in a folder under a build.
+/// The solver text that runs a checkout in `folder` under this build's name.
 std::string solver_in(const std::string& solver, const fs::path& folder, const std::string& build) {
   const std::size_t colon = solver.find(':');
   const bool named = colon != solver.npos && solver.find("cmd=", colon) != solver.npos &&
@@ -46,10 +46,10 @@ std::string solver_in(const std::string& solver, const fs::path& folder, const s
          ",folder=" + in_solver_quotes(folder.string()) + ",build=" + build;
 }
 
-/// A folder with a commit in it, if any, and what was said of that commit.
+/// A checkout and the commit that is built in it.
 struct Slot {
   std::unique_ptr<Checkout> checkout;
-  std::string commit;  ///< that is built there; "": none
+  std::string commit;  ///< "" if none is built
 };
 
 class Walker {
@@ -66,8 +66,8 @@ class Walker {
                                                    asked.solver, asked.taut, read_text(file_)},
                           "\n"));
     for (const Build& known : builds_of(store, name_)) known_[known.id] = known;
-    if (!of_solver())
-      load_study(asked.study, asked.preset);  // what is wrong with it is said at once
+    // Report errors in the study at once.
+    if (!of_solver()) load_study(asked.study, asked.preset);
   }
 
   Walked run() {
@@ -89,7 +89,8 @@ class Walker {
 
   // ---- one commit
 
-  /// Of a solver that is timed two stand side by side; of taut a copy of the program is enough.
+  /// A solver that is timed needs two checkouts side by side; of taut, a copy of the program is
+  /// kept.
   Slot& slot(std::size_t n) {
     if (!of_solver()) n = 0;
 
@@ -101,7 +102,7 @@ class Walker {
     return slots_[n];
   }
 
-  /// Why the commit cannot be built there; "": it is.
+  /// Builds the commit. Returns why that failed; "" on success.
   std::string built_in(Slot& s, const Build& commit) {
     if (s.commit == commit.id) return {};
     s.commit.clear();
@@ -126,7 +127,7 @@ class Walker {
     return cases;
   }
 
-  /// Runs the study there; why that was not possible, "": it was.
+  /// Runs the study on the commit. Returns why that failed; "" on success.
   std::string ran_in(Slot& s, const Build& commit) {
     if (!of_solver()) return ran_by_itself(s, commit);
     try {
@@ -150,15 +151,15 @@ class Walker {
     const std::string why = asked_.silence(*parse_solver(solver).entry);
     return why.empty() ? "" : "its solver does not answer: " + why;
   }
-  /// A reason that is not the commit's: of the results file, or of a study that no commit could
-  /// run.
+  /// Whether an error is not the commit's fault: it concerns the results file, or a study that no
+  /// commit has run so far.
   bool of_all(const InputError& error) const {
     const std::string said = error.what();
     return said.find(store_.file().string()) != said.npos ||
            (!any_ran_ && said.find(file_.string()) != said.npos);
   }
 
-  /// A commit of taut: its own program runs the study into the same results folder.
+  /// Runs the study with the commit's own taut, into the same results folder.
   std::string ran_by_itself(Slot& s, const Build& commit) {
     std::vector<std::string> words{"env",         "-u",
                                    "TAUT_DATA",   "-u",
@@ -180,22 +181,24 @@ class Walker {
            printable(last_line(std::ifstream(scratch.path() / "errors")), 300);
   }
 
-  /// Whether the store has all that is asked of it, or why it is a gap.
+  /// Whether the store has everything that was asked of the commit, or a reason why it is a gap.
   bool is_known(const Build& commit) const {
     const auto at = known_.find(commit.id);
     if (at == known_.end() || at->second.asked != digest_) return false;
     return at->second.gap.empty() ? has_all_results(store_, name_, commit.id) : !asked_.again;
   }
 
-  /// Sees to it that the store has the commit's results; in this folder, if it needs one. With
-  /// `stands` it is built there even if they are known. Whether it has any.
+  /// Makes sure that the store has the commit's results, and uses the checkout `where` if it needs
+  /// one. With `stands`, builds the commit even if its results are known. Returns whether it has
+  /// results.
   bool ensure(Build& commit, std::size_t where, bool stands = false) {
     const bool known = is_known(commit);
     if (known) commit.gap = known_.at(commit.id).gap;
     if (!of_solver() && fs::exists(kept_program(commit))) stands = false;
     if (!known || (stands && commit.gap.empty())) {
       Slot& s = slot(where);
-      if (!known) note_build(store_, name_, commit);  // its time and place, if this is interrupted
+      // Records its time and place in case this is interrupted.
+      if (!known) note_build(store_, name_, commit);
       commit.gap = built_in(s, commit);
       if (commit.gap.empty() && !known) commit.gap = ran_in(s, commit);
       commit.asked = only_.empty() ? digest_ : "";
@@ -210,7 +213,7 @@ class Walker {
 
   // ---- costs
 
-  /// A case as it is timed in a slot.
+  /// The cases of a commit that can be timed, by id.
   std::map<std::string, CaseToTime> to_time(Slot& s, const Build& commit) const {
     std::map<std::string, CaseToTime> all;
     const auto add = [&](const std::string& id, const Record& record, CaseSpec spec,
@@ -229,7 +232,7 @@ class Walker {
     return all;
   }
 
-  /// Times the cases that both have, and keeps the ratios.
+  /// Times the cases that both commits have, and stores the ratios.
   std::vector<TwoBuilds> time(std::size_t a, const Build& before, std::size_t b, const Build& now) {
     std::vector<CaseOfTwo> cases;
     const auto were = to_time(slot(a), before), are = to_time(slot(b), now);
@@ -251,7 +254,7 @@ class Walker {
     });
   }
 
-  // ---- all of them
+  // ---- all commits
 
   void run_all_commits() {
     std::size_t where = 0;
@@ -268,11 +271,11 @@ class Walker {
     }
   }
 
-  // ---- the first that changed something
+  // ---- bisection: the first commit that changed something
 
   void bisect() {
     const std::size_t last = line_.size() - 1;
-    const std::size_t moving = of_cost() ? 1 : 0;  // the first one stays where it is built
+    const std::size_t moving = of_cost() ? 1 : 0;  // the first commit stays built in slot 0
     if (!ensure(line_[0], 0, of_cost()) || !ensure(line_[last], moving, of_cost())) {
       walked_.named = "an end of the range has no results, so nothing can be bisected";
       return;
@@ -297,7 +300,7 @@ class Walker {
                                          " commits after " + from + " that have no results");
   }
 
-  /// The commit nearest to the middle that has results.
+  /// The commit with results that is nearest to the middle.
   std::optional<std::size_t> between(std::size_t low, std::size_t high, std::size_t where) {
     const std::size_t middle = (low + high) / 2;
     for (std::size_t off = 0; off <= high - low; ++off)
@@ -319,7 +322,7 @@ class Walker {
     return history_of(store_, name_, tolerances_, {line_[0], other});
   }
 
-  /// The case whose value differs most between the ends.
+  /// Chooses the case whose value differs most between the ends.
   bool choose_value(const Build& last) {
     const History history = ends(last);
     for (const HistoryStep& step : history.steps)
@@ -347,13 +350,13 @@ class Walker {
     return true;
   }
   bool of_wall() const { return asked_.bisect == "wall.per_step"; }
-  /// Logarithm of what a build costs over the first one.
+  /// Logarithm of a build's cost relative to the first one.
   double cost_of(const TwoBuilds& one) const {
     return std::log((of_wall() ? one.wall : one.cpu).mid);
   }
 
-  /// Whether a commit is no longer as the first one: its value beyond the tolerance, its cost more
-  /// than half of the way to the last one's.
+  /// Whether a commit already differs from the first one: its value by more than the tolerance, its
+  /// cost by more than half of the (logarithmic) way to the last one's.
   bool is_as_last(const Build& commit) {
     if (of_cost()) {
       const std::vector<TwoBuilds> found = time(0, line_[0], 1, commit);
@@ -373,16 +376,17 @@ class Walker {
   Store& store_;
   Repository repository_;
   std::vector<Build> line_;
-  std::filesystem::path file_;  ///< of the study
-  std::string name_;            ///< its name
-  bool any_ran_ = false;        ///< a commit has run the study
+  std::filesystem::path file_;  ///< file of the study
+  std::string name_;            ///< name of the study
+  bool any_ran_ = false;        ///< whether any commit has run the study
 
   Tolerances tolerances_;
-  std::string digest_;                  ///< of what is asked
+  std::string digest_;                  ///< digest of what is asked
   std::map<std::string, Build> known_;  ///< by id
   Slot slots_[2];
-  std::string timed_, only_;  ///< the case that a bisection follows; that alone is run
-  double end_ = 0;            ///< logarithm of what the last costs over the first
+  /// The case that a bisection follows; the only case to run, if not "".
+  std::string timed_, only_;
+  double end_ = 0;  ///< logarithm of the last commit's cost relative to the first
   std::set<std::size_t> tried_;
   Walked walked_;
 };

@@ -1,6 +1,5 @@
-"""What pip calls to make a wheel of this tree (PEP 517): CMake builds the module in build/default, as ./taut does.
-
-Another Python than the one that build/default is for gets a build of its own, build/<its tag>."""
+"""The build backend that pip calls to make a wheel from this tree (PEP 517). CMake builds the module in build/default,
+as ./taut does; for a Python other than that of build/default, it builds in build/<tag of the Python>."""
 
 import base64
 import fcntl
@@ -32,7 +31,7 @@ def call(*words):
 
 
 def built():
-    """The build folder, with the module in it."""
+    """Builds the module and returns the build folder."""
     debian = pathlib.Path("/usr/bin/python3")
     say_suffix = "import sysconfig; print(sysconfig.get_config_var('EXT_SUFFIX'))"
     own = not debian.exists() or call(debian, "-c", say_suffix).strip() == SUFFIX
@@ -41,7 +40,7 @@ def built():
     if not (folder / "build.ninja").exists():
         options.append("-DTAUT_TESTS=OFF")
     folder.parent.mkdir(exist_ok=True)
-    with open(f"{folder}.lock", "w") as lock:  # ./taut waits for it
+    with open(f"{folder}.lock", "w") as lock:  # ./taut waits for this lock
         fcntl.flock(lock, fcntl.LOCK_EX)
         call("cmake", "--preset", "default", "-B", folder, "-DTAUT_PYTHON=ON", *options)
         call("cmake", "--build", folder, "--parallel", os.cpu_count(), "--target", "taut_python")

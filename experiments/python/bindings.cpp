@@ -1,6 +1,6 @@
-// The Python module taut._taut: what experiments/python/package offers, on the library's public
-// headers. No physics and no metrics here: scenes are read, solvers stepped and motions judged by
-// the library.
+// The Python module taut._taut, on which experiments/python/package is built. It uses the library's
+// public headers and contains no physics and no metrics: the library reads scenes, steps solvers
+// and judges motions.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -78,8 +78,8 @@ py::list list_scenes() {
   return all;
 }
 
-/// pybind11 keeps its types once for the process, and waits for itself where another interpreter
-/// asks.
+/// Whether this is the main interpreter. pybind11 registers its types once per process, and
+/// deadlocks if another interpreter uses them.
 bool in_main_interpreter() {
   if (PyInterpreterState_Get() == PyInterpreterState_Main()) return true;
   PyErr_SetString(PyExc_ImportError,
@@ -87,7 +87,7 @@ bool in_main_interpreter() {
   return false;
 }
 
-/// Without pybind11, whose exceptions wait for themselves there, too.
+/// Functions made without pybind11, whose exceptions deadlock there as well.
 PyMethodDef kPlainFunctions[] = {{"need_main_interpreter",
                                   [](PyObject*, PyObject*) -> PyObject* {
                                     if (!in_main_interpreter()) return nullptr;
@@ -153,7 +153,7 @@ void define_module(py::module_& m) {
 }  // namespace
 }  // namespace taut::python
 
-/// PYBIND11_MODULE, which has no place for the first question.
+/// PYBIND11_MODULE written out, because it leaves no room for a check before it.
 extern "C" PYBIND11_EXPORT PyObject* PyInit__taut();
 extern "C" PYBIND11_EXPORT PyObject* PyInit__taut() {
   if (!taut::python::in_main_interpreter()) return nullptr;

@@ -1,6 +1,7 @@
 #pragma once
 
-/// What help() says. The first line of a function's is its signature, as Python itself reads it.
+/// Docstrings for help(). The first line of a function's docstring is its signature in the form
+/// that Python parses.
 namespace taut::python::doc {
 
 inline constexpr const char* kInputError =

@@ -16,26 +16,27 @@ namespace taut::python {
 
 namespace {
 
-/// A class of Python as an entry of solvers; lives as long as the program.
+/// A Python class as an entry of solvers. It lives until the program ends.
 struct PythonEntry {
-  std::deque<std::string> texts;  ///< what the entry's views point at
+  std::deque<std::string> texts;  ///< storage behind the views of the entry
   std::vector<ParamSpec> params;
   SolverEntry entry;
 };
 std::deque<PythonEntry>& python_entries() {
-  static auto* all = new std::deque<PythonEntry>;  // never ends: the interpreter may end before it
+  // Never destroyed: the interpreter may end earlier.
+  static auto* all = new std::deque<PythonEntry>;
   return *all;
 }
 
-/// Names the solver and the method in an exception that is on its way out of it.
+/// Adds the names of the solver and the method to an exception that leaves it.
 [[noreturn]] void rethrow_from(py::error_already_set& error, const std::string& where) {
   if (py::hasattr(error.value(), "add_note")) error.value().attr("add_note")("in " + where);
-  throw;  // NOLINT: from the handlers below alone
+  throw;  // NOLINT: only called from the handlers below
 }
 
 class PythonSolver final : public Solver {
  public:
-  /// The interpreter's lock is held.
+  /// The caller holds the interpreter's lock.
   PythonSolver(py::object object, const Scene& scene, std::string name)
       : object_(std::move(object)), scene_(scene), name_("solver '" + std::move(name) + "'") {}
   ~PythonSolver() override {
@@ -86,7 +87,8 @@ class PythonSolver final : public Solver {
   std::string name_;
 };
 
-/// A parameter from its default: a number, a text, or a tuple of texts, the first being it.
+/// A parameter from its default: a number, a text, or a tuple of texts of which the first is the
+/// default.
 ParamSpec param_of(const std::string& solver, std::string_view name, py::handle value,
                    std::deque<std::string>& texts) {
   const auto keep = [&](std::string text) -> std::string_view {
@@ -122,7 +124,7 @@ SolverEntry entry_of(const py::object& type, const std::string& name, PythonEntr
   };
   const std::string from = py::cast<std::string>(type.attr("__module__")) + "." +
                            py::cast<std::string>(type.attr("__qualname__"));
-  // A reference that is never given back: entries live as long as the program.
+  // Never release the reference, since entries live until the program ends.
   const py::handle held = py::object(type).release();
   SolverEntry entry;
   entry.name = keep(name);
@@ -190,7 +192,7 @@ void register_solver(const std::string& name, const py::object& type, const py::
                        "' cannot be an attribute of the class");
     made.params.push_back(param_of(name, kept, value, made.texts));
   }
-  Params(name, made.params, "");  // defaults that no text could say are told now
+  Params(name, made.params, "");  // reports a default that no text can express
   PythonEntry& entry = python_entries().emplace_back(std::move(made));
   entry.entry = entry_of(type, name, entry);
 }

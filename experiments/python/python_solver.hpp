@@ -8,15 +8,16 @@
 
 #include "core/model/solver.hpp"
 
-/// Classes of Python as solvers of this process.
+/// Python classes as solvers of this process.
 namespace taut::python {
 
-/// From here on parse_solver() finds the class by this name. `parameters` have their defaults.
-/// Throws InputError: what is no solver, a name of ours, a default that no text can say.
+/// Makes parse_solver() find the class by this name. `parameters` maps names to defaults. Throws
+/// InputError if the class is no solver, the name is one of ours, or no text can express a default.
 void register_solver(const std::string& name, const pybind11::object& type,
                      const pybind11::dict& parameters);
 
-/// For set_solver_source(). The last one of a name, so that a notebook's cell may be run again.
+/// Finder for set_solver_source(). The last class registered under a name counts, so that a
+/// notebook cell can be run again.
 const SolverEntry* find_python_solver(std::string_view name, std::string_view params);
 std::vector<std::string> python_solver_names();
 

@@ -25,7 +25,7 @@ namespace taut::python {
 
 namespace {
 
-/// What a run left, as Python has it.
+/// Result of a run, in Python's types.
 struct RunResult {
   Record record;
   double cpu_seconds = 0;
@@ -34,7 +34,7 @@ struct RunResult {
   State last;
 };
 
-/// Keeps frames, and ends the run when a signal's handler raises, as Ctrl-C's does.
+/// Keeps frames, and ends the run if a signal handler raises, as that of Ctrl-C does.
 class Watcher {
  public:
   Watcher(int every, int steps) : every_(every), steps_(steps) {
@@ -88,7 +88,7 @@ RunResult watched(const Scene& scene, int every, const Run& run) {
   return watcher.result(std::move(*done), scene.mesh.size());
 }
 
-/// Frames of a file, or of an array that must outlive them.
+/// Frames from a file, or from an array, which has to outlive them.
 ComputedFrames frames_of(const py::object& positions, const py::array& array) {
   ComputedFrames frames{.name = "positions"};
   if (!array) {

@@ -4,7 +4,7 @@
 
 namespace taut::python {
 
-/// taut.Run, taut.simulate and taut.score.
+/// Defines taut.Run, taut.simulate and taut.score.
 void define_run(pybind11::module_&);
 
 }  // namespace taut::python

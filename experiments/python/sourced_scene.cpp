@@ -60,7 +60,7 @@ SourcedScene timed_scene(py::handle given, const py::object& dt, const py::objec
 
 namespace {
 
-/// What a solver has to do beyond gravity, links and fixed pins.
+/// Demands of a scene on a solver, beyond gravity, links and fixed pins.
 std::vector<std::string> effects(const Scene& scene) {
   std::vector<std::string> all;
   if (!scene.colliders.empty()) all.emplace_back("colliders");
@@ -90,7 +90,7 @@ py::array_t<int> links_of(const Scene& scene) {
   return pairs;
 }
 
-/// Where each point is with respect to a collider.
+/// Distance and normal of each point with respect to a collider.
 py::tuple surface_at(const Scene& scene, std::size_t collider, const py::object& x, double t) {
   if (collider >= scene.colliders.size())
     throw InputError("collider: " + std::to_string(collider) + "; the scene has " +

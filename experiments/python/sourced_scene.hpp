@@ -12,28 +12,30 @@
 
 namespace taut::python {
 
-/// A scene with the place that it came from, so that it can be read again with other settings.
+/// A scene together with its source, so that it can be read again with other settings.
 struct SourcedScene {
-  std::string source;               ///< as given: a name, a path; of a text its name
-  std::filesystem::path file;       ///< of a text: how messages call it
-  std::optional<std::string> text;  ///< else it is in the file
+  std::string source;               ///< as given: a name or a path; for a text, its name
+  std::filesystem::path file;       ///< for a text, what messages call it
+  std::optional<std::string> text;  ///< if empty, the text is in the file
   std::vector<std::string> overrides;
   std::shared_ptr<const Scene> scene;
 
   Scene read(const std::vector<std::string>& with) const;
-  /// The same with these overrides, too; one of a key that it has takes its place. Throws
+  /// The scene with additional overrides. An override with the same key is replaced. Throws
   /// InputError.
   SourcedScene replaced(const std::vector<std::string>& more) const;
   CaseSpec spec() const { return {source, overrides, ""}; }
 };
 
-/// Of a shipped name, a path, or TOML text that messages call `name`. Throws InputError.
+/// Reads a scene from a shipped name, a path, or TOML text that messages call `name`. Throws
+/// InputError.
 SourcedScene scene_from(py::handle source, const py::dict& settings, const std::string& name);
 
-/// Any of what a function takes as a scene, with the time step and the duration that were said.
+/// Anything that a function accepts as a scene, with the time step and duration applied if they are
+/// given.
 SourcedScene timed_scene(py::handle given, const py::object& dt, const py::object& duration);
 
-/// taut.Scene.
+/// Defines taut.Scene.
 void define_scene(py::module_&);
 
 }  // namespace taut::python

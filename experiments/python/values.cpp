@@ -15,7 +15,7 @@ std::string shape_of(const py::array& array) {
   return py::cast<std::string>(py::repr(array.attr("shape")));
 }
 
-/// As TOML has it. Throws InputError that names `key`.
+/// The value as TOML. Throws InputError that names `key`.
 std::string toml_of(py::handle value, const std::string& key) {
   const auto all = [&](py::handle list) {
     std::vector<std::string> parts;

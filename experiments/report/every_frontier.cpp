@@ -10,7 +10,7 @@ namespace taut::report {
 
 namespace {
 
-/// The solvers without their defaults. Throws InputError: unknown, or the same one twice.
+/// The solvers without default parameters. Throws InputError if one is unknown or named twice.
 std::vector<std::string> brief_names(const std::vector<std::string>& texts) {
   std::vector<std::string> solvers;
   for (const std::string& text : texts) solvers.push_back(parse_solver(text).brief());

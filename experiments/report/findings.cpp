@@ -18,7 +18,7 @@ namespace taut::report {
 
 namespace {
 
-/// A row of the model: a closed form or a published number beside what was measured.
+/// Row of the model: a measured value, and the closed form or published number that it should have.
 Json row_of(const CheckedTruth& truth, const Finding& finding) {
   const std::string unit = finding.unit == "1" ? "" : " " + finding.unit;
   const double measured = finding.measured, expected = finding.expected, slack = finding.tolerance;
@@ -38,7 +38,7 @@ Json row_of(const CheckedTruth& truth, const Finding& finding) {
   };
   if (expected == 0)
     return say("at most " + significant(slack, 2) + unit, significant(measured, 2) + unit);
-  // As many digits as the tolerance lets matter.
+  // As many digits as the tolerance makes relevant.
   if (slack >= 1e-6 && std::abs(measured) < 1e6) {
     const int decimals = decimals_for(slack);
     return say(fixed(expected, decimals) + " ± " + fixed(slack, decimals) + unit,
@@ -50,7 +50,7 @@ Json row_of(const CheckedTruth& truth, const Finding& finding) {
   return say("exactly " + significant(expected, 3) + unit, significant(measured, 3) + unit);
 }
 
-/// What `read` makes of each answer of a kind.
+/// Results of `read` for each answer of a kind.
 template <class Read>
 auto found(const Store& store, const char* kind, std::string_view program, Read read) {
   std::vector<std::invoke_result_t<Read, const Answer&>> all;
@@ -67,7 +67,7 @@ std::optional<Value> only(std::vector<Value> all) {
   return all.empty() ? std::nullopt : std::optional(std::move(all.front()));
 }
 
-/// Of each truth the finding nearest to its tolerance, and all that did not simply pass.
+/// For each truth the finding nearest to its tolerance, and all findings that did not simply pass.
 Truths truths_of(const Answer& answer) {
   const Verification found = verification_in(answer);
   Truths truths;
@@ -126,7 +126,7 @@ std::optional<Json> stored_regressions(const Store& store, std::string_view prog
     const Regressions found = regressions_in(answer);
     Json regressions{{"cases", found.cases}, {"values", found.values}};
     for (const Regressions::Row& row : found.rows)
-      if (row.kind != Change::Kind::value_new)  // for information
+      if (row.kind != Change::Kind::value_new)  // only for information
         regressions["rows"].push_back(
             {{"study", row.study}, {"case", row.id}, {"change", row.change}});
     return regressions;

@@ -7,24 +7,24 @@
 
 namespace taut::report {
 
-// What `program` (program_digest) found of other questions, as the results file has it. An answer
-// that cannot be understood is an InputError.
+// Answers of other verbs that `program` (program_digest) stored in the results file. Throw
+// InputError if an answer cannot be understood.
 
-/// Of `taut verify --record`: of each truth the finding that is nearest to its tolerance, and every
-/// finding that did not simply pass; nullopt: not asked.
+/// Answer of `taut verify --record`: for each truth the finding nearest to its tolerance, and all
+/// findings that did not simply pass. nullopt if there is none.
 std::optional<Truths> stored_truths(const Store&, std::string_view program);
 
-/// Of `taut check --record`: how much was compared with the committed baselines, and what moved;
-/// nullopt: not asked.
+/// Answer of `taut check --record`: how much was compared with the committed baselines, and what
+/// moved. nullopt if there is none.
 std::optional<Json> stored_regressions(const Store&, std::string_view program);
 
-/// Of every scene that `taut require` was asked about, by name: the smallest model that keeps its
-/// answers, a row each. Null: there is none.
+/// Answers of `taut require`, by name of the scene: a row for the smallest model that keeps the
+/// scene's answers. Null if there are none.
 Json stored_requirements(const Store&, std::string_view program);
 
-/// Of `taut frontier --all`, solver by solver.
+/// Answers of `taut frontier --all`, solver by solver.
 std::vector<ParameterFrontier> stored_frontiers(const Store&, std::string_view program);
-/// Of `taut converge`, scene by scene.
+/// Answers of `taut converge`, scene by scene.
 std::vector<OneStep> stored_steps(const Store&, std::string_view program);
 
 }  // namespace taut::report

@@ -27,7 +27,8 @@ namespace {
 
 Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
 
-/// "Jakobsen and Bullet", "8 cloth solvers on 20 scenes" of all cases, or what the input says.
+/// Title of the report: the input's own, or made from all cases, such as "Jakobsen and Bullet" or
+/// "8 cloth solvers on 20 scenes".
 std::string report_title(const ReportInput& input) {
   if (!input.title.empty()) return input.title;
   constexpr std::size_t kMostNames = 3;
@@ -46,7 +47,7 @@ std::string report_title(const ReportInput& input) {
   return joined(names);
 }
 
-/// The whole model, part by part.
+/// Builds the model, part by part.
 class Builder {
  public:
   explicit Builder(const ReportInput& input)
@@ -119,7 +120,7 @@ class Builder {
     return one;
   }
 
-  /// The cases whose settings the first screen says.
+  /// The cases whose settings the first screen shows.
   std::vector<const Record*> quoted_and_timed() const {
     std::vector<const Record*> all;
     for (const QuotedScene& scene : compared_.scenes)
@@ -131,7 +132,7 @@ class Builder {
     return all;
   }
 
-  /// What anything above names, with its cost and its film.
+  /// All cases named by parts above, each with its cost and film.
   Json cases() {
     Json all;
     std::map<std::string, const BenchedCase*> timed;
@@ -192,7 +193,8 @@ class Builder {
     return all;
   }
 
-  /// Of the compared cases and, if otherwise, of the timed ones: "double; timed: float".
+  /// Arithmetic of a solver's compared cases, and of its timed ones if it differs: "double; timed:
+  /// float".
   std::string arithmetics_of(const std::string& solver) const {
     std::vector<std::string> compared, timed;
     for (const ComparedSolver& one : compared_.all)
@@ -207,7 +209,7 @@ class Builder {
     const std::string one = join(compared, " or "), other = join(timed, " or ");
     return one == other || other.empty() ? one : one.empty() ? other : one + "; timed: " + other;
   }
-  /// A number of a setting as people type it: "1e+09" -> "1e9".
+  /// A number of a setting as people type it: "1e9" for "1e+09".
   static std::string retyped(const std::string& value) {
     double number = 0;
     const char* const end = value.data() + value.size();
@@ -315,7 +317,7 @@ class Builder {
     films_.push_back(std::move(film));
   }
 
-  /// Values over time of a scene without a film, whose tracks they would be.
+  /// Adds charts of values over time to a scene without a film, which would otherwise show them.
   void add_series(Json& scene, const std::string& name) {
     std::map<std::string, Chart> charts;
     for (const TimeSeries& series : input_.series) {
@@ -358,7 +360,8 @@ class Builder {
 
   Json missing() const {
     Json all;
-    if (input_.differences) return all;  // nothing belongs to two folders that one build could make
+    // No single build could make what is missing of two folders.
+    if (input_.differences) return all;
     const auto add = [&](const char* section, const char* text, const std::string& command) {
       all.push_back({{"section", section}, {"text", text}, {"command", command}});
     };
@@ -385,11 +388,11 @@ class Builder {
   Json maps_, films_;
   Answer tables_{"report", ""};
   std::map<std::string, std::string> film_of_;  ///< by short key of the case
-  std::size_t budget_ = 6'000'000;              ///< bytes of pictures in a page
+  std::size_t budget_ = 6'000'000;              ///< bytes that pictures may take in a page
   std::size_t cells_ = kMostCells, maps_left_out_ = 0;
 };
 
-/// JSON inside a script element: no text can close the element or open a comment.
+/// JSON for a script element, in which no text can close the element or open a comment.
 std::string for_script(const std::string& json) {
   std::string out;
   out.reserve(json.size());

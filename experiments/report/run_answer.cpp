@@ -9,11 +9,11 @@ namespace taut::report {
 
 namespace {
 
-/// Who is right at which stiffness, with what the cases cost where the study was timed.
+/// The map of failures by stiffness, with costs if the study was timed.
 Table failure_map_of(const Study& study, const Store& store) {
   const std::vector<Record> records = collect(study, store).records;
   std::vector<Record> timed;
-  for (const StudyBench& bench : stored_benches(store, study.name)) {  // of this build first
+  for (const StudyBench& bench : stored_benches(store, study.name)) {  // that of this build first
     const std::vector<Record> of_bench = bench.records();
     timed.insert(timed.end(), of_bench.begin(), of_bench.end());
   }

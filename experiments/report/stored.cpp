@@ -18,7 +18,7 @@ namespace taut::report {
 
 namespace {
 
-/// `of` with its value's times and values, if the table has them.
+/// `of`, with times and values of its column, if the table has it.
 TimeSeries column(const Series& table, TimeSeries of) {
   const auto index = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(table.columns, name) - table.columns.begin());
@@ -37,7 +37,7 @@ double strain_floor(const Record& r) {
   return std::isfinite(floor) ? floor : 0;
 }
 
-/// Values over time of the quoted cases of a scene.
+/// Series of the quoted cases of a scene.
 std::vector<TimeSeries> series_of(const QuotedScene& quoted, const ComparedSolvers& compared,
                                   const Store& store) {
   std::vector<TimeSeries> all;
@@ -52,7 +52,7 @@ std::vector<TimeSeries> series_of(const QuotedScene& quoted, const ComparedSolve
   return all;
 }
 
-/// Without what few cases need (complete_quoted), or none.
+/// A record without the parts that only quoted cases need (complete_quoted()).
 Record slim(Record r) {
   r.digest = std::string();
   r.log = std::string();
@@ -64,7 +64,7 @@ Record slim(Record r) {
   return r;
 }
 
-/// Gives those cases back their passes and settings whose settings the page shows side by side.
+/// Restores passes and settings of the cases whose settings the page compares.
 void complete_quoted(ReportInput& input, const Store& store) {
   std::set<const Record*> quoted;
   for (const QuotedScene& scene : compared_solvers_of(input).scenes)
@@ -111,7 +111,7 @@ void keep_current(StudyBench& bench) {
         if (!scene.limits) scene.limits = default_limits(*one.scene);
         return one.key != c.record.key;
       } catch (const InputError&) {
-        return true;  // the scene or the solver is no longer there
+        return true;  // the scene or the solver no longer exists
       }
     });
   std::erase_if(bench.scenes, [](const SceneBench& scene) { return scene.cases.empty(); });
@@ -123,7 +123,7 @@ std::string name_of(const CaseSpec& spec) {
   return spec.scene + "\n" + spec.solver + "\n" + join(spec.overrides, "\n");
 }
 
-/// Of a case that several builds ran the record that was stored last.
+/// All records. If several builds ran a case, the record stored last.
 std::vector<Record> all_records(const Store& store) {
   std::vector<Record> records;
   std::map<std::string, std::size_t> index;
@@ -146,7 +146,8 @@ Names parameters_of(const std::vector<Record>& records) {
   return names;
 }
 
-/// A case without the parameters that only one of the folders knows; "" where two share a name.
+/// Cases by name, ignoring parameters that only one of the folders knows; nullptr where two share a
+/// name.
 template <class T, class RecordOf>
 std::map<std::string, T*> by_question(std::vector<T>& all, const Names& known, RecordOf record_of) {
   std::map<std::string, T*> index;
@@ -158,18 +159,18 @@ std::map<std::string, T*> by_question(std::vector<T>& all, const Names& known, R
     for (const auto& [param, value] : r.params)
       if (names != known.end() && names->second.contains(param)) name += "\n" + param + "=" + value;
     const auto [at, fresh] = index.try_emplace(name, &one);
-    if (!fresh) at->second = nullptr;  // a parameter of one build alone tells them apart
+    if (!fresh) at->second = nullptr;  // only a parameter that one build knows distinguishes them
   }
   return index;
 }
 
-/// What was timed, by host and processor.
+/// Timed cases by host and processor; `noise` grows to the largest deviation of a control.
 std::map<std::string, std::vector<BenchedCase>> all_timed(const Store& store, double& noise) {
   std::map<std::string, std::vector<BenchedCase>> all;
   for (const StudyBench& session : stored_benches(store, "")) {
     std::vector<BenchedCase>& here = all[session.host + ", " + session.machine];
     for (const SceneBench& scene : session.scenes) {
-      if (!scene.in_turns) continue;  // nobody knows how far its times stray
+      if (!scene.in_turns) continue;  // its noise is unknown
       noise = std::max(noise, spread(scene.control));
       here.insert(here.end(), scene.cases.begin(), scene.cases.end());
     }
@@ -198,7 +199,7 @@ Differences stored_differences(const Store& a, const Store& b) {
   auto timed_a = all_timed(a, found.noise), timed_b = all_timed(b, found.noise);
   for (auto& [host, in_b_here] : timed_b) {
     const auto same = timed_a.find(host);
-    if (same == timed_a.end()) continue;  // times of two hosts are not compared
+    if (same == timed_a.end()) continue;  // times of different hosts are not compared
     const auto costs = by_question(in_b_here, names, &BenchedCase::record);
     for (const auto& [name, one] : by_question(same->second, names, &BenchedCase::record))
       if (const auto at = costs.find(name); one && at != costs.end() && at->second)
@@ -237,7 +238,7 @@ std::optional<double> theory_slope(const Scene& scene) {
 
 namespace {
 
-/// Calls `visit` for each case of the plan with its record, if the store has one.
+/// Calls `visit` for each planned case, with its record if the store has one.
 template <class Visit>
 void each_record(const Study& study, const Store& store, const Visit& visit) {
   each_case(study, [&](Case&& one) {
@@ -285,7 +286,7 @@ std::vector<TimeSeries> stored_series(const Records& records, const std::string&
 
 namespace {
 
-/// The first session of a study's own bench, else of that of the main job.
+/// Adds the newest bench of the study itself, or of the main job's bench study.
 void add_bench(ReportInput& input, const std::vector<Study>& studies, const Store& store) {
   std::vector<std::string> benched;
   if (studies.size() == 1) benched.push_back(studies.front().name);
@@ -307,7 +308,7 @@ void add_bench(ReportInput& input, const std::vector<Study>& studies, const Stor
   }
 }
 
-/// The cases of a study, with the values that a bench measured of them.
+/// Adds the cases of a study, with values that a bench measured for them.
 void add_study(ReportInput& input, const Study& study, const Store& store,
                const std::map<std::string, std::map<std::string, double>>& timed) {
   StudyResult result{study.name, study.question, {}, 0, {}};
@@ -337,7 +338,7 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
   std::map<std::string, std::map<std::string, double>> timed;  // by key
   if (input.bench) {
     for (const Record& r : input.bench->records()) timed[r.key] = r.values;
-    // What was not timed in turns gives values of cases; nothing is concluded from it.
+    // Cases that were not timed in turns only contribute values; no comparison is based on them.
     std::erase_if(input.bench->scenes, [](const SceneBench& scene) { return !scene.in_turns; });
     if (input.bench->scenes.empty()) input.bench.reset();
   }

@@ -18,7 +18,7 @@ namespace {
 
 using Remark = std::function<void(const std::string&)>;
 
-/// A plot's `slope`, the exponent of a theory; nothing if it names none.
+/// The `slope` of a plot, which is a theory's exponent; nothing if the plot has none.
 std::optional<double> exponent(const std::string& text) {
   if (text.empty()) return {};
   const std::optional<double> value = whole<double>(text);
@@ -27,8 +27,8 @@ std::optional<double> exponent(const std::string& text) {
   return value;
 }
 
-/// Of many values of what is not on x, keeps the cases at the commonest, and says so: in the title
-/// and to `remark`.
+/// If the setting that is not on x has several values, keeps the cases at its commonest value.
+/// Reports that to `remark` and returns the text for the title.
 std::string hold_other(const PlotSpec& spec, Records& records, const std::string& scene,
                        const Remark& remark) {
   const std::string held = spec.x == "dt" ? kSweeps : "dt";
@@ -43,8 +43,8 @@ std::string hold_other(const PlotSpec& spec, Records& records, const std::string
   return ", " + setting;
 }
 
-/// Of one scene; a setting that is neither on an axis nor what orders the curves is held at its
-/// commonest.
+/// Panel of one scene. A setting that is neither on an axis nor orders the curves is held at its
+/// commonest value.
 PlotPanel panel_of(const FigureRequest& want, const StudyResult& study, const std::string& scene,
                    const Store& store, const Remark& remark) {
   const PlotSpec& spec = want.spec;
@@ -61,8 +61,8 @@ PlotPanel panel_of(const FigureRequest& want, const StudyResult& study, const st
   return panel;
 }
 
-/// A figure of these scenes; of a single one it bears the name. Several panels have titles of their
-/// own, and the figure has one only if it is asked for.
+/// Draws a figure of these scenes. The title of a figure with a single scene includes its name.
+/// With several panels, each has a title, and the figure has one only if requested.
 PlotFiles draw(FigureRequest want, const StudyResult& study, const std::vector<std::string>& scenes,
                const Store& store, const std::filesystem::path& out, const Remark& remark) {
   PlotSpec& spec = want.spec;
@@ -89,7 +89,7 @@ PlotFiles draw(FigureRequest want, const StudyResult& study, const std::vector<s
   return make_plot(spec, panels, out);
 }
 
-/// By scene; of a map a set for each.
+/// Scenes of each figure: all in one figure, but a map has a figure for each scene.
 std::vector<std::vector<std::string>> panels_of(const std::string& kind,
                                                 const std::vector<Record>& records) {
   std::vector<std::string> scenes;
@@ -100,7 +100,8 @@ std::vector<std::vector<std::string>> panels_of(const std::string& kind,
   return sets;
 }
 
-/// `name_of`: what `names`, the values of an option, are compared with.
+/// Keeps the records whose name is in `names`, the values of an option. `name_of` returns a
+/// record's name.
 template <class NameOf>
 void keep_named(const char* option, std::vector<Record>& records,
                 const std::vector<std::string>& names, NameOf name_of) {

@@ -13,21 +13,22 @@
 
 namespace taut::report {
 
-/// A picture of a study.
+/// A requested picture of a study.
 struct FigureRequest {
   PlotSpec spec;
-  std::optional<double> slope = {};  ///< exponent of a theory that it names
-  /// Several panels have titles of their own.
+  std::optional<double> slope = {};  ///< exponent of a theory, if the request names one
+  /// Whether the figure has a title. Panels of a figure with several always have titles of their
+  /// own.
   enum class Title { single, always, none };
-  Title title = Title::single;  ///< above a figure of a single panel, or of any
+  Title title = Title::single;  ///< `single`: only with a single panel
 };
 
-/// The pictures that the study's file asks for. Throws InputError: none, or a slope that is no
-/// number.
+/// The pictures that the study's file requests. Throws InputError if there are none or a slope is
+/// not a number.
 std::vector<FigureRequest> figures_of(const Study&);
 
-/// Leaves only the records of these solvers and scenes; none named: of all. Throws InputError: the
-/// study has no results of one.
+/// Keeps only the records of these solvers and scenes; an empty list stands for all. Throws
+/// InputError if the study has no results for one of them.
 void keep_chosen(StudyResult&, const std::vector<std::string>& solvers,
                  const std::vector<std::string>& scenes);
 
@@ -36,9 +37,9 @@ struct StudyFigures {
   std::vector<std::string> not_drawn;  ///< a sentence for each figure that could not be drawn
 };
 
-/// Draws the first study of the input, panels by scene; of a map, whose panels are by solver, a
-/// figure for each scene. Calls `remark` with what a figure leaves out. Throws PlotError and
-/// FigureNotWritten.
+/// Draws the first study of the input with a panel for each scene. A map has a figure for each
+/// scene, with a panel for each solver. Calls `remark` with what a figure leaves out. Throws
+/// PlotError and FigureNotWritten.
 StudyFigures draw_figures(const std::vector<FigureRequest>&, const ReportInput&, const Store&,
                           const std::filesystem::path& folder,
                           const std::function<void(const std::string&)>& remark);

@@ -9,29 +9,30 @@
 
 namespace taut {
 
-/// How far a setting of one scene goes under several solvers: `taut frontier`.
+/// Question of `taut frontier`: how far a setting of one scene goes under several solvers.
 struct AcceptedFrontiersWanted {
   CaseSpec base;                     ///< its solver is replaced by each of `solvers`
   std::vector<std::string> solvers;  ///< at least one
   std::string of;                    ///< the setting that grows: "dt", "omega", "wind.strength"
-  std::optional<double> from, to;    ///< else where range_of() starts and stops
+  std::optional<double> from, to;    ///< default: where range_of() starts and stops
   double tolerance = SearchRange{}.tolerance;
-  std::vector<std::string> keep;  ///< limits (parse_limit()); none: what the scene accepts
+  /// Limits (parse_limit()); empty: the default limits of the scene.
+  std::vector<std::string> keep;
   CampaignOptions how;
 };
 
 struct AcceptedFrontiers {
   std::vector<std::pair<FrontierQuestion, BothFrontiers>> of_solvers;
-  std::string limits;  ///< what was acceptable, in words
+  std::string limits;  ///< the limits in words
 
-  /// Whether any solver's case came to an end that says something.
+  /// Whether the case of any solver ended with a meaningful result.
   bool any_answered() const;
 };
 
-/// Nothing: interrupted. Throws InputError.
+/// Finds the frontiers; nothing if interrupted. Throws InputError.
 std::optional<AcceptedFrontiers> find_accepted_frontiers(const AcceptedFrontiersWanted&, Store&);
 
-/// Of one solver all that was found, of several a table.
+/// The full answer for one solver, or a table for several.
 Answer answer_of(const AcceptedFrontiers&);
 
 }  // namespace taut

@@ -14,7 +14,7 @@ namespace taut {
 
 namespace {
 
-/// What 100 % is of.
+/// Value of 100 %.
 double whole(const KeptQuantity& answer, const Observation& full) {
   const double of_scene = hundred_percent(unit_of(answer), *full.one.scene);
   return std::isnan(of_scene) ? std::abs(value_of(answer, full)) : of_scene;
@@ -27,7 +27,8 @@ double default_tolerance(const KeptQuantity& answer, const Observation& full) {
   return share * whole(answer, full);
 }
 
-/// The scene's place of a vertex of a grid in another grid of the same sheet, bilinearly.
+/// Position at (u, v) in [0, 1]^2 of a sheet, interpolated bilinearly between the vertices of a
+/// grid.
 Vec3 between(const Grid& grid, const std::vector<Vec3>& x, double u, double v) {
   const auto part = [](double share, int count) {
     const double at = share * (count - 1);
@@ -66,7 +67,7 @@ double apart(const Scene& scene, const std::vector<Vec3>& x, const Scene& other,
   return most;
 }
 
-/// A metric's value on a motion, as the full model's scene has it measured.
+/// A metric's value on a motion, measured as on the full model's scene.
 double measured(const KeptQuantity& answer, const Scene& scene, const std::vector<Frame>& frames) {
   const auto [entry, value] = find_value(answer.name);
   const auto metric = entry->make(scene);
@@ -114,7 +115,7 @@ KeptQuantity parse_answer(const std::string& asked, const Observation& full) {
 
 std::vector<std::string> default_answers(const Observation& full) {
   std::vector<std::string> names{kShapeAnswer};
-  const auto& params = full.record.params;  // Bullet's "faces" are about normals
+  const auto& params = full.record.params;  // Bullet's parameter "faces" is about normals
   const bool faces =
       params.contains("contact") && params.contains("faces") && params.at("faces") == "on";
   for (const MetricEntry* metric : metrics()) {

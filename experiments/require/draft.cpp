@@ -30,7 +30,7 @@ void erase_key(Value& table, const std::string& key) {
     }
 }
 
-/// Without the tables of arrays that were emptied.
+/// Removes the tables of arrays that were emptied.
 Value without_empty(Value root) {
   for (std::size_t i = root.items.size(); i-- > 0;) {
     Value& one = root.items[i];

@@ -9,11 +9,12 @@ namespace taut {
 
 namespace {
 
-constexpr int kFewest = 4;  ///< vertices along a side that a coarser grid keeps at least
+/// Fewest vertices along the longer side of a coarser grid.
+constexpr int kFewest = 4;
 
 using Effects = std::vector<Effect>;
 
-/// Skips effects that cannot be reduced.
+/// Adds an effect unless there is no way to reduce it.
 void add(Effects& effects, const std::string& name, std::vector<Reduction> reductions) {
   if (!reductions.empty()) effects.push_back({name, std::move(reductions)});
 }
@@ -25,8 +26,8 @@ bool has_family(const Scene& scene, Family family) {
   return std::ranges::any_of(scene.links, [&](const Link& l) { return l.family == family; });
 }
 
-/// What is not at its default is left out, wherever the scene has it; a choice at its default
-/// becomes the last one. An effect is added once.
+/// Adds an effect for each key that is not at its default: it is removed wherever the scene has it.
+/// A choice at its default is changed to the last value instead. Each effect is added once.
 template <class Part>
 void add_keys(Effects& effects, std::string_view section, const Part& part) {
   each_key(section, part, [&]<class Of>(const SceneKey& key, const Of& value, const Of& initial) {
@@ -73,7 +74,8 @@ void add_contact(const Case& one, Effects& effects) {
   if (!scene.colliders.empty()) add_keys(effects, "cloth", scene);
 }
 
-/// A choice with the values that cost less; a whole number is halved until it is 1.
+/// Adds the reductions of a parameter: the cheaper values of a choice, or an integer halved down to
+/// 1.
 void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effect) {
   const std::string parameter(effect.parameter);
   const auto spec = std::ranges::find(one.choice.entry->params, parameter, &ParamSpec::name);

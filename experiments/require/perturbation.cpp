@@ -11,14 +11,14 @@ namespace taut {
 
 namespace {
 
-constexpr double kRounding = 0x1p-23;  ///< of binary32
-/// A start that touches a collider may move in some directions only; without symmetry, so that a
-/// symmetric cloth feels it.
+constexpr double kRounding = 0x1p-23;  ///< machine epsilon of binary32
+/// Directions of the displacement. Several, since a vertex that touches a collider can move only in
+/// some of them; asymmetric, so that a symmetric cloth reacts.
 const Vec3 kDirections[] = {{0.8, 0.5, 0.3},   {-0.8, 0.5, 0.3},  {0.8, 0.5, -0.3},
                             {-0.8, 0.5, -0.3}, {0.8, -0.5, 0.3},  {-0.8, -0.5, 0.3},
                             {0.8, -0.5, -0.3}, {-0.8, -0.5, -0.3}};
 
-/// Vertices that are neither pinned nor placed, spread over the cloth.
+/// Vertices that are not pinned, spread over the cloth.
 std::vector<int> chosen_vertices(const Scene& scene, std::size_t count) {
   std::vector<int> free;
   for (int i = 0; i < scene.mesh.size(); ++i)
@@ -29,7 +29,7 @@ std::vector<int> chosen_vertices(const Scene& scene, std::size_t count) {
   return chosen;
 }
 
-/// The scene with one vertex moved; false if it may not start there.
+/// Makes the scene with one vertex moved; false if it may not start there.
 bool move_vertex(const Case& one, int vertex, const Vec3& way, const std::filesystem::path& folder,
                  const std::string& name, CaseSpec& spec) {
   Draft draft(one.spec);

@@ -7,16 +7,16 @@
 
 namespace taut {
 
-/// The same simulation with differences that nobody asked for.
+/// Variants of a simulation that differ only by chance.
 struct Perturbations {
-  /// One free vertex starts off by 2^-23 of the cloth's extent: what that moves is noise.
+  /// One free vertex starts displaced by 2^-23 of the cloth's extent. What that moves is noise.
   std::vector<CaseSpec> rounding;
-  /// The links in another order: another path to the same model, whose results may differ by more
-  /// than rounding where sweeps do not converge; empty: the solver offers none.
+  /// The links come in another order, which is another path to the same model. Results may differ
+  /// by more than rounding if sweeps do not converge. Empty if the solver has no such option.
   std::vector<CaseSpec> order;
 };
 
-/// Scenes that are made for it are written to `folder`. Throws InputError if they cannot be.
+/// Makes the perturbed cases, and writes their scenes to `folder`. Throws InputError if that fails.
 Perturbations perturbations(const Case&, const std::filesystem::path& folder);
 
 }  // namespace taut

@@ -20,7 +20,7 @@ namespace taut {
 
 namespace {
 
-/// Shares of the patience by which a part of the work has to have ended.
+/// Shares of the patience at which each part of the work has to end.
 constexpr double kNoiseBy = 0.65, kTrialsBy = 0.65, kCombinedBy = 0.75, kVerifiedBy = 0.82,
                  kTimedBy = 0.97;
 constexpr int kTimingRounds = 4;
@@ -45,7 +45,8 @@ class Search {
     return after(start_, share * options_.patience);
   }
 
-  /// Runs what is not stored yet; by case: nothing if the time was up.
+  /// Runs the cases that are not stored yet. The result has an entry for each case, which is empty
+  /// if time was up.
   std::vector<std::optional<Observation>> observe(const std::vector<CaseSpec>& specs,
                                                   double share) {
     std::vector<Case> cases;
@@ -67,7 +68,8 @@ class Search {
     return seen;
   }
 
-  /// The full model, what noise does to it, and which answers can be kept; false: no time.
+  /// Runs the full model, determines its noise, and chooses which answers can be kept. False if
+  /// time is up.
   bool observe_full() {
     auto full = observe({options_.full}, kNoiseBy).front();
     if (!full) return give_up("the full model");
@@ -89,14 +91,14 @@ class Search {
     return !found_.interrupted;
   }
 
-  /// What is known of chaos still holds.
+  /// Ends the search, but keeps what is known about chaos.
   bool give_up(const std::string& what) {
     found_.not_done.push_back(what);
     drop_shape();
     return false;
   }
 
-  /// Runs that end, behind those that are there; false: no time.
+  /// Runs cases and appends those that complete to `to`. False if time is up.
   bool add_runs(const std::vector<CaseSpec>& specs, std::vector<Observation>& to) {
     for (auto& one : observe(specs, kNoiseBy)) {
       if (!one) return false;
@@ -126,7 +128,7 @@ class Search {
     }
   }
 
-  /// The noise of each answer; the shape of a chaotic scene cannot be kept.
+  /// Determines the noise of each answer. Drops the shape if the scene is chaotic.
   void choose_answers() {
     for (const KeptQuantity& answer : found_.answers) {
       double most = 0, reordered = 0;
@@ -160,7 +162,7 @@ class Search {
     }
   }
 
-  /// The case of the full model with these reductions, or why there is no such case.
+  /// The full model with these reductions, or the reason why there is no such case.
   ModelTrial draft(const std::vector<const Reduction*>& reductions, const std::string& name,
                    const std::string& change, const std::string& comment = "") {
     ModelTrial trial{.change = change, .spec = {}, .why = "", .moved = {}, .cost = {}};
@@ -191,7 +193,8 @@ class Search {
     }
   }
 
-  /// Each effect by itself: all weakest reductions at once, then the next of those that may go.
+  /// Tries each effect by itself: the weakest reductions of all effects at once, then the next ones
+  /// of effects that can go.
   void try_effects() {
     effects_ = effects_of(found_.full);
     for (const Effect& effect : effects_) found_.effects.push_back({effect.name, {}, 0, {}, {}});
@@ -219,12 +222,12 @@ class Search {
     }
   }
 
-  /// Work of a whole run, that nothing disturbs: items visited.
+  /// Work of a whole run, in items visited; unlike time, it is not disturbed by anything.
   static double work(const ModelTrial& trial) {
     return static_cast<double>(work_of(trial.cost)) * trial.steps;
   }
 
-  /// Effects and the reductions that are taken of them.
+  /// Effects, each with the index of its chosen reduction.
   using Choice = std::vector<std::pair<std::size_t, std::size_t>>;
 
   std::vector<const Reduction*> reductions(const Choice& choice) const {
@@ -234,7 +237,7 @@ class Search {
   }
 
   ModelTrial try_combined(const Choice& choice) {
-    // A name of its own: scenes are read once.
+    // Scenes are read once for each name, so every combination has its own.
     ModelTrial trial = draft(reductions(choice), "smaller-" + std::to_string(++combinations_), "");
     if (!trial.done) judge(trial, observe({trial.spec}, kCombinedBy).front());
     return trial;
@@ -245,8 +248,8 @@ class Search {
     return std::ranges::equal(trial.moved, found_.noise, std::less_equal<>());
   }
 
-  /// All that may go at once, or else one after the other: what moves nothing first, then
-  /// what goes altogether, then the greatest saving.
+  /// Combines all that can go at once. If that fails, adds them one by one: first those that move
+  /// nothing, then those that are removed entirely, then by the greatest saving.
   void combine() {
     Choice wanted;
     for (std::size_t i = 0; i < found_.effects.size(); ++i)
@@ -271,8 +274,8 @@ class Search {
     found_.file = found_.smallest->spec.scene;
   }
 
-  /// Adds what still stays within, each as strongly as it may; returns what was added, and its
-  /// trial.
+  /// Adds the effects whose combination still stays within, each with the strongest possible
+  /// reduction. Returns what was added; `best` receives its trial.
   Choice one_by_one(const Choice& wanted, ModelTrial& best) {
     Choice chosen;
     for (const auto& [effect, level] : wanted)
@@ -293,7 +296,7 @@ class Search {
     return chosen;
   }
 
-  /// Runs the smallest model again, from its file and without the store.
+  /// Runs the smallest model again, from its file and in a store of its own.
   void verify() {
     if (!found_.smallest || found_.interrupted) return;
     const Scratch scratch;
@@ -306,7 +309,7 @@ class Search {
     found_.verified = first && first->digest == second->digest;
   }
 
-  /// What every effect costs, and what the smallest model saves, from one interleaved session.
+  /// Times what every effect costs and what the smallest model saves, in one interleaved session.
   void measure() {
     if (found_.interrupted) return;
     std::vector<CaseToTime> cases{{full_.record.spec, full_.record.steps}};
@@ -341,7 +344,7 @@ class Search {
   SteadyClock::time_point start_ = SteadyClock::now();
   CaseMaker maker_;
   Observation full_;
-  std::vector<Observation> rounded_, reordered_;  ///< the full model, perturbed
+  std::vector<Observation> rounded_, reordered_;  ///< perturbed variants of the full model
   std::vector<Effect> effects_;
   int combinations_ = 0;
   Requirement found_;
@@ -362,7 +365,8 @@ std::size_t work_of(const std::vector<PassCost>& passes) {
 
 Requirement find_requirement(const RequireOptions& options, Store& store,
                              const std::filesystem::path& folder) {
-  for (const std::string& asked : options.keep) name_of_answer(asked);  // before anything runs
+  // Reports errors before anything runs.
+  for (const std::string& asked : options.keep) name_of_answer(asked);
   return Search(options, store, folder).run();
 }
 

@@ -9,7 +9,7 @@ namespace taut {
 
 namespace {
 
-/// The part of the full model's time that an effect costs; nothing: not timed.
+/// Share of the full model's time that an effect costs; empty if it was not timed.
 Cell time_of(const Requirement& found, const std::optional<Interval>& ratio) {
   if (!ratio) return {};
   const bool none = ratio->contains(1) || std::abs(1 - ratio->mid) <= spread(found.control);
@@ -25,7 +25,7 @@ std::string verdict(const EffectTrial& effect) {
 
 Column column_of(const KeptQuantity& answer) { return {answer.name, "", unit_of(answer)}; }
 
-/// The answers that are kept: what they are, and by how much they may move.
+/// A table of the kept answers: what they are, and by how much they may move.
 Table answers_of(const Requirement& found) {
   Table table{"answers",
               "answers that are kept",
@@ -57,7 +57,7 @@ Table answers_of(const Requirement& found) {
   return table;
 }
 
-/// What every effect does to the answers, and what it costs.
+/// A table of what every effect does to the answers, and what it costs.
 Table effects_of(const Requirement& found, std::size_t bytes) {
   Table table{"effects", "by how much the answers move without", {{"name", "effect"}, {"change"}}};
   for (const KeptQuantity& answer : found.answers) table.columns.push_back(column_of(answer));
@@ -84,7 +84,7 @@ Table effects_of(const Requirement& found, std::size_t bytes) {
   return table;
 }
 
-/// All that was tried.
+/// A table of everything that was tried.
 Table trials_of(const Requirement& found) {
   Table table{"trials",
               "all that was tried",

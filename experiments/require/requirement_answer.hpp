@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// What goes and what stays, in words. It is written to an answer and read back from one.
+/// What can go and what has to stay, in words. It is written to an answer and read back from one.
 struct RequirementSummary {
   std::string scene, solver;
   std::string chaotic;  ///< "no", or from when on
@@ -17,13 +17,13 @@ struct RequirementSummary {
 };
 RequirementSummary summary_of(const Requirement&);
 
-/// `picture`: its file, "" if there is none; `seconds` of the patience were used. What a step of
-/// the full model holds is read from the store.
+/// The answer of `taut require`. `picture` is its file, or "" if there is none; `seconds` of the
+/// patience were used. The memory of a step of the full model is read from the store.
 Answer answer_of(const Requirement&, const Store&, const std::string& picture, double seconds,
                  double patience);
 RequirementSummary requirement_in(const Answer&);
 
-/// A table `scenes` of several scenes' requirements.
+/// A table `scenes` with the requirements of several scenes.
 class RequirementTable {
  public:
   RequirementTable();

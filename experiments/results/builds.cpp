@@ -14,7 +14,7 @@ namespace taut {
 
 namespace {
 
-/// "20260504T101112Z" as "2026-05-04T10:11:12Z".
+/// Converts "20260504T101112Z" to "2026-05-04T10:11:12Z".
 std::string with_separators(const std::string& stamp) {
   return stamp.substr(0, 4) + "-" + stamp.substr(4, 2) + "-" + stamp.substr(6, 5) + ":" +
          stamp.substr(11, 2) + ":" + stamp.substr(13);

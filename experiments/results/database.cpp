@@ -43,7 +43,7 @@ namespace {
 Database::Database(fs::path file, Access access) : file_(std::move(file)) {
   std::error_code none;
   if (fs::exists(file_, none) && !fs::is_regular_file(file_, none))
-    throw InputError(file_.string() + ": is not a regular file");  // opening a pipe would wait
+    throw InputError(file_.string() + ": is not a regular file");  // opening a pipe would block
   errno = 0;
   try {
     db_ = std::make_unique<SQLite::Database>(fs::absolute(file_),
@@ -54,12 +54,12 @@ Database::Database(fs::path file, Access access) : file_(std::move(file)) {
   } catch (const SQLite::Exception& error) {
     fail_with(file_, error.getErrorCode() & 0xff, errno, error.what());
   }
-  // What the file says of itself is not trusted: others may have written it.
+  // The schema in the file is not trusted, since others may have written it.
   script("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA foreign_keys = ON");
 }
 
 void Database::fail(const SQLite::Exception& error) const {
-  const int known = sqlite3_system_errno(db_->getHandle());  // 0 of a COMMIT that fails
+  const int known = sqlite3_system_errno(db_->getHandle());  // 0 after a COMMIT that failed
   fail_with(file_, error.getErrorCode() & 0xff, known > 0 ? known : errno, error.what());
 }
 
@@ -133,7 +133,8 @@ void Database::transaction(const std::function<void()>& work) {
     run("COMMIT");
   } catch (...) {
     within_ = false;
-    sqlite3_exec(db_->getHandle(), "ROLLBACK", nullptr, nullptr, nullptr);  // unless it has already
+    // Unless SQLite has already rolled back.
+    sqlite3_exec(db_->getHandle(), "ROLLBACK", nullptr, nullptr, nullptr);
     throw;
   }
 }

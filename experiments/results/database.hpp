@@ -14,20 +14,20 @@
 
 namespace taut {
 
-/// An SQLite file. Whatever it refuses is an InputError that names the file and the reason: no
-/// space, read-only, locked for longer than kPatience, damaged.
+/// An SQLite file. Every failure is an InputError that names the file and the reason: no space,
+/// read-only, locked for longer than kPatience, damaged.
 class Database {
  public:
   enum class Access { read, write };
-  /// Milliseconds that a lock of another process is waited for.
+  /// Time that a lock of another process is waited for [ms].
   static constexpr int kPatience = 60000;
 
-  /// `write` creates the file if it is not there. Who reads takes back what a process that was
-  /// killed had begun to write, if the file system lets it.
+  /// `write` creates the file if it does not exist. Opening it to read also rolls back what a
+  /// killed process had begun to write, if the file system permits it.
   Database(std::filesystem::path file, Access);
   const std::filesystem::path& file() const { return file_; }
 
-  /// The rows of a query, one after the other; its locks end with this object.
+  /// The rows of a query, one after another. Its locks end with this object.
   class Rows {
    public:
     Rows(Database& of, SQLite::Statement& statement) : of_(of), statement_(statement) {}
@@ -37,10 +37,10 @@ class Database {
     bool next();
     bool null(int column) const { return statement_.getColumn(column).isNull(); }
     std::string text(int column) const { return statement_.getColumn(column).getString(); }
-    /// To the bit, of a number; "": NULL.
+    /// The text of a column; a number is written to the bit, and NULL is "".
     std::string exact_text(int column) const;
     std::int64_t integer(int column) const { return statement_.getColumn(column).getInt64(); }
-    double number(int column) const {  ///< NaN: NULL, or no finite number
+    double number(int column) const {  ///< NaN for NULL and for numbers that are not finite
       const double value = null(column) ? std::nan("") : statement_.getColumn(column).getDouble();
       return std::isfinite(value) ? value : std::nan("");
     }
@@ -50,8 +50,8 @@ class Database {
     SQLite::Statement& statement_;
   };
 
-  /// Bound to the query's "?" in order: texts, whole numbers, doubles (what is not finite is NULL),
-  /// nullptr (NULL), Bytes. One query's rows are read before the same one begins again.
+  /// Runs a query. The values are bound to its "?" in order: texts, whole numbers, doubles (NULL if
+  /// not finite), nullptr (NULL) or Bytes. Read all rows before you start the same query again.
   template <class... Values>
   Rows rows(const std::string& sql, const Values&... values) {
     SQLite::Statement& statement = prepared(sql);
@@ -59,25 +59,26 @@ class Database {
     guarded([&] { (bind(statement, ++place, values), ...); });
     return Rows(*this, statement);
   }
-  /// Runs one statement that has no rows, or whose rows do not matter.
+  /// Runs one statement whose rows, if any, are ignored.
   template <class... Values>
   void run(const std::string& sql, const Values&... values) {
     Rows all = rows(sql, values...);
     while (all.next()) {
     }
   }
-  /// As many values as there are "?", of a statement that is made of a list of columns.
+  /// Runs a statement built from a list of columns. There must be one value for each "?".
   using Value = std::variant<std::nullptr_t, std::int64_t, double, std::string>;
   void run_with(const std::string& sql, const std::vector<Value>& values);
   /// Several statements, separated by semicolons.
   void script(const std::string& sql);
-  /// The first column of the first row of a query that has one.
+  /// First column of the first row of a query that has a row.
   std::int64_t number_of(const std::string& sql);
-  /// All of what `work` writes or, if it throws, nothing. Within another one: part of that.
+  /// Runs `work` and commits all that it writes, or nothing if it throws. A nested call belongs to
+  /// the outer transaction.
   void transaction(const std::function<void()>& work);
 
-  /// The statements that made the tables, indexes, views and triggers, by kind and name ("table",
-  /// "cases").
+  /// The SQL statements that created the tables, indexes, views and triggers, by kind and name
+  /// ("table", "cases").
   using Parts = std::map<std::pair<std::string, std::string>, std::string>;
   Parts parts();
 
@@ -114,14 +115,14 @@ class Database {
   std::filesystem::path file_;
   std::unique_ptr<SQLite::Database> db_;
   std::map<std::string, SQLite::Statement> statements_;  ///< by their text
-  bool within_ = false;                                  ///< a transaction
+  bool within_ = false;                                  ///< whether a transaction is open
 };
 
-/// What Database::parts() would say of a file that these statements made.
+/// Result of Database::parts() for a file that these statements created.
 Database::Parts parts_made_by(const std::string& statements);
 
-/// The file is no SQLite file, or not a whole one, or its indexes and references do not agree with
-/// its rows.
+/// Whether the file is not a complete SQLite file, or its indexes and references disagree with its
+/// rows.
 bool damaged(const std::filesystem::path& file);
 
 }  // namespace taut

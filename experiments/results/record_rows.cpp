@@ -14,7 +14,8 @@ int whole_or_none(const Database::Rows& row, int column) {
 
 namespace {
 
-// What a column of a record is in the file, and back. Texts of JSON hold what is no single value.
+// Conversions between a column of a record and its form in the file. What is not a single value is
+// stored as JSON text.
 
 Database::Value kept(const std::string& text) { return text; }
 Database::Value kept(double number) { return number; }
@@ -49,7 +50,7 @@ void read(const Database::Rows& row, int column, Value& value) {
             });
 }
 
-/// All but the values, of case_columns(). Throws InputError where a text is not what it has to be.
+/// Reads a record, without its values, from case_columns(). Throws InputError if a text is invalid.
 Record record_in(const Database::Rows& row) {
   Record r;
   int at = 0;

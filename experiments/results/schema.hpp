@@ -5,14 +5,14 @@
 
 namespace taut {
 
-/// What PRAGMA user_version of a results file says; files of another one are not read.
+/// PRAGMA user_version of a results file. Files with another version are not read.
 inline constexpr int kSchemaVersion = 7;
 
-/// The statements that make the tables of a results file.
+/// The SQL statements that create the tables of a results file.
 std::string tables();
 
-/// The columns of the table cases that hold a record, in the order of record_columns(); of the
-/// others it has case_id, is_result, result_digest and errors.
+/// The columns of the table cases that hold a record, in the order of record_columns(). Beside them
+/// the table has case_id, is_result, result_digest and errors.
 std::vector<std::string> case_columns();
 
 }  // namespace taut

@@ -81,7 +81,8 @@ void Store::begin_session(const std::string& command, const std::vector<StudyCas
     for (const auto& [study, planned] : studies) {
       cases += planned.size();
       if (study.empty()) continue;
-      database.run("DELETE FROM planned WHERE study = ?", study);  // of another build, or preset
+      // Planned by another build or preset.
+      database.run("DELETE FROM planned WHERE study = ?", study);
       for (const Case& one : planned) {
         database.run(
             "INSERT OR IGNORE INTO planned (study, key, id, shard, shards) VALUES (?, ?, ?, ?, ?)",

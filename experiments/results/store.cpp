@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostErrors = std::size_t{64} << 10;  ///< bytes that are kept of stderr
+constexpr std::size_t kMostErrors = std::size_t{64} << 10;  ///< most bytes of stderr that are kept
 
-/// The end of a file, "" if there is none.
+/// The last `most` bytes of a file; "" if there is none.
 std::string end_of(const fs::path& file, std::size_t most) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   if (!in) return {};
@@ -40,7 +40,7 @@ std::string text_if_there(const fs::path& file) {
   return fs::exists(file) ? read_text(file) : std::string();
 }
 
-/// What becomes of a record beside the one that is there, if any.
+/// What to do with a record, given the stored one, if any.
 Store::Commit beside(const std::optional<Record>& old, const Record& record, bool adds_frames) {
   using Commit = Store::Commit;
   if (!old) return Commit::stored;
@@ -50,8 +50,8 @@ Store::Commit beside(const std::optional<Record>& old, const Record& record, boo
   return record.status.is_result() ? Commit::conflict : Commit::same;
 }
 
-/// Why nothing in the file can be trusted to be what it is called; "": it can. A view of a foreign
-/// file in the place of a table may never end, a trigger does what it wants.
+/// Why the file's tables cannot be trusted; "" if they can. In a foreign file, a view in place of a
+/// table may never end, and a trigger may do anything.
 std::string wrong_part(Database& database) {
   static const Database::Parts kOurs = parts_made_by(tables());
   const Database::Parts theirs = database.parts();
@@ -63,7 +63,7 @@ std::string wrong_part(Database& database) {
   return {};
 }
 
-/// Of this taut, and not what it wrote.
+/// Whether a file is damaged, or has this taut's version but not its tables.
 bool unusable(const fs::path& file) {
   if (damaged(file)) return true;
   Database database(file, Database::Access::read);
@@ -85,7 +85,7 @@ struct Store::State {
   std::unique_ptr<Database> database;
   bool writable = false;
   std::map<std::string, std::int64_t, std::less<>> metrics;  ///< metric_id by name
-  std::optional<Scratch> scratch;                            ///< where cases write
+  std::optional<Scratch> scratch;                            ///< where cases write their files
 };
 
 fs::path default_results() { return results_folder() / "runs"; }
@@ -111,7 +111,7 @@ Database* Store::reading() const {
   }
   auto database = std::make_unique<Database>(file(), Database::Access::read);
   const std::int64_t version = database->number_of("PRAGMA user_version");
-  if (version == 0) return nullptr;  // being made
+  if (version == 0) return nullptr;  // another process is creating it
   require_version(file(), version);
   if (const std::string wrong = wrong_part(*database); !wrong.empty())
     throw InputError(file().string() + ": " + wrong);
@@ -127,7 +127,7 @@ Database& Store::writing() {
   make_folder(root_);
   state_->mark = std::make_unique<WriterMark>(file());
   auto database = std::make_unique<Database>(file(), Database::Access::write);
-  database->transaction([&] {  // which shows that the disk takes it
+  database->transaction([&] {  // also shows that the disk accepts it
     if (const std::int64_t version = database->number_of("PRAGMA user_version"); version == 0)
       database->script(tables());
     else
@@ -147,7 +147,7 @@ void Store::prepare() {
     fs::rename(file(), aside, error);
     if (error)
       throw InputError(file().string() + ": damaged, and cannot be set aside: " + error.message());
-    fs::remove(file().string() + "-journal", none);  // of the damaged one
+    fs::remove(file().string() + "-journal", none);  // belongs to the damaged file
     notice_(file().string() + ": damaged, set aside as " + aside.string() + "; begun anew");
   }
   writing();
@@ -291,7 +291,7 @@ Store::Commit Store::commit(const Record& record, const CaseFiles& files) {
                      result_digest(record), utc_stamp(), to_json(record));
     });
   } catch (const InputError&) {
-    state_->metrics.clear();  // may be of rows that are not there
+    state_->metrics.clear();  // it may refer to rows that were rolled back
     throw;
   }
   return done;

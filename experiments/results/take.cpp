@@ -1,4 +1,4 @@
-// Taking over the cases of another results file.
+// Copies the cases of another results file.
 #include <algorithm>
 
 #include "core/model/input_error.hpp"
@@ -22,7 +22,7 @@ std::vector<std::string> Store::unsound_keys() const {
 
 namespace {
 
-/// A temporary table of these keys, for as long as this lives.
+/// A temporary table with these keys, which exists as long as this object.
 class SoundKeys {
  public:
   SoundKeys(Database& database, const std::vector<Store::Entry>& all) : database_(database) {
@@ -32,7 +32,7 @@ class SoundKeys {
   ~SoundKeys() {
     try {
       database_.script("DROP TABLE IF EXISTS temp.sound");
-    } catch (const InputError&) {  // of a connection that is of no use any more
+    } catch (const InputError&) {  // the connection is of no use any more
     }
   }
   SoundKeys(const SoundKeys&) = delete;

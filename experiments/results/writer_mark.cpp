@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The name of a file system that other hosts may write too; "" of a local one. Numbers: statfs(2)
-/// and <linux/magic.h>.
+/// Name of the file system if other hosts may write to it too; "" for a local one. Numbers:
+/// statfs(2) and <linux/magic.h>.
 std::string network_file_system(const fs::path& folder) {
   constexpr std::pair<unsigned, const char*> kKnown[] = {
       {0x6969, "NFS"},      {0x517B, "SMB"},        {0xFF534D42, "SMB"},   {0xFE534D42, "SMB"},
@@ -50,7 +50,7 @@ WriterMark::WriterMark(const fs::path& file) {
                        mark.string());
     const int process = std::atoi(theirs.c_str() + std::min(theirs.size(), host.size()));
     if (process > 0 && (kill(process, 0) == 0 || errno != ESRCH))
-      return;  // locks hold within a host
+      return;  // within a host, locks are reliable
   }
   write_file(mark, host_name() + " " + std::to_string(getpid()) + "\n");
   mark_ = mark;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// The text without the parameters `left_out`.
+/// Solver text without the parameters `left_out`.
 std::string without(const SolverChoice& choice, std::initializer_list<std::string_view> left_out) {
   std::string text;
   for (const ParamItem& item : param_items(choice.params.brief()))
@@ -51,9 +51,11 @@ Stepped step_once(Solver& solver, const State& from, double at, double dt) {
   return result;
 }
 
-/// Of exponential decay through the last third of the points above twice the floor and rounding.
+/// Contraction per iteration, from an exponential fit to the last third of the points that are
+/// above twice the floor and above rounding.
 double contraction(const std::vector<ConvergencePoint>& points, double floor) {
-  std::vector<std::pair<double, double>> falling;  // k, log of the distance
+  // Number of iterations, logarithm of the distance.
+  std::vector<std::pair<double, double>> falling;
   for (const ConvergencePoint& p : points)
     if (p.distance > std::max(2 * floor, 1e-12))
       falling.emplace_back(p.iterations, std::log(p.distance));
@@ -72,19 +74,19 @@ double contraction(const std::vector<ConvergencePoint>& points, double floor) {
   return std::exp((n * ky - k * y) / (n * kk - k * k));
 }
 
-/// Root mean square of the way between the iterates of two numbers of iterations [m].
+/// RMS distance between the iterates after two numbers of iterations [m].
 using Way = std::function<double(int, int)>;
 
-/// Of the distance: iterates that move no more than this when their number doubles are at rest.
+/// Iterates rest if doubling their number moves them by at most this share of the distance.
 constexpr double kRests = 1e-3;
 
-/// The distance at the end if the last third of the points is within a tenth of it and the iterates
-/// are at rest: one that creeps moves further in more iterations. `moved`: how far the last round
-/// of the exact step moved it.
+/// The final distance, if the last third of the points is within a tenth of it and the iterates
+/// rest; 0 otherwise. Iterates that creep would move further with more iterations, so they have no
+/// floor. `moved` is how far the last round of the exact step moved it.
 double floor_of(const std::vector<ConvergencePoint>& points, double moved, const Way& way) {
   const double end = points.empty() ? 0 : points.back().distance;
   if (points.size() < 6 || !(end > std::max(2 * moved, 1e-12))) return 0;  // rounding
-  if (end > points.front().distance) return 0;  // on its way round a bend
+  if (end > points.front().distance) return 0;  // the path bends: the distance first grows
   for (std::size_t i = points.size() - points.size() / 3; i < points.size(); ++i)
     if (!(std::abs(points[i].distance - end) <= 0.1 * end)) return 0;
   int last = 1;
@@ -93,7 +95,7 @@ double floor_of(const std::vector<ConvergencePoint>& points, double moved, const
   return way_of_last <= kRests * end && way_of_last <= 1.2 * way(last / 4, last / 2) ? end : 0;
 }
 
-/// A step and its minimum, the same for all solvers with this stiffness.
+/// A step and its minimum, shared by all solvers with this stiffness.
 struct ExactStep {
   reference::ImplicitStep step;
   reference::ImplicitStep::Minimum minimum;
@@ -109,7 +111,7 @@ ConvergencePoint point_of(const ExactStep& exact, int iterations, const Stepped&
   if (!step.rigid() && !step.in_contact()) p.residual = step.residual(x);
   if (!minimum.problem.empty()) return p;
   p.distance = step.distance(x, minimum.x);
-  if (step.in_contact()) return p;  // y is inside of colliders: its energy is no measure
+  if (step.in_contact()) return p;  // inside a collider, the energy does not measure anything
   p.gap = step.rigid() ? step.square_distance(x, minimum.x) /
                              step.square_distance(step.prediction(), minimum.x)
                        : (step.energy(x) - step.energy(minimum.x)) /
@@ -117,7 +119,7 @@ ConvergencePoint point_of(const ExactStep& exact, int iterations, const Stepped&
   return p;
 }
 
-/// The solver's iterates, beside the exact step.
+/// Fills in the solver's iterates, compared with the exact step.
 void follow(Convergence& all, const Scene& scene, const State& from, double at, int most,
             const ExactStep& exact) {
   all.problem = exact.minimum.problem;
@@ -166,7 +168,7 @@ State state_at(const Scene& scene, const SolverChoice& from, double at) {
 
 std::vector<Convergence> converge(const Scene& scene, const State& state, double at,
                                   const std::vector<std::string>& solvers, int most) {
-  std::map<Stiffness, ExactStep> steps;  // that of rigid links is most solvers'
+  std::map<Stiffness, ExactStep> steps;  // most solvers share the step of rigid links
   std::vector<Convergence> all;
   for (const std::string& solver : solvers) {
     const SolverChoice choice = parse_solver(solver);

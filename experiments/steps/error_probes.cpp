@@ -17,16 +17,16 @@ namespace taut {
 
 namespace {
 
-constexpr double kWithin = 0.25;      ///< of the true distance
+constexpr double kWithin = 0.25;      ///< relative to the true distance
 constexpr double kMicrometre = 1e-6;  ///< m
 constexpr int kIterations[] = {1, 5, 15};
 constexpr double kStiffnesses[] = {1e3, 1e4, 1e5, 1e6};  ///< N/m
-constexpr double kTimes[] = {0.25, 0.5, 0.75, 1};        ///< s, of the states with rigid links
+constexpr double kTimes[] = {0.25, 0.5, 0.75, 1};  ///< s, times of the states with rigid links
 
 struct ProbedScene {
   std::string name;
   std::vector<std::string> settings;
-  double at = 0.5;  ///< s
+  double at = 0.5;  ///< s, time of the state
 
   std::string title() const { return settings.empty() ? name : name + ", " + join(settings, ", "); }
 };
@@ -58,7 +58,7 @@ std::vector<std::string> solvers_of(ProbePart part) {
           "admm", "xpbd",          "implicit",         "implicit:line-search=off"};
 }
 
-/// Every family that the scene has gets this stiffness.
+/// Setting that gives this stiffness to every family of the scene.
 std::string stiffness_setting(const Scene& scene, double k) {
   std::vector<std::string> parts;
   for (const Family family : kFamilies)
@@ -88,12 +88,12 @@ State step_of(const Scene& scene, const std::string& solver, const State& from, 
   return state;
 }
 
-/// A state, its exact step, and what tells the distance from it.
+/// A state, its exact step, and the StepError that estimates the distance from it.
 struct Probed {
   const Scene& scene;
   double at;
   State from;
-  std::vector<Vec3> exact;  ///< empty: there is none
+  std::vector<Vec3> exact;  ///< empty if there is none
   reference::StepError error;
 
   Probed(const Scene& s, double time, const std::string& solver)
@@ -106,15 +106,16 @@ struct Probed {
       if (minimum.problem.empty()) exact = minimum.x;
     }
     if (!exact.empty() || s.stiffness == kRigid) return;
-    // with bending, or where 100 iterations of the reference are too few
+    // The scene has bending, or the 100 iterations of the reference were too few.
     exact = step_of(s, "implicit:iterations=2000", from, at).x;
   }
 };
 
-/// Of a scene and a solver.
+/// Counts for a scene and a solver.
 struct Tally {
   int probes = 0, within = 0, refused = 0, without_exact = 0;
-  std::vector<double> ratios = {};  ///< told over true, of those that are believed
+  /// Estimated over true distance, for estimates that are believed.
+  std::vector<double> ratios = {};
 
   void add(Probed& probed, const std::string& solver) {
     ++probes;

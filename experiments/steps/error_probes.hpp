@@ -7,16 +7,17 @@
 
 namespace taut {
 
-/// Which answers are probed: of elastic links without contact, the same on bodies, or of rigid
+/// What is probed: elastic links without contact, elastic links in contact with bodies, or rigid
 /// links.
 enum class ProbePart { free, contact, rigid };
 std::vector<std::string> probe_parts();  ///< "free", "contact", "rigid"
 
-/// How near the distance that reference::StepError tells is to the true one, from the exact step:
-/// scenes times solvers times twelve settings each. The exact step is Newton's method's from the
-/// start of the step (reference::ImplicitStep), with bending or where that does not converge the
-/// solver `implicit`'s. An answer that is refused is a miss; one that is within a micrometre of the
-/// exact step is a hit if it is told to be. `scenes`: empty, all of them.
+/// Probes how close the distance that reference::StepError estimates comes to the true distance
+/// from the exact step, for scenes times solvers times twelve settings each. The exact step is that
+/// of Newton's method from the start of the step (reference::ImplicitStep), or that of the solver
+/// `implicit` with bending or where Newton's method does not converge. A refused estimate is a
+/// miss. For a result within a micrometre of the exact step, an estimate that says so is a hit. An
+/// empty `scenes` stands for all.
 Answer error_probes(const std::vector<ProbePart>&, const std::vector<std::string>& scenes);
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-// What `taut converge` finds, written as an answer and read back from one.
+// Writes the findings of `taut converge` to an answer, and reads them back.
 #include "experiments/steps/one_step.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr const char* kDistance = "step.distance";
 constexpr double kGaps[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 constexpr Unit kForce{"N", "N"}, kStiffness{"N/m", "N/m"};
 
-/// What the exact step is, and whether there is one.
+/// Text that says what the exact step is, or why there is none.
 std::string exact_step(const Convergence& c) {
   const std::string step =
       std::ranges::any_of(c.stiffness, [](double k) { return std::isinf(k); })
@@ -30,7 +30,7 @@ std::string exact_step(const Convergence& c) {
   return c.problem.empty() ? step : "none: " + c.problem;
 }
 
-/// A line for each solver that can be asked: what its links are, how its iterations end.
+/// A table with a row for each solver that can be asked: its links, and how its iterations end.
 Table summary(const std::vector<Convergence>& all) {
   Table table{"solvers",
               "",
@@ -54,7 +54,8 @@ Table summary(const std::vector<Convergence>& all) {
   return table;
 }
 
-/// Iterations until the gap stays at or below each of kGaps, and the CPU time of a step of so many.
+/// A table of the iterations after which the gap stays at or below each of kGaps, with the CPU time
+/// of a step with that many.
 Table iterations_to_gaps(const std::vector<Convergence>& all) {
   Table table{"reached",
               "iterations until the gap stays below a value",

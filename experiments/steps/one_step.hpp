@@ -11,55 +11,58 @@
 
 namespace taut {
 
-/// What `taut converge` is asked.
+/// Question of `taut converge`.
 struct StepQuestion {
   std::string scene;                  ///< name or path
-  std::vector<std::string> settings;  ///< of the scene
+  std::vector<std::string> settings;  ///< settings of the scene
   std::vector<std::string> solvers;
-  /// Solver whose run gives the state. Of one whose links hardly deviate the exact step is near;
-  /// jakobsen's state is far off its links.
+  /// Solver whose run gives the state. The exact step is near the state of a solver whose links
+  /// hardly deviate; jakobsen's state is far from satisfying its links.
   std::string from = "implicit:structural=1e5,shear=1e5,bend=1e5";
   double at = 0.5;  ///< s, time of the state
-  int most = 256;   ///< iterations
+  int most = 256;   ///< largest number of iterations
 };
-/// Throws InputError.
+/// Answers the question. Throws InputError.
 Answer one_step(const StepQuestion&);
 
-/// From what the solvers were asked for a step.
+/// The state from which the solvers took a step.
 struct StepState {
-  std::string scene, settings;  ///< its name, and what is set of it: "cloth.span=0.7"
+  std::string scene, settings;  ///< name of the scene, and its settings: "cloth.span=0.7"
   std::string from;             ///< solver whose run gave the state
-  double at = 0, dt = 0;        ///< s, time of the state and the step
+  double at = 0, dt = 0;        ///< s, time of the state and length of the step
 };
 Answer one_step_answer(const StepState&, const std::vector<Convergence>&);
 
 /// How the iterations of a solver end.
 struct StepSolver {
-  std::string text;                       ///< "vbd:structural=800"
-  double structural = 0;                  ///< stiffness [N/m]; NaN: rigid
-  double contraction = 0;                 ///< of the distance, by each further iteration
-  double floor = 0;                       ///< m, where another fixed point ends them; NaN: nowhere
-  double moved = 0;                       ///< m, last correction of the exact step
-  std::map<int, double> distances = {};   ///< from the exact step [m], by iterations
-  std::map<double, int> iterations = {};  ///< until the gap stays below a value, by that value
+  std::string text;        ///< "vbd:structural=800"
+  double structural = 0;   ///< stiffness [N/m]; NaN: rigid
+  double contraction = 0;  ///< factor of the distance per further iteration
+  double floor = 0;  ///< m, distance of another fixed point where they end; NaN if there is none
+  double moved = 0;  ///< m, last correction of the exact step
+  /// Distance from the exact step [m], by number of iterations.
+  std::map<int, double> distances = {};
+  /// Iterations after which the gap stays below a value, by that value.
+  std::map<double, int> iterations = {};
 };
 
-/// What `taut converge` found, read back from its answer.
+/// Findings of `taut converge`, read back from its answer.
 struct OneStep {
   std::string subject;          ///< "one step of drape, cloth.span=0.7"
-  std::string scene, settings;  ///< its name, and what is set of it
+  std::string scene, settings;  ///< name of the scene, and its settings
   std::vector<StepSolver> solvers;
-  /// One for each point, so that they are drawn as cases are: their sweeps, and the values that
-  /// step_kinds() names.
+  /// A record for each point, so that points can be drawn like cases: with their sweeps, and the
+  /// values that step_kinds() lists.
   std::vector<Record> records;
 
   explicit OneStep(const Answer&);
   std::string titled_scene() const;  ///< "drape, cloth.span=0.7"
 };
 
-/// What can be drawn over the iterations of a step: "distance", "gap", "stretch", "residual".
+/// Values that can be drawn over the iterations of a step: "distance", "gap", "stretch",
+/// "residual".
 std::vector<std::string> step_kinds();
-/// "step.distance" of "distance". Throws InputError with a suggestion.
+/// Name of a value: "step.distance" for "distance". Throws InputError with a suggestion.
 std::string step_value(std::string_view kind);
 
 }  // namespace taut

@@ -73,7 +73,7 @@ class Campaign {
     report(nullptr);
   }
 
-  /// Until a case has ended, one runs out of time, the deadline or half a second has passed.
+  /// Waits until a case has ended, the deadline or half a second has passed.
   void wait() {
     std::vector<pollfd> ends;
     for (const IsolatedCase& one : running_) ends.push_back({one.descriptor(), POLLIN, 0});

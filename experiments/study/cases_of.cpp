@@ -1,4 +1,4 @@
-// From a study to its cases.
+// Expands a study into its cases.
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -12,7 +12,8 @@ namespace taut {
 
 namespace {
 
-using Settings = std::map<std::string, std::string>;  ///< what one case has, by axis name
+/// Settings of one case, by axis name.
+using Settings = std::map<std::string, std::string>;
 
 /// Calls `visit` for every combination of one value per axis, the first axis outermost.
 void combinations(const std::vector<StudyAxis>& axes,
@@ -31,8 +32,8 @@ std::vector<StudyAxis> scene_axes(const Study& study) {
   return chosen;
 }
 
-/// The parameters to vary of one solver: those that it has and that its text does not fix. An axis
-/// of this solver stands in the place of one of all.
+/// The axes that vary a solver's parameters: those that it has and that its text does not fix. An
+/// axis of this solver alone replaces the general axis of the same parameter.
 std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
   const auto colon = text.find(':');
@@ -51,7 +52,8 @@ std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) 
   return chosen;
 }
 
-/// More than anybody waits for; an axis of a thousand values too many is a slip.
+/// Most cases of a study: nobody waits for more, so more are a mistake, such as an axis with a
+/// thousand values too many.
 constexpr int kMostCases = 100'000;
 
 double count(const std::vector<StudyAxis>& axes) {
@@ -60,7 +62,7 @@ double count(const std::vector<StudyAxis>& axes) {
   return product;
 }
 
-/// Before any of them is made; exclusions and repetitions do not count.
+/// Throws before any case is made if there are too many. Counts exclusions and repetitions too.
 void require_few(const Study& study) {
   double of_solvers = 0;
   for (const std::string& solver : study.solvers) of_solvers += count(solver_axes(study, solver));
@@ -81,7 +83,7 @@ bool excluded(const Study& study, const Settings& settings) {
       study.exclusions, [&](const Exclusion& one) { return std::ranges::all_of(one.when, has); });
 }
 
-/// The settings of the scene: those that a search chose for it, or all solvers.
+/// The solvers to run on a scene: settings that a search chose for it, or all of the study.
 const std::vector<std::string>& solvers_on(const Study& study, const std::string& scene) {
   if (study.searched.empty()) return study.solvers;
   const auto chosen = study.chosen.find(scene);

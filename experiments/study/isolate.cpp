@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kSeriesRows = 120;
-/// A case that prints without end fills no disk; beside its motion, in bytes.
+/// Largest file of a case beside its motion [bytes], so that a case that prints endlessly does not
+/// fill the disk.
 constexpr std::size_t kFileBytes = std::size_t{256} << 20;
 
 std::vector<std::string> command(const Case& one, const fs::path& folder, int frames) {
@@ -41,13 +42,14 @@ std::vector<std::string> command(const Case& one, const fs::path& folder, int fr
   return words;
 }
 
-/// Of all steps, should they be asked for.
+/// Size of the motion if all steps are kept [bytes].
 std::size_t motion_bytes(const Scene& scene, int frames) {
   const std::size_t frame = sizeof(double) + 3 * sizeof(float) * scene.start.x.size();
   return frames > 0 ? to_index(scene.steps + 1) * frame : 0;
 }
 
-/// What the case wrote; its address is what this process says, never what the case claims.
+/// The record that the case wrote. Its key has to be the one that this process expects, not what
+/// the case claims.
 Record record_in(const fs::path& file, const Case& one) {
   Record record = record_from_json(read_text(file), file.filename());
   if (record.key != one.key)
@@ -60,7 +62,7 @@ Record record_in(const fs::path& file, const Case& one) {
 Heartbeat::Heartbeat(const fs::path& path) {
   const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   void* page = MAP_FAILED;
-  // Room for it now: a page without a block behind it is a SIGBUS later.
+  // Allocate the block now: writing to a page without one would raise SIGBUS later.
   if (fd >= 0 && (errno = posix_fallocate(fd, 0, sizeof(int))) == 0)
     page = mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   if (fd >= 0) close(fd);
@@ -115,7 +117,7 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   const auto failed = [&](Kind kind, const std::string& reason) {
     return unfinished(case_, {kind, reason, step, -1});
   };
-  // What is no property of the case leaves no record: it would be taken for the case's result.
+  // What is not the case's fault leaves no record, since a record would count as the case's result.
   if (!fs::exists(folder_))
     throw InputError(folder_.string() + ": vanished while its case was running");
   if (!end && process_.was_stopped()) fail_from_outside("stopped");
@@ -124,7 +126,7 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   if (end->exit_code == kEndedFromOutside) throw EndedFromOutside(case_.id + ": " + said);
   if (end->exit_code == kCannotWrite && beat == Heartbeat::kCannotWrite)
     throw InputError(said.empty() ? folder_.string() + ": cannot write: " + std::strerror(ENOSPC)
-                                  : said);  // on a full disk its words are lost too
+                                  : said);  // on a full disk its message is lost too
   if (end->signal == SIGXCPU) return failed(Kind::timeout, "CPU time");
   if (end->signal == SIGKILL) return failed(Kind::oom, "killed by the system");
   if (end->signal != 0) return failed(Kind::crash, end->text() + (said.empty() ? "" : ": " + said));
@@ -144,7 +146,7 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
 }
 
 int run_into(const Case& one, const fs::path& folder, int frames) try {
-  std::signal(SIGXFSZ, SIG_DFL);  // a case that prints without end dies of it
+  std::signal(SIGXFSZ, SIG_DFL);  // the signal ends a case that prints endlessly
   const auto write = [&](auto&& what) {
     try {
       what();

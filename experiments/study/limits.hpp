@@ -8,45 +8,46 @@
 
 namespace taut {
 
-/// The largest size of a metric's value that is accepted.
+/// Largest accepted magnitude of a metric's value.
 struct Limit {
-  std::string name;  ///< of the value
+  std::string name;  ///< name of the value
   double most = 0;   ///< in the value's unit, >= 0
 
-  /// "1.2 mm", "0.3 %": a value as its unit is shown; "-" for what is not a number.
+  /// A value in the unit shown to people: "1.2 mm", "0.3 %"; "-" if it is not finite.
   std::string text(double value) const;
 };
 
-/// "METRIC:LIMIT" for this scene: in SI units, in the unit shown, or in "%" of the cloth's extent
-/// and of the duration; of shares, points. Throws InputError.
+/// Parses "METRIC:LIMIT" for this scene. The limit is in SI units, in the unit shown, or in "%".
+/// 100 % is the cloth's extent for lengths, the duration for times, and 1 for shares. Throws
+/// InputError.
 Limit parse_limit(const std::string&, const Scene&);
 
-/// The largest RMS stretch that is accepted.
+/// Largest accepted RMS stretch.
 inline constexpr double kMostStretch = 0.1;
 
-/// The limits unless others are asked for, as far as the scene has the values:
+/// Limits that apply unless others are requested, for the values that the scene has:
 ///   - no passage of a vertex and no crossing;
 ///   - depths of vertices of at most 0.1 % of the cloth's extent;
 ///   - an RMS stretch of at most kMostStretch;
-///   - a motion error of at most 25 % of the way from the dynamic reference, for cloth that stands
+///   - a motion error of at most 25 % of the way in the dynamic reference, since cloth that stands
 ///     still has little strain.
-/// Passages of edges and faces are accepted: past an edge of a box they happen to every solver that
-/// keeps vertices alone outside (`--keep edge.passages:0` asks for none).
+/// Passages of edges and faces are accepted: at the edge of a box they happen to every solver that
+/// keeps only vertices outside (`--keep edge.passages:0` forbids them).
 std::vector<Limit> default_limits(const Scene&);
 
-/// What a case does beyond these limits: "penetration.peak 3.1 mm, more than 1 mm"; "": nothing.
+/// How a case exceeds these limits: "penetration.peak 3.1 mm, more than 1 mm"; "" if it does not.
 std::string beyond(const Record&, const std::vector<Limit>&);
 
-// How `--keep` is read, for limits and for tolerances.
+// Parsing of `--keep`, for limits and for tolerances.
 
-/// The NAME of "NAME" or "NAME:NUMBER". Throws InputError: it is none of these.
+/// The NAME in "NAME" or "NAME:NUMBER". Throws InputError unless it is one of `names`.
 std::string name_of_kept(const std::string& asked, const std::vector<std::string>& names);
-/// The number after the colon, in SI units. `hundred`: what 100 % is of; NaN: "%" is not a unit.
-/// Throws InputError: no number of at least 0, or another unit.
+/// The number after the colon in SI units. `hundred` is the value of 100 %; if it is NaN, "%" is
+/// not allowed. Throws InputError unless the number is at least 0 and the unit is known.
 double number_of_kept(const std::string& asked, const Unit&, double hundred);
-/// What 100 % of a value with this unit is on a scene; NaN: it depends on the value.
+/// Value of 100 % for this unit on a scene; NaN if it depends on the value.
 double hundred_percent(const Unit&, const Scene&);
-/// Whether the values are numbers of things.
+/// Whether values with this unit count things.
 bool is_count(const Unit&);
 
 }  // namespace taut

@@ -5,21 +5,22 @@
 
 namespace taut {
 
-/// What `taut run` without a study runs and `taut report` without one shows: main-job.toml of
+/// What `taut run` without a study runs, and `taut report` without one shows: main-job.toml in
 /// data_folder().
 struct MainJob {
-  std::string preset;                ///< of all its studies
-  std::vector<std::string> studies;  ///< that are compared
+  std::string preset;                ///< preset of all its studies
+  std::vector<std::string> studies;  ///< studies to compare
   std::vector<std::string> maps;     ///< studies of where solvers break
-  std::string bench;                 ///< the study that is timed
-  /// Scenes ("name:key=value,...") of which one step is followed, by the first study's solvers.
+  std::string bench;                 ///< study to time
+  /// Scenes ("name:key=value,...") of which one step is followed, under the solvers of the first
+  /// study.
   std::vector<std::string> steps;
 
-  /// Those that are compared, then the maps.
+  /// The compared studies, then the maps.
   std::vector<std::string> studies_to_run() const;
 };
 
-/// Throws InputError with everything that is wrong with the file.
+/// Throws InputError with all errors of the file.
 MainJob main_job();
 
 }  // namespace taut

@@ -16,7 +16,7 @@ struct Goal {
   bool replace = false;
 };
 
-/// Why a reference of this kind is not computed; "": it is.
+/// Why a reference of this kind need not be computed; "" if it does.
 std::string kept(const Scene& scene, const std::string& kind, double t, const Goal& goal) {
   const std::filesystem::path file = reference_file(
       {scene.name, reference_digest(scene, kind), kind, t, "", 0, {}}, goal.folder / scene.name);
@@ -35,27 +35,28 @@ ReferenceOutcome write_static(const Scene& scene, const Goal& goal) {
   return {scene.name, "static", rest.derivation, "", 0, rest.floor};
 }
 
-/// Two answers for one moment are the same motion if they differ by less than this share of the
-/// cloth's size.
+/// Two results for the same moment agree if they differ by less than this share of the cloth's
+/// size.
 constexpr double kConverged = 1e-4;
 
-/// How often the step is halved for a moment that is not converged, while that brings it nearer.
+/// Most halvings of the step for a moment that is not converged; they end earlier if halving does
+/// not help.
 constexpr int kHalvings = 3;
 
-/// The first moment that is not converged; floor.size(): all are.
+/// Index of the first moment that is not converged; floor.size() if all are.
 std::size_t horizon(const reference::Trajectory& motion, const Scene& scene) {
   const auto beyond = [&](double floor) { return !(floor <= kConverged * extent(scene)); };
   return static_cast<std::size_t>(std::ranges::find_if(motion.floor, beyond) -
                                   motion.floor.begin());
 }
 
-/// At as many of these moments as the projection reaches, from steps halved until they are
-/// converged or come no nearer.
+/// Computes as many of these moments as the projection reaches, and removes the others from
+/// `times`. Halves the step until they are converged or stop improving.
 reference::Trajectory motion_of(const Scene& scene, std::vector<double>& times) {
   reference::Trajectory motion = reference::converged_motion(scene, times, 1.0 / 1024);
   for (; !motion.unique && times.size() > 1 && reference::refuse_dynamic(scene).empty();
        motion = reference::converged_motion(scene, times, 1.0 / 1024))
-    times.pop_back();  // the last of them may be out of reach
+    times.pop_back();  // the last moment may be out of reach
   for (int halved = 0; motion.unique && halved < kHalvings; ++halved) {
     const std::size_t k = horizon(motion, scene);
     if (k == times.size()) break;
@@ -66,7 +67,7 @@ reference::Trajectory motion_of(const Scene& scene, std::vector<double>& times) 
   return motion;
 }
 
-/// The same for states in motion, up to the horizon to which they are converged.
+/// Writes the references of states in motion, up to the horizon to which they are converged.
 std::vector<ReferenceOutcome> write_motion(const Scene& scene, const Goal& goal) {
   if (const std::string why = kept(scene, "motion", 0.5, goal); !why.empty())
     return {{scene.name, "motion", "", why}};

@@ -1,4 +1,4 @@
-// Settings that a search chose for a study.
+// Files of settings that a search chose for a study.
 #include <cmath>
 #include <cstdio>
 

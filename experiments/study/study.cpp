@@ -14,9 +14,9 @@ namespace taut {
 
 namespace {
 
-constexpr const char* kAll = "all";  ///< shipped scenes
+constexpr const char* kAll = "all";  ///< stands for all shipped scenes
 
-/// Whether any of the solvers has the parameter; with `whole`, as a whole number.
+/// Whether any of the solvers has the parameter; if `whole`, as an integer.
 bool has_param(const std::vector<SolverChoice>& solvers, const StudyAxis& axis, bool whole) {
   for (const SolverChoice& choice : solvers)
     for (const ParamSpec& spec : choice.entry->params)
@@ -26,7 +26,7 @@ bool has_param(const std::vector<SolverChoice>& solvers, const StudyAxis& axis, 
   return false;
 }
 
-/// Texts of a study become parts of commands, scripts and file names: they hold no line breaks.
+/// Reports control characters. Texts of a study become parts of commands, scripts and file names.
 void refuse_control_characters(Diagnostics& diagnostics, const Value& value) {
   const auto check = [&](const SourceLocation& place, const std::string& text) {
     if (std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
@@ -39,7 +39,7 @@ void refuse_control_characters(Diagnostics& diagnostics, const Value& value) {
   for (const Value& item : value.items) refuse_control_characters(diagnostics, item);
 }
 
-/// Reads one document into a Study; what is wrong goes to the diagnostics.
+/// Reads a document into a Study and reports errors to the diagnostics.
 class StudyReader {
  public:
   StudyReader(Diagnostics& diagnostics, Study& study, std::string preset,
@@ -94,7 +94,7 @@ class StudyReader {
     study_.searched = study_.file.parent_path() / *file;
     study_.chosen.clear();
     std::error_code none;
-    if (!std::filesystem::exists(study_.searched, none)) return;  // it is yet to be searched
+    if (!std::filesystem::exists(study_.searched, none)) return;  // the search has not run yet
     for (const SearchedSetting& row : taut::read_searched(study_.searched))
       if (row.chosen()) study_.chosen[row.scene].push_back(row.solver);
   }
@@ -112,11 +112,11 @@ class StudyReader {
   void read_presets(Section&);
 
  private:
-  /// A list that a preset has replaces the one before.
+  /// Reads the keys. A list in a preset replaces the one before.
   void read_keys(Section&, bool of_preset);
 
-  /// A scene with settings of its own stands once, and no axis varies what it fixes: tables and
-  /// curves tell the cases of a scene apart by solver and axes.
+  /// Reports a scene that is listed twice with settings, and an axis that varies a setting of a
+  /// scene: tables and curves distinguish the cases of a scene only by solver and axes.
   void refuse_clashes() {
     std::map<std::string, std::string> text_of;
     for (const std::string& text : study_.scenes) try {
@@ -131,7 +131,7 @@ class StudyReader {
           for (const StudyAxis& axis : study_.axes)
             if (setting.starts_with(axis.name + "="))
               report("'" + axis.name + "' of scene '" + scene.name + "' is an axis of the study");
-      } catch (const InputError&) {  // reported where it was read
+      } catch (const InputError&) {  // already reported where it was read
       }
   }
 
@@ -155,7 +155,8 @@ class StudyReader {
     return true;
   }
 
-  /// InputErrors of `action` stand at the value; a column in a text counts from its quote.
+  /// Runs `action` and reports its InputErrors at the value. A column within a text counts from its
+  /// quote.
   bool guarded(const Value& value, const std::function<void()>& action) try {
     action();
     return true;
@@ -169,7 +170,7 @@ class StudyReader {
     return false;
   }
 
-  /// The text of a value that a key may have; "" if it may not, which is reported.
+  /// Text of a value. Reports a value that the key may not have and returns "".
   std::string text(const Value& value, const std::string& key, bool toml) {
     if (has_text(value, toml)) return text_of(value, toml);
     diagnostics_.report(
@@ -182,7 +183,7 @@ class StudyReader {
     choices_.clear();
     for (const std::string& text : study_.solvers) try {
         choices_.push_back(parse_solver(text));
-      } catch (const InputError&) {  // reported where it was read
+      } catch (const InputError&) {  // already reported where it was read
       }
   }
 
@@ -191,7 +192,7 @@ class StudyReader {
       StudyAxis axis{table.keys[i].text, {}};
       const Value& value = table.items[i];
       if (!axis.of_scene() && value.is_table() && !value.find("from")) {
-        for (std::size_t k = 0; k < value.items.size(); ++k)  // time.dt without quotes: a table
+        for (std::size_t k = 0; k < value.items.size(); ++k)  // time.dt without quotes is a table
           read_axis({axis.name + "." + value.keys[k].text, {}}, value.keys[k], value.items[k]);
         continue;
       }
@@ -199,8 +200,8 @@ class StudyReader {
     }
   }
 
-  /// What the parameter is measured in, where solvers that spell it alike mean different things:
-  /// "N/m in bullet-deformable, 1 in bullet"; "": all the same.
+  /// Units of the parameter if solvers that have it under the same name measure it differently:
+  /// "N/m in bullet-deformable, 1 in bullet"; "" if all units agree.
   std::string mixed_units(const StudyAxis& axis) const {
     std::map<std::string, std::string> solver_of;
     for (const SolverChoice& choice : choices_)
@@ -230,7 +231,7 @@ class StudyReader {
     else if (value.is_array())
       for (const Value& item : value.items) {
         axis.values.push_back(text(item, axis.name, axis.of_scene()));
-        if (axis.values.back().empty() && !item.is_string()) return;  // which is reported
+        if (axis.values.back().empty() && !item.is_string()) return;  // already reported
       }
     if (axis.values.empty()) {
       if (!value.is_table())
@@ -285,7 +286,7 @@ class StudyReader {
             return;
   }
 
-  /// "bullet:stiffness" of stiffness.
+  /// The axis restricted to the first solver that has it: "bullet:stiffness" for stiffness.
   std::string axis_of_first(const StudyAxis& axis) const {
     for (const SolverChoice& choice : choices_)
       if (has_param({choice}, axis, false))
@@ -315,7 +316,7 @@ class StudyReader {
         std::vector<std::string>& values = exclusion.when[key];
         const auto add = [&](const Value& value) {
           values.push_back(text(value, key, toml));
-          guarded(value, [&] {  // of a preset's scenes and solvers too
+          guarded(value, [&] {  // also for scenes and solvers of a preset
             if (key == "scene") find_scene(parse_study_scene(values.back()).name);
             if (key == "solver") find_solver(values.back());
           });
@@ -332,7 +333,7 @@ class StudyReader {
     }
   }
 
-  /// What an exclusion may name.
+  /// Names that an exclusion may use.
   std::vector<std::string> settings() const {
     std::vector<std::string> names{"scene", "solver"};
     for (const StudyAxis& axis : study_.axes) names.push_back(axis.name);
@@ -362,12 +363,12 @@ class StudyReader {
 
   Diagnostics& diagnostics_;
   Study& study_;
-  std::string wanted_;                ///< a preset
-  std::vector<std::string> instead_;  ///< solvers that stand in place of the study's own
+  std::string wanted_;                ///< preset to apply
+  std::vector<std::string> instead_;  ///< solvers that replace the study's own
   std::vector<SolverChoice> choices_;
 };
 
-/// A key, and who reads it; those of a figure are read together.
+/// A key and the function that reads it. The keys of a figure are read together.
 struct StudyRow {
   StudyKey key;
   void (StudyReader::*read)(Section&) = nullptr;
@@ -426,7 +427,7 @@ void StudyReader::read_presets(Section& section) {
   for (std::size_t i = 0; i < presets->items.size(); ++i) {
     const std::string& name = presets->keys[i].text;
     study_.presets.push_back(name);
-    Study other = study_;  // a preset that was not asked for is judged all the same
+    Study other = study_;  // presets that are not applied are checked as well
     StudyReader reader(diagnostics_, name == wanted_ ? study_ : other, "", instead_);
     reader.choices_ = choices_;
     Section preset(diagnostics_, presets->items[i], "[preset." + name + "]");

@@ -12,13 +12,13 @@
 
 namespace taut {
 
-/// A setting that a study varies: a scene key ("fabric", or with a dot as "time.dt"), a parameter
-/// of one solver ("xpbd:structural"), or a parameter of all that have it.
+/// A setting that a study varies: a scene key ("fabric", or with a dot as in "time.dt"), a
+/// parameter of one solver ("xpbd:structural"), or a parameter of all solvers that have it.
 struct StudyAxis {
   std::string name;
   std::vector<std::string> values;  ///< as typed: TOML for scene keys ("\"1/64\"", "[16, 16]")
   bool of_scene() const { return name == "fabric" || name.find('.') != std::string::npos; }
-  std::string solver() const {  ///< "": all that have the parameter
+  std::string solver() const {  ///< "" for all that have the parameter
     return of_solver() ? name.substr(0, name.find(':')) : "";
   }
   std::string parameter() const { return of_solver() ? name.substr(name.find(':') + 1) : name; }
@@ -28,105 +28,107 @@ struct StudyAxis {
   bool of_solver() const { return name.find(':') != std::string::npos; }
 };
 
-/// Cases that a study leaves out: those that match all of the named settings.
+/// Cases that a study leaves out: those that match all named settings.
 struct Exclusion {
-  /// By "scene" (as in Study::scenes), "solver" (entry's name) or an axis's name: any of these
-  /// values.
+  /// Excluded values by "scene" (as in Study::scenes), "solver" (the entry's name) or the name of
+  /// an axis. A case matches if it has any of the values.
   std::map<std::string, std::vector<std::string>> when;
 };
 
-/// A picture that a study asks for; experiments/report knows the kinds.
+/// A picture that a study requests; experiments/report knows the kinds.
 struct Plot {
   std::string kind;
-  std::map<std::string, std::string> options;  ///< "x", "y", "title", ...: numbers in shortest form
-  std::map<std::string, SourceLocation> places;  ///< of "kind" and of the options
+  std::map<std::string, std::string> options;  ///< "x", "y", "title", ...; numbers in shortest form
+  std::map<std::string, SourceLocation> places;  ///< places of "kind" and of the options
 };
 
-/// A question and the cases that answer it: scenes x solvers x axes. A file of
+/// A question and the cases that answer it: scenes x solvers x axes. It is read from a file of
 /// experiments/studies or of the user; experiments/studies/README.md describes every key.
 struct Study {
   std::string name;      ///< file stem
   std::string question;  ///< one sentence
   std::filesystem::path file;
-  std::string preset;                ///< which was applied; "": none
-  std::vector<std::string> presets;  ///< names of those it has
-  std::vector<std::string> scenes;   ///< "name:key=value,...": name or path, overrides of it alone
+  std::string preset;                ///< the preset that was applied; "": none
+  std::vector<std::string> presets;  ///< names of all its presets
+  /// "name:key=value,...": name or path, and overrides for it alone.
+  std::vector<std::string> scenes;
   std::vector<std::string> solvers;  ///< "name:key=value,..."
-  /// The file of settings that a search chose for the solvers, scene by scene; "": none.
+  /// File of settings that a search chose for the solvers, scene by scene; "": none.
   std::filesystem::path searched;
-  /// What stands there, by the scene as in `scenes`; empty: there is no such file yet.
+  /// The settings in that file, by scene as in `scenes`; empty if there is no such file yet.
   std::map<std::string, std::vector<std::string>> chosen;
   std::vector<std::string> settings;  ///< scene overrides of every case
   std::vector<StudyAxis> axes;
   std::vector<Exclusion> exclusions;
   std::vector<Plot> plots;
-  /// Where the file says what stands in `settings` and in the axes of scenes, by the override, and
-  /// what stands in `scenes`, by its text.
+  /// `places`: where the file has the texts of `settings` and the values of scene axes, by
+  /// override. `scene_places`: where it has the texts of `scenes`, by text.
   std::map<std::string, SourceLocation> places, scene_places;
 };
 
 /// A key of a study file.
 struct StudyKey {
-  std::string_view name;   ///< "scenes"; of a figure "plot.x"
-  bool in_preset = false;  ///< a preset may have it
+  std::string_view name;   ///< "scenes"; for a key of a figure "plot.x"
+  bool in_preset = false;  ///< whether a preset may have it
   std::string_view help;   ///< a line or two
 };
 std::vector<StudyKey> study_keys();
 
-/// A row of a file of searched settings (Study::searched): a setting that was tried, and for what
-/// it is its solver's best on the scene, if for anything.
+/// A row in a file of searched settings (Study::searched): a setting that was tried, and the errors
+/// for which it is its solver's best on the scene.
 struct SearchedSetting {
   std::string scene;  ///< as in Study::scenes
   std::string solver;
-  double error = 0;          ///< of the metric; NaN: none
-  double cost = 0;           ///< CPU s per simulated s, by a few steps; NaN: none
-  std::string refused = {};  ///< why it meets no target; "": it may
-  bool cheapest = false;     ///< of the solver's settings, whatever the error
-  std::vector<double> plain =
-      {};                         ///< errors for which it is the solver's best without accelerators
-  std::vector<double> best = {};  ///< errors for which it is the solver's best with them
+  double error = 0;          ///< value of the metric; NaN: none
+  double cost = 0;           ///< CPU s per simulated s, measured over a few steps; NaN: none
+  std::string refused = {};  ///< why it meets no target; "" if it may
+  bool cheapest = false;     ///< whether it is the solver's cheapest, regardless of error
+  /// Errors for which it is the solver's best without accelerators.
+  std::vector<double> plain = {};
+  std::vector<double> best = {};  ///< errors for which it is the solver's best with accelerators
   bool chosen() const { return cheapest || !plain.empty() || !best.empty(); }
 };
-/// The text of such a file: `heading` (comment lines), the rows, and as comments the sentences of
-/// `missing` on who is absent.
+/// Text of such a file: `heading` (comment lines), `missing` (sentences on what is absent), and the
+/// rows.
 std::string searched_toml(const std::string& heading, const std::vector<SearchedSetting>&,
                           const std::vector<std::string>& missing);
-/// Throws InputError with all that is wrong with the file.
+/// Throws InputError with all errors of the file.
 std::vector<SearchedSetting> read_searched(const std::filesystem::path&);
 
-/// What is wrong with one of Study::scenes, at the place where the study says it: an override has
-/// no line of its own.
+/// Error of one of Study::scenes, placed where the study names the scene, since an override has no
+/// line of its own.
 Diagnostic placed(const Study&, const std::string& scene, const Diagnostic& of_scene);
 
-/// Reads a study by name or path, of_build() given_build(); `preset` replaces what it names, ""
-/// nothing; `solvers` stand in place of its own, which are not looked at. Throws InputError with
-/// every diagnostic at once, those of its scenes too, or if the study has no such preset.
+/// Reads a study by name or path and applies of_build() with given_build(). `preset` replaces the
+/// keys that it contains; "" applies none. `solvers`, if not empty, replace the study's own, which
+/// are then not even checked. Throws InputError with all errors at once, including those of its
+/// scenes, or if the study has no such preset.
 Study load_study(const std::string& name_or_path, const std::string& preset = "",
                  const std::vector<std::string>& solvers = {});
-/// Its name, without reading it. Throws InputError: there is no such study.
+/// Name of a study, without reading its file. Throws InputError if there is no such study.
 std::string study_name(const std::string& name_or_path);
 
-/// One of Study::scenes, in its parts.
+/// The parts of one of Study::scenes.
 struct StudyScene {
-  std::string name;  ///< or path
+  std::string name;  ///< name or path
   std::vector<std::string> settings;
 };
-/// Throws InputError if what follows the colon is no list of key=value, each key once.
+/// Throws InputError unless a list of key=value follows the colon, with each key once.
 StudyScene parse_study_scene(const std::string& text);
 
-/// The study at these time steps ("1/64") in place of its own, under a name that says so, so that
-/// its own results stay as planned. Without steps: the study unchanged.
+/// The study with these time steps ("1/64") instead of its own. Its name includes them, so that the
+/// original study's plan stays stored. Without steps, the study is unchanged.
 Study at_time_steps(Study, const std::vector<std::string>& steps);
 
-/// The study with its external programs called a build of this name ("": as they are): their
-/// results are addressed by it, in place of what is known of their files. Throws InputError as
-/// parse_solver() does.
+/// The study with `build` as the name of its external programs' build ("": unchanged). Their
+/// results are then addressed by that name rather than by a digest of their files. Throws
+/// InputError as parse_solver() does.
 Study of_build(Study, const std::string& build);
 
-/// The cases of a study, scenes outermost, without repetitions. Throws InputError with what is
-/// wrong with any of the scenes, or if it would be more than 100 000.
+/// The cases of a study, with scenes as the outermost loop and without repetitions. Throws
+/// InputError with the errors of all scenes, or if there are more than 100 000 cases.
 std::vector<Case> cases_of(const Study&);
-/// The same, one after the other: none is held.
+/// Visits these cases one after another and keeps none.
 void each_case(const Study&, const std::function<void(Case&&)>& visit);
 
 }  // namespace taut

@@ -5,18 +5,18 @@
 #include "core/io/document.hpp"
 #include "experiments/study/study.hpp"
 
-// The parts of load_study() that know nothing of its keys.
+// Parts of load_study() that do not depend on the study's keys.
 
 namespace taut {
 
-/// Whether text_of() can say the value: no date, and a table as TOML only.
+/// Whether text_of() can express the value: not a date, and a table only as TOML.
 bool has_text(const Value&, bool toml);
-/// A value as a command line would have it: for a solver's parameter bare, for a scene key as TOML.
+/// A value as typed on a command line: bare for a solver's parameter, as TOML for a scene key.
 /// Precondition: has_text().
 std::string text_of(const Value&, bool toml);
 
-/// Reports what is wrong with the scenes of a study that is itself wrong: each with `set`, and with
-/// every value of an axis by itself.
+/// Reports errors of the scenes of a study that itself has errors. Checks each scene with `set`,
+/// and with each value of an axis by itself.
 void judge_scenes(const Study&, Diagnostics&);
 
 }  // namespace taut

@@ -1,5 +1,4 @@
-// A scene of a study, "drape:cloth.span=0.7": its text, its place in the file, what is wrong with
-// it.
+// A scene of a study, "drape:cloth.span=0.7": its text, its place in the file, and its errors.
 #include <algorithm>
 #include <set>
 

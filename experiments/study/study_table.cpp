@@ -13,7 +13,7 @@ namespace taut {
 
 namespace {
 
-/// What tells the cases of one scene apart: "jakobsen:iterations=4 dt=1/120".
+/// Text that distinguishes the cases of one scene: "jakobsen:iterations=4 dt=1/120".
 std::string setting_of(const Case& one, const Study& study) {
   std::vector<std::string> shared = study.settings;
   for (const std::string& scene : study.scenes)
@@ -24,7 +24,7 @@ std::string setting_of(const Case& one, const Study& study) {
   return text;
 }
 
-/// A failure, and an extreme, is its status; a value of an unsettled case has a note.
+/// The value. A failed or extreme case shows its status instead, and an unsettled one has a note.
 Cell cell(const Record& record, const std::string& value) {
   if (!completed(record.status)) return to_string(record.status.kind);
   Cell number(record.value(value));

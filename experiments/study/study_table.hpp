@@ -8,11 +8,11 @@
 
 namespace taut {
 
-/// How many cases there are, and how they ended: "20 cases: ok 18, exploded 2".
+/// Number of cases and how they ended: "20 cases: ok 18, exploded 2".
 std::string ends_of(const std::vector<Record>&);
 
-/// A metric value of a study's stored cases: a row for each setting, a column for each scene, both
-/// in the order of the study.
+/// A metric value of a study's stored cases, with a row for each setting and a column for each
+/// scene, both in the order of the study.
 Table table_of(const Study&, const Store&, const std::string& value, const std::string& name);
 
 }  // namespace taut

@@ -46,7 +46,7 @@ std::string text_of(const Value& value, bool toml) {
         items.push_back(key_text(value.keys[i].text) + " = " + text_of_item(value.items[i]));
       return "{ " + join(items, ", ") + " }";
     }
-    case Value::Kind::integer:  // 100000 and not 1e+05
+    case Value::Kind::integer:  // 100000, not 1e+05
       if (std::abs(value.number) < 1e15) return std::to_string(std::lround(value.number));
       return shortest(value.number);
     case Value::Kind::real:

@@ -6,7 +6,7 @@
 
 namespace taut {
 
-/// What a clock of the system shows [s], such as CLOCK_THREAD_CPUTIME_ID or CLOCK_MONOTONIC.
+/// Time [s] of a system clock such as CLOCK_THREAD_CPUTIME_ID or CLOCK_MONOTONIC.
 inline double seconds_of(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -23,10 +23,11 @@ inline double seconds_since(SteadyClock::time_point start) {
 }
 inline double seconds_until(SteadyClock::time_point end) { return -seconds_since(end); }
 
-/// The longest time that anybody may ask for [s]: 11 days.
+/// Longest time [s] that a user may ask for: 11 days.
 inline constexpr double kLongestSeconds = 1e6;
 
-/// So many seconds after `start`: ten times kLongestSeconds at most, which no clock overflows.
+/// The time `seconds` after `start`. At most 10 kLongestSeconds are added, so that no clock
+/// overflows.
 inline SteadyClock::time_point after(SteadyClock::time_point start, double seconds) {
   const double most = std::clamp(seconds, 0.0, 10 * kLongestSeconds);
   return start +

@@ -58,7 +58,8 @@ namespace {
 fs::path find_file(const std::string& kind, const std::string& one, const std::string& text) {
   if (text.find('/') != std::string::npos && text.find("..") == std::string::npos &&
       fs::is_regular_file(data_folder() / kind / (text + ".toml")))
-    return data_folder() / kind / (text + ".toml");  // "torture/wind": a folder of shipped files
+    // "torture/wind" lies in a subfolder of the shipped files.
+    return data_folder() / kind / (text + ".toml");
   if (text.find('/') != std::string::npos || text.ends_with(".toml")) {
     if (fs::is_directory(text)) throw InputError(text + " is a folder, not a " + one + " file");
     if (!fs::is_regular_file(text)) {

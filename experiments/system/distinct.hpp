@@ -18,7 +18,8 @@ auto distinct(const Range& range, const Key& key = {}) {
   return keys;
 }
 
-/// The values under a name, made empty if there are none: names stay in order of appearance.
+/// The values grouped under `name`; adds an empty group if there is none. Groups stay in order of
+/// appearance.
 template <class Value>
 std::vector<Value>& group_of(std::vector<std::pair<std::string, std::vector<Value>>>& groups,
                              const std::string& name) {
@@ -27,7 +28,7 @@ std::vector<Value>& group_of(std::vector<std::pair<std::string, std::vector<Valu
   return at->second;
 }
 
-/// Appends what the list does not have yet: each once, in their order of appearance.
+/// Appends the value unless the list already contains it.
 template <class T, class Value>
 void push_unique(std::vector<T>& list, const Value& value) {
   if (std::ranges::find(list, value) == list.end()) list.emplace_back(value);

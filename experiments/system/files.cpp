@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::time_t kAbandonedAge = 60;  ///< s; a younger folder may not have its lock yet
+constexpr std::time_t kAbandonedAge = 60;  ///< s; the lock of a younger folder may not be there yet
 
 [[noreturn]] void fail(const fs::path& path, const char* what) {
   throw InputError(path.string() + ": cannot " + what + ": " + std::strerror(errno));
@@ -31,7 +31,7 @@ constexpr std::time_t kAbandonedAge = 60;  ///< s; a younger folder may not have
 /// A file descriptor that closes itself.
 class File {
  public:
-  /// Errors name `shown`.
+  /// Error messages name `shown`.
   File(const fs::path& path, int flags, const fs::path& shown)
       : shown_(shown), fd_(open(path.c_str(), flags, 0666)) {
     if (fd_ < 0) fail(shown_, flags & O_DIRECTORY ? "open" : "write");
@@ -65,8 +65,9 @@ std::string random_digits() {
 void replace_file(const fs::path& path, std::string_view bytes, bool durable) {
   std::error_code error;
   const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
-  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {  // by its name: of a pipe
-    File(path, O_WRONLY | O_CLOEXEC).write_all(bytes);                 // the target has no path
+  // A device or a pipe is opened by `path`: the target of a link to a pipe has no path.
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+    File(path, O_WRONLY | O_CLOEXEC).write_all(bytes);
     return;
   }
   const fs::path beside =
@@ -85,7 +86,7 @@ void replace_file(const fs::path& path, std::string_view bytes, bool durable) {
   if (durable) File(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC).sync();
 }
 
-/// What processes left that were killed: a lock on a folder goes with its process.
+/// Removes folders of processes that were killed. The lock on a folder ends with its process.
 void remove_abandoned(const fs::path& temporary) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(temporary, ignored)) {
@@ -140,7 +141,7 @@ void write_durably(const fs::path& path, std::string_view bytes) {
 void test_writable(const fs::path& path) {
   if (fs::is_directory(path)) throw InputError(path.string() + " is a folder; name a file in it");
   std::error_code none;
-  if (fs::exists(path, none) && !fs::is_regular_file(path, none)) {  // a device, a pipe
+  if (fs::exists(path, none) && !fs::is_regular_file(path, none)) {  // a device or a pipe
     if (access(path.c_str(), W_OK) != 0) fail(path, "write");
     return;
   }

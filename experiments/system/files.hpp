@@ -9,27 +9,27 @@
 
 namespace taut {
 
-/// Writes a file beside the old one and renames it: nobody ever sees half of it, and the old one
-/// stays if this fails. A device or a pipe is written to as it is. Throws InputError with the
+/// Writes a new file beside the old one and renames it, so that nobody sees half of it and the old
+/// one survives a failure. Writes directly to a device or a pipe. Throws InputError with the
 /// system's reason (read-only, full, no such folder).
 void write_file(const std::filesystem::path&, std::string_view bytes);
 
-/// The same; returns when it is on the disk, its name included.
+/// As write_file(), but returns only when the file and its name are on the disk.
 void write_durably(const std::filesystem::path&, std::string_view bytes);
 
-/// Whether a file can be written there: makes its folder and tries, before anything costs time.
-/// Leaves nothing behind. Throws InputError with the reason.
+/// Tests whether a file can be written there, before time is spent on computing it: creates the
+/// folder and tries. Leaves no file behind. Throws InputError with the reason.
 void test_writable(const std::filesystem::path&);
 
-/// Appends in one write. Throws as write_durably.
+/// Appends in a single write. Throws as write_durably() does.
 void append(const std::filesystem::path&, std::string_view bytes);
 
 /// Creates the folder and its parents; throws InputError with the system's reason.
 void make_folder(const std::filesystem::path&);
 
-/// A folder below $TMPDIR with a name that nobody foresees; it goes with this object or, at a
-/// signal, with the program. The first one of a process removes those of killed processes: what is
-/// older than a minute and has no lock.
+/// A folder below $TMPDIR with an unpredictable name. It is removed with this object, or when a
+/// signal ends the program. The first Scratch of a process also removes folders of killed
+/// processes, which are older than a minute and not locked.
 class Scratch {
  public:
   Scratch();  ///< throws InputError
@@ -40,16 +40,16 @@ class Scratch {
 
  private:
   EndsWithProgram with_program_;
-  int lock_;  ///< a descriptor of the folder, locked for as long as the process lives
+  int lock_;  ///< descriptor of the folder, which it keeps locked
 };
 
-/// Of this machine.
+/// Name of this machine.
 std::string host_name();
 
-/// "<host>.<pid>.<8 hex digits>": a name that no other process makes.
+/// "<host>.<pid>.<8 hex digits>": unique among processes.
 std::string unique_suffix();
 
-/// "20260102T030405Z", the time now.
+/// The current time as "20260102T030405Z".
 std::string utc_stamp();
 
 }  // namespace taut

@@ -11,7 +11,7 @@ namespace taut {
 
 namespace {
 
-/// The library leaves U+007F to U+009F in texts as they are, which a terminal may obey.
+/// Escapes U+007F to U+009F, which the library leaves as they are and a terminal may interpret.
 std::string with_escaped_controls(const std::string& json) {
   const auto is_control = [&](std::size_t i) {
     return json[i] == '\x7f' || (json[i] == '\xC2' && json[i + 1] < '\xA0');
@@ -39,7 +39,7 @@ void print_json(const Json& json, int indent) { std::cout << to_text(json, inden
 
 Json parse_json(std::string_view text) {
   if (text.find('\0') == text.npos) return Json::parse(text);
-  std::string shown(text);  // the library takes a NUL byte for the end
+  std::string shown(text);  // the library takes a NUL byte for the end of the text
   std::ranges::replace(shown, '\0', '\1');
   return Json::parse(shown);
 }

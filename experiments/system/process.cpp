@@ -29,7 +29,7 @@ namespace {
 
 using Stream = ProcessOptions::Stream;
 
-/// A descriptor that closes itself.
+/// A file descriptor that closes itself.
 class Descriptor {
  public:
   explicit Descriptor(int fd = -1) : fd_(fd) {}
@@ -52,13 +52,13 @@ class Descriptor {
   throw InputError(program + ": cannot be executed: " + std::strerror(error));
 }
 
-/// This process's ends of the child's streams, and the child's.
+/// Both ends of the child's standard streams, and of a pipe that reports why it could not start.
 struct Pipes {
   Descriptor input, child_input, output, child_output, failed, child_failed;
 
   Pipes(const std::string& program, const ProcessOptions& options) {
     int ends[2];
-    if (options.input == Stream::piped) {  // a socket: writing to it raises no SIGPIPE
+    if (options.input == Stream::piped) {  // a socket, since writing to it raises no SIGPIPE
       if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail_start(program, errno);
       input = Descriptor(ends[0]);
       child_input = Descriptor(ends[1]);
@@ -74,14 +74,14 @@ struct Pipes {
   }
 };
 
-/// Ends the child between fork and exec; the parent reads from the pipe why.
+/// Ends the child between fork and exec, and tells the parent the error through a pipe.
 [[noreturn]] void give_up(const Pipes& pipes) {
   const int error = errno;
   [[maybe_unused]] const auto written = write(pipes.child_failed.get(), &error, sizeof error);
   _exit(127);
 }
 
-/// Everything here runs between fork and exec: system calls only.
+/// Becomes the new program. Runs between fork and exec, so it may only make system calls.
 [[noreturn]] void become(char* const* argv, char* const* variables, const ProcessOptions& options,
                          const Pipes& pipes, int errors_file, pid_t parent) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) std::signal(signal, SIG_DFL);
@@ -97,7 +97,7 @@ struct Pipes {
     const rlimit both{soft, soft + grace};
     setrlimit(what, &both);
   };
-#ifndef TAUT_SANITIZED  // its shadow alone is terabytes
+#ifndef TAUT_SANITIZED  // the sanitizer's shadow memory takes terabytes
   limit(RLIMIT_DATA, static_cast<double>(options.limits.memory), 0);
 #endif
   limit(RLIMIT_CPU, options.limits.cpu_seconds, 1);
@@ -117,7 +117,7 @@ struct Pipes {
   give_up(pipes);
 }
 
-/// This process's environment and `mark`.
+/// The environment of this process, with `mark` added.
 std::vector<char*> environment_with(std::string& mark) {
   std::vector<char*> variables{mark.data()};
   for (char** at = environ; *at; ++at) variables.push_back(*at);
@@ -125,12 +125,13 @@ std::vector<char*> environment_with(std::string& mark) {
   return variables;
 }
 
-/// Of so many seconds that end then; no limit (< 0) stays none.
+/// What is left of a time limit of `seconds` that ends at `end`; negative (no limit) stays
+/// negative.
 double left(SteadyClock::time_point end, double seconds) {
   return seconds < 0 ? -1 : std::max(0.0, seconds_until(end));
 }
 
-/// An hour at most: who waits looks at the clock again.
+/// Timeout for poll(): at most an hour, after which the caller looks at the clock again.
 int milliseconds_until(SteadyClock::time_point end, double seconds) {
   return seconds < 0 ? -1 : static_cast<int>(std::ceil(1e3 * std::min(left(end, seconds), 3600.0)));
 }
@@ -173,7 +174,7 @@ Process::Process(std::vector<std::string> words, const ProcessOptions& options) 
   }
   sigset_t all, before;
   sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of ours may run in the child
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // no signal handler of ours may run in the child
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) become(argv.data(), variables.data(), options, pipes, errors_file.get(), parent);
@@ -207,7 +208,7 @@ void Process::stop() {
 }
 
 ProcessEnd Process::reap() {
-  siginfo_t info{};  // it is not waited for yet, so that no other group can have its number
+  siginfo_t info{};  // waits without reaping, so that no other group can take over the number
   while (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
   }
   kill(-pid_, SIGKILL);
@@ -297,7 +298,7 @@ bool Process::read_more(double seconds) {
     }
     if (count == 0 && !end_ && (seconds < 0 || SteadyClock::now() < end)) continue;
     if (count <= 0) return false;
-    poll();  // it has ended: what else holds its pipe ends too, and what it left is read
+    poll();  // It has ended. Kill what else holds its end of the pipe, then read what is left.
   }
 }
 

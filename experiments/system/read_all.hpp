@@ -6,7 +6,7 @@
 
 namespace taut {
 
-/// Calls read(one) for each; throws everything that is wrong with any of them as one InputError.
+/// Calls read(one) for each item and throws the errors of all of them as one InputError.
 template <class All, class Read>
 void read_all(const All& all, const Read& read) {
   std::vector<Diagnostic> wrong;

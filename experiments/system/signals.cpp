@@ -21,9 +21,10 @@ namespace taut {
 namespace {
 
 std::atomic<int> g_signals{0}, g_graceful{0};
-int g_wake[2] = {-1, -1};  ///< a pipe from the handler to the thread that may do what it may not
+/// Pipe from the handler to a thread that may do what a signal handler may not.
+int g_wake[2] = {-1, -1};
 
-/// What goes with the program; never destroyed, for the thread outlives main().
+/// What to remove or kill when the program ends. Never destroyed, since the thread outlives main().
 struct ExitCleanup {
   std::mutex mutex;
   std::multiset<std::filesystem::path> paths;
@@ -51,7 +52,8 @@ std::vector<pid_t> children() {
   return all;
 }
 
-/// A process that ends, or one of the kernel: it has no environment. Source: proc(5), "stat".
+/// Whether a process has no environment because it is ending or is a kernel thread. Source:
+/// proc(5), "stat".
 bool is_no_program(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string line, state, skipped;
@@ -63,7 +65,8 @@ bool is_no_program(pid_t process) {
   return state == "Z" || (flags & (kExiting | kKernelThread)) != 0;
 }
 
-/// Precondition: the caller holds the belongings.
+/// Kills and reaps children whose environment has the mark. Precondition: the caller holds the
+/// mutex of exit_cleanup().
 void end_children(const std::string& mark) {
   for (bool found = true; found;) {
     found = false;
@@ -72,14 +75,15 @@ void end_children(const std::string& mark) {
       const bool ours = has_mark(child, mark);
       if (ours) kill(child, SIGKILL);
       found = found || ours;
-      waitpid(child, nullptr, ours ? 0 : WNOHANG);  // who is dead has no environment
+      // A dead child has no environment, so it counts as not ours, but is reaped as well.
+      waitpid(child, nullptr, ours ? 0 : WNOHANG);
     }
   }
 }
 
 [[noreturn]] void end_program() {
   ExitCleanup& all = exit_cleanup();
-  const std::lock_guard lock(all.mutex);  // kept: nothing new is registered any more
+  const std::lock_guard lock(all.mutex);  // never released: nothing new can be registered
   for (const pid_t group : all.groups) kill(-group, SIGKILL);
   for (const pid_t group : all.groups)
     for (int ms = 0; ms < 1000 && waitpid(group, nullptr, WNOHANG) == 0; ++ms) usleep(1000);
@@ -108,7 +112,8 @@ void install_handler() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
       struct sigaction old {};
       sigaction(signal, nullptr, &old);
-      if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup stays nohup
+      // Keeps a signal ignored that nohup ignores.
+      if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
     }
   });
 }
@@ -121,7 +126,7 @@ bool has_mark(pid_t process, const std::string& mark) {
     const std::string variables{std::istreambuf_iterator<char>(file), {}};
     if (variables.starts_with(mark) || variables.find('\0' + mark) != variables.npos) return true;
     if (!file.is_open() || !variables.empty() || is_no_program(process)) return false;
-    usleep(100);  // in the middle of an execve() nothing is there to be read
+    usleep(100);  // in the middle of an execve() the environment reads as empty
   }
   return false;
 }

@@ -6,7 +6,7 @@
 
 namespace taut {
 
-/// What printf() writes, at most 500 bytes of it.
+/// Text formatted as by printf(), cut to 500 bytes.
 [[gnu::format(printf, 1, 2)]] inline std::string formatted(const char* format, ...) {
   char text[501];
   std::va_list values;

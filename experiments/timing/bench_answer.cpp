@@ -20,7 +20,7 @@ std::string verdict(const Interval& ratio, const Interval& control, double toler
          (ratio.mid < 1 ? "cheaper" : "dearer");
 }
 
-/// The same code against itself.
+/// A table with the control of each scene: the same code timed against itself.
 Table controls_of(const StudyBench& bench, double tolerance) {
   Table table{"scenes", "", {{"scene"}, {"control", "the same code against itself"}, {"verdict"}}};
   for (const SceneBench& scene : bench.scenes)
@@ -31,7 +31,7 @@ Table controls_of(const StudyBench& bench, double tolerance) {
   return table;
 }
 
-/// Who is cheapest for each error, and who is most accurate within each budget.
+/// A table of the cheapest solver for each error and the most accurate one for each budget.
 Table recommended_of(const StudyBench& bench, const BenchReport& report) {
   std::vector<Target> targets;
   for (const double level : report.levels) targets.push_back({level, {}});
@@ -43,7 +43,7 @@ Table recommended_of(const StudyBench& bench, const BenchReport& report) {
   return table;
 }
 
-/// Every case, beside the first of its scene that was timed.
+/// A table of all cases, each compared with the first of its scene that was timed.
 Table cases_of(const StudyBench& bench, const BenchReport& report) {
   Table table{"cases",
               "what was timed",

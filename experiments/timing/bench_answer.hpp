@@ -8,15 +8,16 @@
 
 namespace taut {
 
-/// How a bench is judged and shown.
+/// How to judge and show a bench.
 struct BenchReport {
-  std::vector<double> levels;         ///< errors that are asked for
-  std::string metric = kErrorMetric;  ///< whose value is the error
-  double tolerance = 0;               ///< relative differences below it do not count
-  bool of_study = true;               ///< people see who is best for what; else the cases
+  std::vector<double> levels;         ///< errors to answer for
+  std::string metric = kErrorMetric;  ///< metric value that is the error
+  double tolerance = 0;               ///< smaller relative differences are ignored
+  /// Whether people see which solver is best for what, rather than the cases.
+  bool of_study = true;
 };
 
-/// What `taut bench` prints.
+/// The answer of `taut bench`.
 Answer bench_answer(const StudyBench&, const BenchReport&);
 
 }  // namespace taut

@@ -18,15 +18,16 @@ namespace {
 
 constexpr double kLongestBuild = 600, kLongestAnswer = 120;  // s
 
-/// Public code of a method that we have, too.
+/// Public code for a method that we have as well.
 struct PublicCode {
   std::string_view name, adapter;
-  std::string_view mark;        ///< a file of its checkout that no other one has
-  std::string_view includes;    ///< folders of the checkout, "a|b"; "." is itself
-  std::string_view sources;     ///< files of the checkout that the adapter needs, "a|b"
-  std::string_view ours;        ///< our solver of the method, at the same stiffness
-  std::string_view differs;     ///< what it does differently
-  std::string_view flags = "";  ///< of the compiler, beside those of all, "a|b"
+  std::string_view mark;  ///< a file that only its checkout has
+  /// Include folders in the checkout, "a|b"; "." is the checkout itself.
+  std::string_view includes;
+  std::string_view sources;     ///< files of the checkout to compile with the adapter, "a|b"
+  std::string_view ours;        ///< our solver of the method, with the same stiffness
+  std::string_view differs;     ///< how it differs from ours
+  std::string_view flags = "";  ///< additional compiler flags, "a|b"
 };
 
 constexpr PublicCode kKnown[] = {
@@ -70,7 +71,7 @@ const PublicCode& known(const std::filesystem::path& checkout) {
                    }));
 }
 
-/// Its output; throws InputError with the last of it if it fails.
+/// Output of a command. If it fails, throws InputError with the end of the output.
 std::string output_of(std::vector<std::string> words, double seconds, const std::string& what) {
   Process process(std::move(words), {.output = ProcessOptions::Stream::piped,
                                      .errors = ProcessOptions::Stream::piped});
@@ -81,7 +82,7 @@ std::string output_of(std::vector<std::string> words, double seconds, const std:
                    said.substr(said.size() > 2000 ? said.size() - 2000 : 0));
 }
 
-/// Commit and date of the checkout; "": git does not know it.
+/// Commit and date of the checkout; "" if it is not a git repository.
 std::string version(const std::filesystem::path& checkout) {
   try {
     const std::string said =
@@ -116,7 +117,7 @@ void build(const PublicCode& code, const std::filesystem::path& checkout,
   output_of(words, kLongestBuild, "the build of " + std::string(code.adapter));
 }
 
-/// Our solver on the same net, few and many iterations a step.
+/// Our solver on the same net, with few and with many iterations per step.
 class OurSheet {
  public:
   explicit OurSheet(const std::string& solver)
@@ -145,13 +146,13 @@ class OurSheet {
   Running few_, many_;
 };
 
-/// An adapter that runs.
+/// A running adapter.
 class Adapter {
  public:
   explicit Adapter(const std::filesystem::path& program)
       : process_({program.string()}, {.input = ProcessOptions::Stream::piped,
                                       .output = ProcessOptions::Stream::piped}) {}
-  /// ns an iteration and vertex. Throws InputError: it does not answer, or its net does not fall.
+  /// ns per iteration and vertex. Throws InputError if it does not answer or its net does not fall.
   double iteration() {
     std::string line;
     if (!process_.write("\n", kLongestAnswer) || !process_.read_line(line, kLongestAnswer))

@@ -8,7 +8,7 @@ namespace taut {
 
 namespace {
 
-/// `count` of the candidates, first and last included.
+/// `count` of the candidates, evenly spread and including first and last.
 std::vector<Candidate> spread_over(const std::vector<Candidate>& all, std::size_t count) {
   std::vector<Candidate> some;
   for (std::size_t k = 0; k < count; ++k)
@@ -16,7 +16,7 @@ std::vector<Candidate> spread_over(const std::vector<Candidate>& all, std::size_
   return some;
 }
 
-/// As many settings of every solver.
+/// The same number of settings for every solver.
 std::vector<Candidate> equal_budgets(const SceneBench& scene, const std::string& metric) {
   std::map<std::string, std::vector<Candidate>> by_solver;
   for (Candidate& one : scene.candidates(metric)) by_solver[one.solver].push_back(std::move(one));

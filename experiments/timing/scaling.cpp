@@ -13,7 +13,7 @@ std::string size_of(const Case& one) {
   return std::to_string(one.scene->mesh.size()) + " vertices";
 }
 
-/// A power law through at least three stable cases.
+/// Fits a power law if there are at least three stable cases.
 std::optional<PowerLaw> fit(const std::vector<BenchedCase>& cases,
                             const std::function<double(const BenchedCase&)>& value) {
   std::vector<double> x, y;

@@ -15,8 +15,8 @@ namespace taut {
 
 namespace {
 
-constexpr int kMost = 1 << 16;                         ///< sweeps or substeps of a search
-constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< of a case, bytes of private memory
+constexpr int kMost = 1 << 16;  ///< most sweeps or substeps that a search tries
+constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< private memory of a case [bytes]
 
 Measured measure(const Case& one, double expected, Store& store, const ScalingOptions& options) {
   const auto start = SteadyClock::now();
@@ -40,8 +40,8 @@ Measured measure(const Case& one, double expected, Store& store, const ScalingOp
   return {std::move(benched), seconds_since(start)};
 }
 
-/// The number that a search enlarges until the error is met: substeps of a solver that has one
-/// sweep in each, else sweeps.
+/// Name of the parameter that a search increases until the error is met: the sweeps, or the
+/// substeps of a solver with one sweep in each.
 std::string searched(const SolverChoice& choice) {
   const AccuracyParameters& of = choice.entry->accuracy;
   const bool sweeps = !of.sweeps.empty() && choice.params.integer(of.sweeps) != 1;
@@ -50,8 +50,8 @@ std::string searched(const SolverChoice& choice) {
   return name;
 }
 
-/// The least value of that number, to 5 %, with which the case's error is at most `error`: doubled,
-/// then bisected. A search that has not ended after --limit has failed.
+/// Measures the smallest value of that parameter, to 5 %, for which the case's error is at most
+/// `error`. Doubles the value, then bisects. A search that exceeds --limit fails.
 Measured least(const Case& base, double error, Store& store, const ScalingOptions& options) {
   const auto start = SteadyClock::now(), end = in_seconds(options.limit);
   const std::string name = searched(base.choice);
@@ -95,7 +95,8 @@ Cell exponent(const std::optional<PowerLaw>& law) {
   return law ? Cell(interval_of_exponent(*law)) : Cell().with("too few sizes");
 }
 
-/// Where `taut plot` and the report find it: a bench, but of cases that were not timed in turns.
+/// Stores the lines as a bench of cases that were not timed in turns, where `taut plot` and the
+/// report find them.
 void keep_lines(const Study& study, const std::vector<ScalingLine>& lines, Store& store) {
   SceneBench scene{study.scenes.front(), {}, {}, false};
   for (const ScalingLine& line : lines)

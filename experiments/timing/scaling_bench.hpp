@@ -12,19 +12,20 @@
 namespace taut {
 
 struct ScalingOptions {
-  /// Each solver with as many substeps of one sweep, or sweeps if it has more than one, as this
-  /// RMS stretch takes; nothing: as the case asks.
+  /// Give each solver as many sweeps, or substeps if it has one sweep in each, as this RMS stretch
+  /// requires; nothing: as the case says.
   std::optional<double> error;
-  double limit = 20;  ///< s; a case that would take longer, physics, search and timing, is skipped
-  int samples = 6;    ///< of each case
-  std::function<void(const std::string&)> say;  ///< gets the name of each case that begins
+  /// S; cases that would take longer in total (physics, search and timing) are skipped.
+  double limit = 20;
+  int samples = 6;                              ///< samples of each case
+  std::function<void(const std::string&)> say;  ///< receives the name of each case that starts
 };
 
-/// Runs and times the study's cases by rising size, and keeps what it measured as a bench of cases
-/// that were not timed in turns. Throws InputError, Interrupted.
+/// Runs and times the study's cases in order of size, and stores the measurements as a bench of
+/// cases that were not timed in turns. Throws InputError, Interrupted.
 std::vector<ScalingLine> bench_scaling(const Study&, Store&, const ScalingOptions&);
 
-/// What `taut bench scaling` prints of it.
+/// The answer of `taut bench scaling`.
 Answer scaling_answer(const std::string& study, const std::vector<ScalingLine>&);
 
 }  // namespace taut

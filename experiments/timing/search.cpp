@@ -12,22 +12,25 @@ namespace taut {
 
 namespace {
 
-constexpr double kSkipAboveOwnBest =
-    1.3;  ///< a quick cost this much above its own best is not worth a run
-constexpr double kAbandonAboveBest = 30;  ///< nor is one this much above the best of all
-constexpr double kRefineBelowBest = 10;   ///< above the best of all: found, but not polished
+/// A setting whose quick cost exceeds its solver's best by this factor is not run.
+constexpr double kSkipAboveOwnBest = 1.3;
+/// Nor is one whose quick cost exceeds the best of all solvers by this factor.
+constexpr double kAbandonAboveBest = 30;
+/// A solver is refined only if its cost is below the best of all solvers times this factor.
+constexpr double kRefineBelowBest = 10;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 using Values = std::map<std::string, std::string>;
 
-/// Values of the second parameter, each tried with its own number of substeps.
+/// Columns of the search: values of the second parameter, each tried with its own number of
+/// substeps.
 struct Columns {
-  std::vector<std::string> parameters;  ///< parameters that take the value together
+  std::vector<std::string> parameters;  ///< parameters that all take the value
   std::vector<std::string> values;
-  bool sweeps = false;  ///< more of it costs more and needs fewer substeps
+  bool sweeps = false;  ///< whether the values are sweeps: more cost more, but need fewer substeps
 };
 
-/// The solver's accuracy parameters, as far as the user's text leaves them open.
+/// The solver's accuracy parameters that the user's text leaves open.
 class OpenParameters {
  public:
   explicit OpenParameters(const std::string& solver)
@@ -40,7 +43,7 @@ class OpenParameters {
     return !name.empty() && !fixed(':') && !fixed(',');
   }
 
-  /// Those of the parameters that are open, at that value.
+  /// Those of the parameters that are open, set to that value.
   Values values_of(std::string_view parameters, const std::string& value) const {
     Values values;
     for (const std::string& name : parts_of(parameters))
@@ -65,7 +68,7 @@ class OpenParameters {
     return columns;
   }
 
-  /// Stiffnesses of a solver whose columns are sweeps, as far as the text leaves them open.
+  /// Open stiffnesses of a solver whose columns are sweeps.
   std::vector<Values> stiffnesses() const {
     std::vector<Values> all;
     if (open(entry_.accuracy.sweeps))
@@ -76,7 +79,7 @@ class OpenParameters {
     return all;
   }
 
-  /// Single changes worth trying beside substeps and columns.
+  /// Single changes to try besides substeps and columns.
   std::vector<Values> alternatives() const {
     std::vector<Values> all;
     for (const auto& [name, values] : entry_.accuracy.alternatives)
@@ -86,7 +89,7 @@ class OpenParameters {
     return all;
   }
 
-  /// The same, those that the solver's text does not have anyway.
+  /// The alternatives that differ from what the solver's text already gives.
   std::vector<Values> other_alternatives() const {
     std::vector<Values> all = alternatives();
     const Params& params = parse_solver(base_).params;
@@ -148,7 +151,7 @@ class SettingSearch {
     return all;
   }
 
-  /// The same text whether a default stands there or not.
+  /// The text in canonical form, which does not depend on whether defaults are spelled out.
   std::string canonical(const Values& values) const {
     return parse_solver(text(values)).canonical();
   }
@@ -159,7 +162,7 @@ class SettingSearch {
         stiffness, [&](const auto& one) { return std::stod(one.second) > params.real(one.first); });
   }
 
-  /// All columns, at these values of other parameters.
+  /// Tries the columns, with these values of other parameters.
   void walk(const Columns& columns, const Values& fixed) {
     int start = 1, idle = 0;
     double floor_before = kNone;
@@ -174,7 +177,7 @@ class SettingSearch {
       idle = best_ && best_ != before ? 0 : idle + 1;
       if (over_ || (idle >= 2 && (best_ || columns.sweeps == false))) break;
       if (columns.sweeps && hopeless_) break;
-      // More substeps do not help, and neither do more sweeps: it is the stiffness.
+      // If neither more substeps nor more sweeps help, the stiffness is the limit.
       if (!best_ && at_floor_ && floor_ > 0.9 * floor_before && !open_.stiffnesses().empty()) break;
       floor_before = at_floor_ ? floor_ : kNone;
     }
@@ -186,7 +189,7 @@ class SettingSearch {
     if (worth_more()) alternatives();
   }
 
-  /// The candidate at these values and substeps, run at most once; nullptr when time is up.
+  /// The candidate with these values and substeps, run at most once; nullptr when time is up.
   const Candidate* attempt(Values values, int substeps) {
     if (open_.has_substeps()) values[open_.substeps()] = std::to_string(substeps);
     const std::string setting = text(values);
@@ -214,16 +217,16 @@ class SettingSearch {
     return cost;
   }
 
-  /// Quick costs above this are not worth a run. A solver is held to its own best, so that the
-  /// runner-up is as well chosen as the winner.
+  /// Settings with a quick cost above this are not run. A solver is compared with its own best, so
+  /// that the runner-up is chosen as carefully as the winner.
   double bar() const {
     return std::min(
         {kSkipAboveOwnBest * least(tried_), kAbandonAboveBest * least(known_), dearest_});
   }
 
-  /// The fewest substeps, a power of two times `from`, that reach the error. If none does for a
-  /// cost worth paying: where the walk ended; `from` if all failed; or of those beyond which more
-  /// do not help the first.
+  /// Searches the fewest substeps, `from` times a power of two, that reach the error. If no
+  /// affordable number does, returns the last number tried; `from` if all runs failed; or, at a
+  /// floor, the number beyond which more did not help.
   int fewest(const Values& values, int from) {
     int n = from;
     hopeless_ = at_floor_ = false;
@@ -238,13 +241,13 @@ class SettingSearch {
     bool any = candidate->failure.empty();
     while (stuck < 3 && n < kMostSubsteps && open_.has_substeps()) {
       if (2 * candidate->cost.mid > bar()) {
-        hopeless_ = n == from;  // not even the start of the next column can be cheaper
+        hopeless_ = n == from;  // the next column starts no cheaper
         return any ? n : from;
       }
       n *= 2;
       candidate = attempt(values, n);
       if (!candidate || target_.meets(*candidate)) return n;
-      // Explosions have no error; rounding is a floor that no number of substeps passes.
+      // An explosion has no error, and rounding sets a floor that no number of substeps passes.
       stuck = candidate->error > 0.9 * last ? stuck + 1 : 0;
       if (stuck == 0) helped = n;
       any = any || candidate->failure.empty();
@@ -255,7 +258,7 @@ class SettingSearch {
     return !any ? from : at_floor_ ? helped : n;
   }
 
-  /// As many substeps as the budget allows, by the cost of those tried.
+  /// Uses as many substeps as the budget allows, going by the cost of previous attempts.
   void most(const Values& values) {
     int n = 1;
     for (int i = 0; i < 4; ++i) {
@@ -268,7 +271,7 @@ class SettingSearch {
     }
   }
 
-  /// The substeps of the two cheapest columns.
+  /// Bisects the substeps of the two cheapest columns.
   void bisect() {
     if (!worth_more()) return;
     std::vector<Met> ends = met_;
@@ -284,7 +287,7 @@ class SettingSearch {
     }
   }
 
-  /// Between `high`, which reaches the error, and half of it, which does not.
+  /// Bisects between `high`, which reaches the error, and half of it, which does not.
   template <class At>
   void halve(int high, const At& at) {
     for (int low = high / 2; high - low > std::max(1, high / 10);) {
@@ -295,7 +298,7 @@ class SettingSearch {
     }
   }
 
-  /// The sweeps of the best.
+  /// Bisects the sweeps of the best setting.
   void bisect_sweeps() {
     if (!worth_more()) return;
     Values values = without_substeps(best_met_.values);
@@ -306,7 +309,7 @@ class SettingSearch {
     });
   }
 
-  /// Whether this solver is near enough to the best of the others to be polished.
+  /// Whether this solver is close enough to the best of the others to be refined.
   bool worth_more() const {
     if (!best_) return false;
     return target_.budget || tried_[*best_].cost.mid <= kRefineBelowBest * least(known_);
@@ -322,7 +325,7 @@ class SettingSearch {
     }
   }
 
-  /// Half and twice the sweeps of the best.
+  /// Tries half and twice the sweeps of the best setting.
   void other_sweeps() {
     if (!worth_more()) return;
     const int sweeps = std::stoi(best_met_.values[open_.sweeps()]);
@@ -334,11 +337,11 @@ class SettingSearch {
     }
   }
 
-  /// These values with the substeps of the best, then with as many as they need themselves.
+  /// Tries these values with the substeps of the best setting, then with as many as they need.
   void try_beside_best(const Values& values) {
     const Candidate* candidate = attempt(values, best_met_.substeps);
     if (!candidate) return;
-    if (target_.budget) {  // a cheaper step buys more of them
+    if (target_.budget) {  // a cheaper step leaves room for more substeps
       if (candidate->failure.empty() && candidate->cost.mid < 0.8 * *target_.budget) most(values);
       return;
     }
@@ -348,7 +351,7 @@ class SettingSearch {
         n = std::min(n - 1, n * 3 / 4);
         candidate = attempt(values, n);
       }
-    } else {  // less accurate, but perhaps so much cheaper that more substeps pay
+    } else {  // less accurate, but maybe cheap enough that more substeps pay
       while (candidate && !target_.meets(*candidate) && candidate->failure.empty() &&
              1.4 * candidate->cost.mid < least(tried_) && n < kMostSubsteps) {
         n = n + std::max(1, n / 3);
@@ -379,8 +382,8 @@ class SettingSearch {
   std::vector<Met> met_;
   Met best_met_{0, {}, 1};
   bool over_ = false, hopeless_ = false;
-  bool at_floor_ = false;  ///< the last column ended because more substeps do not help
-  double floor_ = kNone;   ///< the error there
+  bool at_floor_ = false;  ///< whether the last column ended because more substeps did not help
+  double floor_ = kNone;   ///< the error at that floor
 };
 
 }  // namespace

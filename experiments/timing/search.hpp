@@ -10,38 +10,40 @@
 
 namespace taut {
 
-/// Runs a setting ("jakobsen:iterations=1,substeps=16"); nothing: time is up, search no further.
+/// Runs a setting ("jakobsen:iterations=1,substeps=16"). Returns nothing if time is up, which ends
+/// the search.
 using Evaluation = std::function<std::optional<Candidate>(const std::string& setting)>;
 
-/// How far a search goes: its columns alone; all of it; or all of it, and then again from its best
-/// until nothing is better.
+/// Extent of a search: only the columns; everything; or everything, repeated from its best until
+/// nothing improves.
 enum class SearchDepth { columns, refined, repeated };
 
-/// Looks for the setting of `solver` (its text fixes what it names) that serves the target best,
-/// and returns all that it tried. It walks the accuracy parameters of the
-/// solver's entry, not their grid:
-///   1. columns of the second parameter (sweeps, or a stiffness): in each, the fewest substeps that
-///      reach the error by doubling, from half of what the column before needed; or the most that
-///      the budget allows. Two columns without progress end it, as does a cost far above what
-///      `known`, the candidates of others, have. Of a solver with sweeps and a stiffness: its
-///      default stiffness, and where that does not reach the error, the next higher.
-///   2. error: bisection of the substeps, then of the sweeps, between the last doubling.
-///   3. the entry's alternatives, one at a time, other stiffnesses among them; each with as few
+/// Searches the setting of `solver` that serves the target best, and returns all that it tried.
+/// Parameters in the solver's text are fixed. The search follows the accuracy parameters of the
+/// solver's entry without covering their grid:
+///   1. Columns of the second parameter (sweeps, or a stiffness). For an error, each column finds
+///      by doubling the fewest substeps that reach it, from half of what the previous column
+///      needed; for a budget, the most substeps that it allows. The columns end after two without
+///      progress, or at a cost far above that of `known`, the candidates of other solvers. A solver
+///      with sweeps and a stiffness starts with its default stiffness and takes the next higher
+///      ones only if that does not reach the error.
+///   2. For an error: bisection of the substeps, then of the sweeps, within the last doubling.
+///   3. The entry's alternatives, one at a time, including other stiffnesses, each with as few
 ///      substeps as it then needs.
-/// Repeated: of what reached nothing, 1 with each alternative; then half and twice the sweeps of
-/// the best, and 2 and 3 again. Substeps are not doubled to more than `dearest` [CPU s per
-/// simulated s].
+/// A repeated search tries 1 with each alternative if nothing has reached the target so far, then
+/// half and twice the sweeps of the best, and then 2 and 3 again. Substeps are not doubled beyond a
+/// cost of `dearest` [CPU s per simulated s].
 std::vector<Candidate> search_settings(const std::string& solver, const Target&, const Evaluation&,
                                        std::vector<Candidate> known = {},
                                        SearchDepth depth = SearchDepth::refined,
                                        double dearest = std::numeric_limits<double>::infinity());
 
-/// The setting of `solver` that costs least: one substep, and the first of the second parameter's
-/// values, as far as the text leaves them open.
+/// The cheapest setting of `solver`: one substep and the first value of the second parameter, where
+/// its text leaves them open.
 std::string cheapest_setting(const std::string& solver);
 
-/// The solvers by what their cheapest setting costs, the least first and failures last: a search
-/// whose time is up has then tried what is cheap, and knows whom the dear ones have to beat.
+/// Sorts the solvers by the cost of their cheapest setting, with failures last. If time runs out, a
+/// search has then tried the cheap ones, and the expensive ones know what they have to beat.
 std::vector<std::string> cheapest_first(std::vector<std::string> solvers, const Evaluation&);
 
 }  // namespace taut

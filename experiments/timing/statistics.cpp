@@ -31,7 +31,7 @@ Interval bootstrap_median(std::span<const double> samples, double confidence, st
   std::mt19937_64 random(seed);
   std::vector<double> medians(kResamples), resample(samples.size());
   for (double& m : medians) {
-    // The high bits times the count: the same index everywhere, unlike
+    // Multiplying the high bits by the count gives the same index on every platform, unlike
     // std::uniform_int_distribution.
     for (double& value : resample) value = samples[((random() >> 32) * samples.size()) >> 32];
     m = median_of(resample);

@@ -23,10 +23,10 @@ namespace taut {
 
 namespace {
 
-/// Why a case wins nothing in a bench of which nobody said what its scene accepts.
+/// Reason why a case wins nothing if the limits of its scene were never determined.
 constexpr const char* kNobodyAsked = "nobody asked what its scene accepts";
 
-/// What the digest of a scene's bench is made of: all that the file holds of it.
+/// Digest over everything that the file holds about a scene's bench.
 class DigestedBench {
  public:
   DigestedBench(const StudyBench& study, const SceneBench& scene) {
@@ -45,14 +45,14 @@ class DigestedBench {
 
  private:
   void add(std::string_view text) { all_.append(text).append(1, '\0'); }
-  void add(double number) {  // NULL in the file is no number
+  void add(double number) {  // NaN is stored as NULL
     if (!std::isnan(number)) all_.append(reinterpret_cast<const char*>(&number), sizeof number);
     add("");
   }
   std::string all_;
 };
 
-/// The samples of one timing.
+/// A timing with its samples.
 Timing timing_in(Database& database, const Database::Rows& row) {
   Timing timing{.peak_bytes = static_cast<std::size_t>(row.integer(2)),
                 .failure = row.text(3),
@@ -66,8 +66,8 @@ Timing timing_in(Database& database, const Database::Rows& row) {
   return timing;
 }
 
-/// A scene of a bench, without cases that are no longer stored; without any, and said, if it does
-/// not match its digest.
+/// A scene of a bench, without cases that are no longer stored. If it does not match its digest,
+/// reports that and returns it without any cases.
 SceneBench scene_in(const Store& store, const StudyBench& study, const Database::Rows& row) {
   SceneBench scene{
       row.text(5), {row.number(7), row.number(8), row.number(9)}, {}, row.integer(6) != 0};
@@ -206,7 +206,8 @@ SceneBench bench_scene(const std::string& scene, const std::vector<Record>& reco
 
 namespace {
 
-/// Grouped by scene and its settings, in order of appearance; without what a solver refuses.
+/// Groups records by scene and its settings, in order of appearance. Leaves out cases that a solver
+/// refuses.
 std::vector<std::pair<std::string, std::vector<Record>>> by_scene(
     const std::vector<Record>& records) {
   std::set<Task> asked;

@@ -15,13 +15,13 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-/// A line of CSV: numbers as they are, texts safe for a spreadsheet.
+/// A line of CSV. Numbers stay as they are; texts are made safe for spreadsheets.
 std::string line(const Cells& cells) {
   const auto field = [](const std::string& s) { return whole<double>(s) ? s : csv_field(s); };
   return join(cells, ",", field) + "\n";
 }
 
-/// A text of SQL.
+/// A text as an SQL literal.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "''" : std::string(1, c);
@@ -49,8 +49,8 @@ std::string all(Database& database, const std::string& sql, const Cells& names) 
 
 }  // namespace
 
-/// Makes a table `asked` of the study's cases (case_id: NULL if there is no sound result) and
-/// `timed` of what they cost.
+/// Creates a table `asked` of the study's cases (case_id is NULL if there is no sound result), and
+/// a table `timed` of their costs.
 StudyCsv::StudyCsv(const Study& study, const Store& store) : database_(*store.reading()) {
   database_.script(
       "CREATE TEMP TABLE asked (place INTEGER PRIMARY KEY, key, id, scene, solver, case_id, "

@@ -25,7 +25,7 @@ namespace taut {
 
 namespace {
 
-/// Adds the time of its life to a StepTime.
+/// Adds the time of its own lifetime to a StepTime.
 class Clock {
  public:
   Clock(StepTime& into, const Solver& solver) : into_(into), solver_(solver) {}
@@ -45,7 +45,8 @@ class Clock {
 
 StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall / steps}; }
 
-constexpr std::string_view kRefusal = "! ";  ///< begins a worker's answer that is no time
+/// Start of a worker's answer that is an error instead of a time.
+constexpr std::string_view kRefusal = "! ";
 
 std::vector<std::string> worker_command(const CaseSpec& spec,
                                         const std::filesystem::path& program) {
@@ -163,7 +164,7 @@ std::string TimingWorker::remark() { return ask("remark"); }
 
 namespace {
 
-/// A case of a session: its worker, how many steps make a sample, and what was measured.
+/// A case in a session: its worker, the number of steps in a sample, and its samples.
 struct SampledCase {
   std::unique_ptr<TimingWorker> worker;
   int steps = 0;
@@ -190,15 +191,15 @@ SampledCase start_case(const CaseToTime& timed, const TimingOptions& options) {
   return one;
 }
 
-/// Its whole run, once: from what it costs follows how many steps make a sample.
+/// Runs a case once as a whole. Its cost determines how many steps make a sample.
 void pilot(SampledCase& one, const CaseToTime& timed, const TimingOptions& options) {
   const int all = std::max(1, timed.steps);
   one.guard(
       [&] { one.steps = times_within(options.seconds, one.worker->pilot_run(all).cpu, all); });
 }
 
-/// Ready to be sampled. Their whole runs go on all cores at once, for no time of these is kept:
-/// beside another one a run looks dearer, and its samples have a few steps fewer.
+/// Prepares cases for sampling. Their pilot runs use all cores at once, since their times are not
+/// kept; runs side by side look more expensive, which makes samples a few steps shorter.
 std::vector<SampledCase> start_cases(const std::vector<CaseToTime>& all,
                                      const TimingOptions& options) {
   std::vector<SampledCase> cases;
@@ -208,14 +209,14 @@ std::vector<SampledCase> start_cases(const std::vector<CaseToTime>& all,
   return cases;
 }
 
-/// The A/A control: a second worker of the first case that can be timed, and of the next one if
-/// that fails on the way. So the order of the cases decides nothing.
+/// The A/A control: a second worker for the first case that can be timed. If that case fails on the
+/// way, the next one takes its place, so that the order of the cases does not matter.
 class Control {
  public:
   Control(const std::vector<CaseToTime>& all, const TimingOptions& options)
       : all_(all), options_(options) {}
 
-  /// What is to be sampled twice in a round, between the ways there and back.
+  /// The worker to sample twice in the middle of each round (A B here B A).
   SampledCase& twin(const std::vector<SampledCase>& cases) {
     while (of_ < cases.size() &&
            (!started_ || !twin_.timing.failure.empty() || !cases[of_].timing.failure.empty())) {
@@ -226,12 +227,12 @@ class Control {
       twin_ = start_case(all_[of_], options_);
       pilot(twin_, all_[of_], options_);
       twin_.steps = cases[of_].steps;
-      skipped_ = cases[of_].timing.samples.size() / 2 * 2;  // those of the rounds that are over
+      skipped_ = cases[of_].timing.samples.size() / 2 * 2;  // samples of completed rounds
     }
     return twin_;
   }
 
-  /// By one clock.
+  /// Ratio of the case to itself, by one clock.
   Interval ratio(const std::vector<Timing>& timings, std::vector<double> Timing::*samples) const {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const std::vector<double>& again = twin_.timing.*samples;
@@ -245,8 +246,8 @@ class Control {
   const std::vector<CaseToTime>& all_;
   const TimingOptions& options_;
   bool started_ = false;
-  std::size_t of_ = 0;       ///< the case whose twin it is
-  std::size_t skipped_ = 0;  ///< its samples before the twin began
+  std::size_t of_ = 0;       ///< index of the case whose twin it is
+  std::size_t skipped_ = 0;  ///< samples of that case before the twin started
   SampledCase twin_;
 };
 
@@ -285,7 +286,7 @@ TimingSession time_cases(const std::vector<CaseToTime>& all, const TimingOptions
   std::vector<SampledCase> cases = start_cases(all, options);
   Control control(all, options);
   const auto sample = [](SampledCase& one) {
-    if (!one.worker) return;  // of a control that no case can have
+    if (!one.worker) return;  // a control without any case
     one.guard([&] {
       const StepTime time = one.worker->sample(one.steps);
       one.timing.samples.push_back(time.cpu);

@@ -66,7 +66,7 @@ bool TwoBuilds::slower() const { return differs() && (by_wall() ? wall : cpu).mi
 
 std::vector<TwoBuilds> time_two_builds(const std::vector<CaseOfTwo>& cases,
                                        const TimingOptions& options) {
-  setenv("TAUT_DATA", data_folder().c_str(), 0);  // the other build's scenes are this one's
+  setenv("TAUT_DATA", data_folder().c_str(), 0);  // the other build then uses this one's scenes
   std::vector<TwoBuilds> all;
   for (const CaseOfTwo& one : cases) {
     all.push_back(time_once(one, options));

@@ -11,55 +11,55 @@
 
 namespace taut {
 
-/// A case under two builds.
+/// A case to be timed under two builds.
 struct CaseOfTwo {
   std::string id;
   CaseToTime before, now;
 };
 
-/// What one build costs over another: timed in turns in one session, beside the build of before
-/// against itself.
+/// Cost of one build relative to another. The builds were timed in turns in one session, with the
+/// earlier build also timed against itself.
 struct TwoBuilds {
   std::string id;
-  std::string failure;  ///< why there are no times; "": there are
+  std::string failure;  ///< why there are no times; "" if there are
   Interval cpu, cpu_control, wall, wall_control;
 
-  /// It costs another CPU time, or if not that another wall time (of a program that waits), beyond
-  /// interval and control.
+  /// Whether CPU time, or otherwise wall time (for programs that wait), differs beyond interval and
+  /// control.
   bool differs() const;
   bool by_wall() const;
-  bool slower() const;  ///< it differs, and is dearer than it was
+  bool slower() const;  ///< it differs and is more expensive than before
 };
 
-/// Case by case. What looks like a difference is timed again, and is one only if it is seen twice:
-/// of many cases some look different by chance.
+/// Times the builds case by case. A difference is measured again and counts only if it shows twice,
+/// since with many cases some differ by chance.
 std::vector<TwoBuilds> time_two_builds(const std::vector<CaseOfTwo>&, const TimingOptions&);
 
-/// Keeps this program, or `taut`, with that of Bullet in single precision beside it, in
-/// <results>/builds/<id>, and gives that folder. Throws InputError: no such name for a build, or
-/// the disk refuses.
+/// Copies this program, or `taut`, and the one with Bullet in single precision beside it to
+/// <results>/builds/<id>, and returns that folder. Throws InputError if the id is not a valid name
+/// for a build or the disk refuses.
 std::filesystem::path keep_build(const std::filesystem::path& results, const std::string& id,
                                  const std::filesystem::path& taut = {});
 
-/// Where the programs of another build lie: a folder, or the id of a kept one. Throws InputError
-/// that names what there is.
+/// Folder with the programs of another build, given as a folder or as the id of a kept build.
+/// Throws InputError that lists the kept builds.
 std::filesystem::path folder_of_build(const std::filesystem::path& results,
                                       const std::string& folder_or_id);
 
-/// Those of the cases that ran under both: the programs in the folder beside this one's.
+/// The cases that ran under both builds: the programs in the folder, and this one's.
 std::vector<CaseOfTwo> cases_of_two(const std::vector<Record>&,
                                     const std::filesystem::path& folder_of_before);
 
-/// The costs of each case, to be kept with the builds.
+/// Cost ratios of each case, in the form in which they are stored with the builds.
 std::vector<BuildRatio> ratios_of(const std::vector<TwoBuilds>&, const std::string& before,
                                   const std::string& now);
 
-/// What cases of a study cost over another build (folder_of_build()); the store keeps the ratios of
+/// Times the cases of a study against another build (folder_of_build()) and stores the ratio of
 /// each case. Throws InputError.
 std::vector<TwoBuilds> compare_with_build(const std::string& study, const std::vector<Record>&,
                                           const std::string& before, Store&, const TimingOptions&);
 
-/// A table `name` for people and data: ratio, control, verdict of each case.
+/// A table `name` with ratio, control and verdict of each case.
 Table table_of(const std::vector<TwoBuilds>&, const std::string& name, const std::string& before);
 bool any_slower(const std::vector<TwoBuilds>&);
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Regressions: a baseline passes only against the study that made it, and says what moved."""
+"""Regressions: a baseline passes only against the study that made it; otherwise the check reports what moved."""
 
 import json
 import re
@@ -87,8 +87,8 @@ class Check(CommandLine):
                     row["values"] |= {name: by * row["values"][name] for name in ("stretch.rms", "energy.kinetic")}
                 return rows
             return plant
-        self.edit("jakobsen", scale(2, 1.25))  # now it is less: better
-        self.edit("bullet", scale(0.25, 1))    # and here four times as much
+        self.edit("jakobsen", scale(2, 1.25))  # now smaller: better
+        self.edit("bullet", scale(0.25, 1))    # now four times as large
         out = self.check(1)
         self.assertLessEqual(len(out.splitlines()), 25)
         row = r"%s +%s +2 +%d +%d +\./small\.toml, (\S+) -> (\S+) %% +%s +%s\n"

@@ -1,4 +1,4 @@
-"""What the tests of the command line share: a scratch folder, the built programs, a small study."""
+"""Shared by the tests of the command line: a scratch folder, the built programs, a small study."""
 
 import fcntl
 import json
@@ -30,12 +30,12 @@ duration = 0.5
 
 
 def facts_of(answer):
-    """{name: value} of an answer that a verb printed with --json"""
+    """{name: value} of the facts in an answer that a verb printed with --json"""
     return {name: fact["value"] for name, fact in answer["facts"].items()}
 
 
 def rows_of(answer, table):
-    """Its rows, each {name of the column: value}"""
+    """The rows of a table in an answer, each {name of the column: value}"""
     names = [column["name"] for column in answer["tables"][table]["columns"]]
     return [dict(zip(names, row, strict=True)) for row in answer["tables"][table]["rows"]]
 
@@ -52,7 +52,7 @@ class CommandLine(unittest.TestCase):
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, **more)
 
     def on_a_terminal(self, *words, columns=0, **environment):
-        """What the verb writes to stdout where that is a terminal, of so many columns if it knows."""
+        """Output of a verb whose stdout is a terminal with this many columns; 0: the width is unknown."""
         ours, theirs = pty.openpty()
         fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         process = subprocess.Popen([BINARIES / "taut", *words], cwd=self.folder, stdout=theirs, stderr=subprocess.DEVNULL,
@@ -92,12 +92,12 @@ class CommandLine(unittest.TestCase):
         return stored.records(self.folder / results)
 
     def keys(self, results="results/runs"):
-        """Of the cases that are stored."""
+        """Keys of the stored cases."""
         return stored.keys(self.folder / results)
 
 
 def main():
-    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)  # names what it skips: `taut test` repeats that
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)  # names skipped tests, which `taut test` repeats
 
 
 assert os.name == "posix"

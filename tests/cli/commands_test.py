@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the verbs print, and what bad input costs: a message with its place, exit 2, nothing written."""
+"""Output of the verbs, and the consequences of bad input: a message with its place, exit code 2, nothing written."""
 
 import csv
 import hashlib
@@ -261,7 +261,7 @@ class Verbs(CommandLine):
         user = {"user": 65534} if os.getuid() == 0 else {}
         os.chmod(self.folder, 0o755)
         for device in ("/dev/stdout", "/dev/null"):
-            line = f"{BINARIES}/taut case {self.folder}/small.toml jakobsen --final-state {device} | cat"  # a pipe of the user's own
+            line = f"{BINARIES}/taut case {self.folder}/small.toml jakobsen --final-state {device} | cat"  # a pipe that belongs to the user
             process = subprocess.run(["bash", "-o", "pipefail", "-c", line], cwd=self.folder, capture_output=True, text=True, **user)
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertEqual("vertex,x,y,z" in process.stdout, device == "/dev/stdout")
@@ -325,7 +325,7 @@ class Verbs(CommandLine):
             self.assertIn("Example:\n  taut " + " ".join(verb), self.taut(*verb, "--help").out)
 
     def test_every_example_of_every_help_is_understood(self):
-        """The last word is refused, and it alone: options are judged in their order, and --quiet is the last of each verb."""
+        """Only the word added at the end is refused: options are judged in order, and --quiet is the last option of each verb."""
         verbs = [[name] for name in re.findall(r"^  ([a-z]+) ", self.taut("--help").out, re.MULTILINE)]
         verbs += [[verb, inner] for verb, inners in (("bench", ["effects", "scaling"]), ("external", ["probe", "score"]), ("cluster", ["submit", "status", "merge"]),
                                                      ("baseline", ["diff", "update"])) for inner in inners]
@@ -407,7 +407,7 @@ class Verbs(CommandLine):
         rows = list(csv.DictReader((self.folder / "end.csv").read_text().splitlines()))
         self.assertEqual(list(rows[0]), ["vertex", "x", "y", "z", "vx", "vy", "vz"])
         self.assertEqual(len(rows), 15)
-        # The texts are the same doubles: their bits have the digest that the record has of the state.
+        # The texts stand for the same doubles: their bits have the digest of the state in the record.
         bits = b"".join(b"".join(struct.pack("<3d", *(float(row[key]) for key in keys)) for row in rows) + b"|"
                         for keys in (("x", "y", "z"), ("vx", "vy", "vz")))
         self.assertEqual(hashlib.sha256(bits).hexdigest(), record["digest"])
@@ -418,7 +418,7 @@ class Verbs(CommandLine):
         words = ["case", "./small.toml", "jakobsen", "--dt", "1/128", "--duration", 0.25, "--json"]
         verbose, plain = self.taut(*words, "--verbose"), self.taut(*words)
         self.assertEqual((verbose.out, plain.err), (plain.out, ""))
-        # Of 32 steps each, and at the end: at rest in the first, then falling.
+        # A line for each of 32 steps, and one at the end: at rest in the first, then falling.
         steps = re.findall(r"^step (\d+)/32  t (\S+) s  fastest vertex (\S+) m/s$", verbose.err, re.MULTILINE)
         self.assertEqual([(int(n), float(t)) for n, t, _ in steps], [(n, float(f"{n / 128:.6g}")) for n in range(33)])
         self.assertEqual(float(steps[0][2]), 0)
@@ -455,7 +455,7 @@ class Verbs(CommandLine):
         self.assertGreater(rival["times"][1], 1)
         alone = json.loads(self.taut("case", "./small.toml", said["best"], "--json").out)
         self.assertEqual(alone["values"]["stretch.rms"], said["error"])
-        for other in rows_of(answer, "tried"):  # nothing that was tried and reaches the error is far cheaper
+        for other in rows_of(answer, "tried"):  # no tried setting that reaches the error is far cheaper
             if not other["refused"] and other["error"] is not None and other["error"] <= 0.001:
                 self.assertGreater(other["quick_cost"], 0.3 * said["cost"][1])
         self.taut(*shlex.split(said["command"])[1:], "--rounds", 2, "--seconds", 0.002)
@@ -522,7 +522,7 @@ searched = "mine-searched.toml"
         self.assertEqual(done.returncode, 3 if unsearched else 0)
         tried = [row["setting"] for row in rows_of(answer, "tried")]
         self.assertEqual(len(tried), len(set(tried)), "each once")
-        if any("omega=" in setting for setting in tried):  # a refinement of jakobsen, which is cheap
+        if any("omega=" in setting for setting in tried):  # the cheap jakobsen is refined only after the others were searched
             self.assertLess({"xpbd", "pd", "bullet"}, {setting.partition(":")[0] for setting in tried[:tried.index(
                 next(setting for setting in tried if "omega=" in setting))]})
         hurried = self.taut("advise", "./small.toml", "--error", "0.1%", "--patience", 0.05, "--out", "new", "--json", expect=None)
@@ -833,7 +833,7 @@ searched = "mine-searched.toml"
             self.assertGreater(min(whole + alone), 0)
         bench = self.answer("bench", "effects", "crumple", "chain", "--sizes", "20,24", *short)
         self.assertEqual([(row["scene"], row["vertices"]) for side in (20, 24) for row in rows_of(bench, f"effects_{side}")],
-                         [("hang", 400), ("crumple", 400), ("hang", 576), ("crumple", 576)])  # a chain is no sheet
+                         [("hang", 400), ("crumple", 400), ("hang", 576), ("crumple", 576)])  # a chain is not a sheet
         solver = "jakobsen:iterations=1,substeps=1000000"
         out = self.taut("bench", "effects", "ball", "--solver", solver, "--rounds", "1").out
         self.assertIn("not timed: in float, gravity's move", out)

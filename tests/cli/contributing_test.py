@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""CONTRIBUTING.md means what it says: its code is built into taut-toy, its solvers give what ours gives, its scene and
-study run.
+"""CONTRIBUTING.md works as written: its code is built into taut-toy, its solvers give the same results as ours, and its
+scene and study run.
 
 Usage: contributing_test.py BUILD; `contributing_test.py --extract FOLDER` writes the code that CMake then builds."""
 
@@ -16,7 +16,7 @@ DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "CONTRIBUTING.md"
 
 
 def blocks(language, mark):
-    """file name -> text, of the code blocks whose first line names their file"""
+    """file name -> text, for the code blocks whose first line names their file"""
     found = re.findall(rf"```{language}\n{mark} (\S+)\n(.*?)```", DOCUMENT.read_text(), re.DOTALL)
     return {pathlib.Path(path).name: text for path, text in found}
 

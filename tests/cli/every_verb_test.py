@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What holds for every verb of the program, by its own list of them: --json, --quiet, colour, progress, manual, completion."""
+"""Requirements on every verb in the program's own list: --json, --quiet, colour, progress, manual, completion."""
 
 import csv
 import io
@@ -17,7 +17,7 @@ FEW = ["--rounds", "2", "--seconds", "0.0001"]
 ADVICE = ["advise", "./small.toml", "--error", "1%", "--solver", "jakobsen", *FEW]
 SWEPT = "set = ['time.duration=0.1']\naxes.'cloth.grid' = [[4, 4], [6, 6]]\n"
 
-# What each verb is asked here; N becomes a number that no other question has.
+# Arguments of each verb in these tests. N is replaced by a number that no other call has.
 ASKED = {
     "run": ["./study.toml"], "plot": ["./study.toml", "--kind", "convergence"], "report": ["./study.toml", "--no-media"],
     "export": ["./study.toml"], "new": ["study", "aN"], "case": ["./small.toml", "jakobsen"], "list": ["solvers"],
@@ -38,7 +38,7 @@ WITHOUT_RESULTS = {"external scene", "export"}  # one writes a file, the other p
 
 
 def names_of(answer):
-    """{table: names of its columns}, with "facts"; numbers at the end and names with a dot, of metric values, left out"""
+    """{table: names of its columns}, including "facts". Omits numbers at the end, and names with a dot, which are metric values."""
     plain = lambda names: {re.sub(r"_\d+$", "_N", name) for name in names if "." not in name}  # noqa: E731
     tables = {re.sub(r"_\d+$", "_N", name): plain(column["name"] for column in table["columns"])
               for name, table in answer["tables"].items() if "." not in name}
@@ -47,7 +47,7 @@ def names_of(answer):
 
 class EveryVerb(CommandLine):
     def verbs(self, *words):
-        """{"bench effects": its help}: of verbs that have verbs and do nothing by themselves only theirs."""
+        """{"bench effects": its help}. A verb that does nothing without a subverb is represented by its subverbs."""
         text = self.taut(*words, "--help").out
         names = re.findall(r"^  ([a-z]+) ", text.split("Example:")[0], re.MULTILINE)
         found = {} if names and "[SUBCOMMAND]" not in text else {" ".join(words): text}
@@ -66,7 +66,7 @@ class EveryVerb(CommandLine):
         self.taut("case", "./small.toml", "jakobsen", "--trajectory", "end.pc2")
 
     def assert_other_forms_agree(self, words, printed):
-        """CSV has the first table's columns and rows, Markdown is headed by the command; where timings do not change the rows."""
+        """Checks that CSV has the first table's columns and rows (if timings do not change the rows), and that Markdown starts with the command."""
         self.assertEqual(printed["schema"], "taut-answer-1")
         table = next(iter(printed["tables"].values()), None)
         lines = list(csv.reader(io.StringIO(self.taut(*words, "--csv", expect=None).out)))
@@ -106,18 +106,18 @@ class EveryVerb(CommandLine):
                 self.assertEqual((quiet.out, quiet.err), ("", ""))
 
     def options(self, text):
-        """(option, whether it takes a value) of a verb's help, but what only prints help."""
+        """(option, whether it takes a value) for the options in a verb's help, except those that only print help."""
         found = re.findall(r"^  (?:-\w,)?(--[\w-]+)(?: ([A-Z]+)(?![a-z]))?", text.split("Options:")[1], re.MULTILINE)
         return [(name, bool(kind)) for name, kind in found if not name.startswith("--help")]
 
     def test_every_option_of_every_verb_under_values_that_make_no_sense(self):
-        """A documented exit code, in time, and JSON on stdout; or 2, an error and nothing on stdout. Each option takes one of the
-        values in turn, and all of them with $TAUT_ALL_VALUES."""
+        """Every call ends in time, either with a documented exit code and JSON on stdout, or with 2, an error and nothing on stdout.
+        The options take turns with the values; with $TAUT_ALL_VALUES each option gets all of them."""
         self.prepare()
         for verb, text in self.verbs().items():
             asked = [*verb.split(), *ASKED[verb]]
             for count, (option, takes) in enumerate(self.options(text)):
-                if (verb, option) == ("reference", "--all"):  # minutes
+                if (verb, option) == ("reference", "--all"):  # takes minutes
                     continue
                 values = HOSTILE if "TAUT_ALL_VALUES" in os.environ else [HOSTILE[count % len(HOSTILE)]]
                 for which, hostile in enumerate(values if takes else [None]):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Positions from files: whatever the format, a run gives the metrics that it gave inside, to the format's rounding."""
+"""Positions from files: in every format, a motion gets the metrics that it had in the program, up to the format's rounding."""
 
 import array
 import json
@@ -8,7 +8,7 @@ import struct
 
 from command_line import CommandLine, facts_of, main, rows_of
 
-# One substep: then a frame holds all that a step did, and the velocity is the difference of two frames.
+# With one substep, a frame contains everything that a step did, and the velocity is the difference of two frames.
 SOLVER = "jakobsen:iterations=6,substeps=1,order=mesh,precision=double"
 
 
@@ -51,13 +51,13 @@ class Files(CommandLine):
             if value is None or found is None:
                 self.assertEqual(found, value, name)
             else:
-                # Second differences of float32 positions: four roundings of 6e-8 m over (1/64 s)^2.
+                # Popping takes second differences of float32 positions: four roundings of 6e-8 m over (1/64 s)^2.
                 most = tolerance * (100 if name.startswith("popping") else 1)
                 self.assertLessEqual(abs(found - value), most * max(1, abs(value)), name)
         self.assertEqual(record["resolved_settings"]["cost"], "not measured")
 
     def test_what_taut_writes_scores_as_it_did_inside(self):
-        # Velocities and energies take the differences of float32 positions: 1e-7 m over 1/64 s.
+        # Velocities and energies take differences of float32 positions: 1e-7 m over 1/64 s.
         for file, tolerance in [("run.npy", 1e-12), ("run.obj", 1e-12), ("run.pc2", 1e-5)]:
             with self.subTest(file):
                 self.taut("case", "./small.toml", SOLVER, "--trajectory", file)

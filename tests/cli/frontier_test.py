@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`taut frontier --all` and `taut verify --assertions`: what they print and keep, and that a narrower frontier and another
-verdict are red. Performance profiles, counted from the raw samples of a session by other code."""
+"""`taut frontier --all` and `taut verify --assertions`: what they print and keep, and that they fail on a narrower frontier
+and on another verdict. Performance profiles, compared with counts that other code makes from a session's raw samples."""
 
 import csv
 import json
@@ -49,7 +49,7 @@ class AllFrontiers(CommandLine):
             gap = max(one["good"], one["bad"]) / min(one["good"], one["bad"]) - 1
             whole = one["parameter"] in ("sweeps", "resolution") and abs(one["good"] - one["bad"]) == 1
             self.assertTrue(gap < 0.021 or whole, one)
-        # The case beyond a frontier shows what is said of it.
+        # The case beyond a frontier shows the reported symptom.
         over = next(one for one in answered if "overstretches" in one["symptom"])
         sets = [word for one in beyond if one["parameter"] == over["parameter"] for word in ("--set", one["override"])]
         values = json.loads(self.taut("case", over["beyond_scene"], over["beyond_solver"], *sets, "--json").out)["values"]
@@ -64,7 +64,7 @@ class AllFrontiers(CommandLine):
             self.assertIn(command, text.out)
         self.assertIn("<svg", (self.folder / facts_of(answer)["picture"]).read_text())
 
-        # The report has it, and what `require` found.
+        # The report shows this, and the findings of `require`.
         required = self.answer("require", "./small.toml")
         study = self.study()
         self.taut("run", study)
@@ -103,7 +103,7 @@ class AllFrontiers(CommandLine):
 
 
 class OneFrontier(CommandLine):
-    """Theory has growth of any pace; a short run sees only what is fast, so that its bracket lies above."""
+    """Theory counts growth at any pace. A short run sees only fast growth, so its bracket lies above the theory."""
 
     def test_theory_is_inside_the_bracket_or_as_far_off_as_its_nearer_end(self):
         for seconds in (16, 0.1):
@@ -166,13 +166,13 @@ class Profiles(CommandLine):
     def test_plot_and_page_show_what_the_raw_samples_give(self):
         study = self.study(solvers=["jakobsen", "bullet"], rest="[axes]\niterations = [1, 4, 16, 64]\n")
         self.taut("bench", study)
-        # Costs at will, and the accurate settings of Bullet could not be timed.
+        # Set the costs arbitrarily, and let the accurate settings of Bullet fail to be timed.
         results = self.folder / "results/runs"
         for place, row in enumerate(stored.query(results, "SELECT timing_id, solver FROM timings JOIN cases USING (key) ORDER BY timing_id")):
             bullet = row["solver"] == "bullet"
             stored.change(results, "UPDATE samples SET cpu = ? WHERE timing_id = ?",
                           (1 + place % 4) * (3e-6 if bullet and place % 4 else 4e-6), row["timing_id"])
-            if bullet and place % 4 > 0:  # what is left reaches no small error
+            if bullet and place % 4 > 0:  # the others reach no small error
                 stored.change(results, "UPDATE timings SET failure = 'no clock' WHERE timing_id = ?", row["timing_id"])
         stored.seal_benches(results)
         ratios = self.shares()

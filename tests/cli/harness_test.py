@@ -15,10 +15,10 @@ import time
 import stored
 from command_line import BINARIES, CommandLine, main
 
-# In this order, for what has sweeps is estimated to take longer. The last two wait until there is a file go-on.
+# They run in this order, since solvers with sweeps are estimated to take longer. The last two wait for a file go-on.
 TWO_AND_HELD = ["jakobsen:precision=double", "bullet", "faulty:mode=held,variant=1", "faulty:mode=held,variant=2"]
 KILLS = int(os.environ.get("TAUT_KILLS", 12))  # 200 in the target harness_kills
-SANITIZED = "asan" in BINARIES.name  # its allocator knows no limit on address space
+SANITIZED = "asan" in BINARIES.name  # its allocator ignores limits on address space
 
 
 class FaultySolvers(CommandLine):
@@ -76,14 +76,14 @@ class FaultySolvers(CommandLine):
         self.assertEqual(status["fewer"]["reason"], "stored 2 positions and 16 velocities of 16 vertices")
         self.assertEqual((status["far"]["reason"], status["far"]["vertex"]), ("box", 3))
         self.assertIn("key: expected 64 hexadecimal digits", status["forge"]["reason"])
-        # os.walk and not glob: other tests' folders go while this looks.
+        # os.walk instead of glob: folders of other tests may vanish meanwhile.
         self.assertEqual([path for path, _, files in os.walk(self.folder.parent) if "escaped" in files], [])
         for mode in ("fork", "daemon"):
             self.assertEnds(int((self.folder / f"left-by-{mode}").read_text()))
 
     def assertEnds(self, process):
         with self.assertRaises(ProcessLookupError, msg="a process that a case left behind lives on"):
-            for _ in range(100):  # killed with the case; who adopts it still has to reap it
+            for _ in range(100):  # it was killed with the case, but its new parent still has to reap it
                 os.kill(process, 0)
                 if (pathlib.Path("/proc") / str(process) / "stat").read_text().split()[2] == "Z":
                     raise ProcessLookupError
@@ -170,7 +170,7 @@ class FaultySolvers(CommandLine):
 
 
 class Signals(CommandLine):
-    """Every phase of a bare run, and a report that is ended, leave nothing in the folder for temporary files."""
+    """A bare run that is ended in any phase, and a report that is ended, leave nothing in the folder for temporary files."""
 
     def setUp(self):
         super().setUp()
@@ -206,13 +206,13 @@ class Signals(CommandLine):
 
     def test_a_report_that_is_ended_leaves_no_folder_and_no_part_of_a_page(self):
         self.taut("run", "small", env=self.env)
-        more = []  # they are filmed, too: when the first line is said there is more to do
+        more = []  # more scenes to film, so that work is left when the first line is printed
         for k in range(6):
             shutil.copy(self.folder / "data/scenes/small.toml", self.folder / f"data/scenes/small-{k}.toml")
             more += ["--film", f"small-{k}"]
         for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
             for films in self.folder.glob("results/**/films"):
-                shutil.rmtree(films)  # what is there already is not made
+                shutil.rmtree(films)  # existing films would not be made again
             self.end_at("small", stop, "report", "small", *more)
             for file in self.folder.glob("*report*"):  # it had just been written
                 self.assertEqual(file.name, "report.html")
@@ -445,7 +445,7 @@ class Store(CommandLine):
         whole = self.store_digest(self.taut("run", study))
         for i in (1, 2, 3):
             self.taut("run", study, "--shard", f"{i}/3", "--out", f"shard{i}")
-        # Keys depend on the build: with twelve cases one in 43 builds leaves a shard empty, which is no loss.
+        # Keys depend on the build. With twelve cases, one in 43 builds leaves a shard empty; leaving that one out would miss nothing.
         absent = max((1, 2, 3), key=lambda i: len(self.keys(f"shard{i}")))
         others = [f"shard{i}" for i in (1, 2, 3) if i != absent]
         partial = self.taut("cluster", "merge", *others, "--out", "partial", expect=3)
@@ -481,7 +481,7 @@ class Store(CommandLine):
             (self.folder / "locked").mkdir(mode=0o500)
             self.assertIn("Permission denied", self.taut("run", study, "--out", "locked", expect=2).err)
 
-    FILE_BYTES = 100_000  # a limit on files that an empty results file keeps, and the manifest of 1000 cases does not
+    FILE_BYTES = 100_000  # a limit on file sizes that an empty results file meets, but not the manifest of 1000 cases
 
     def test_a_session_that_cannot_be_recorded_leaves_nothing(self):
         study = self.study(rest="axes.iterations = { from = 1, to = 1000, steps = 1000 }\n")
@@ -535,7 +535,7 @@ class Store(CommandLine):
     def test_a_clock_that_jumps_changes_nothing(self):
         if SANITIZED:
             self.skipTest("the sanitizer wants to be the first that is preloaded")
-        study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\naxes.variant = [0, 1]\n')  # seconds: looked at often
+        study = self.study(solvers=["faulty:mode=slow"], rest='set = ["time.duration=2.5"]\naxes.variant = [0, 1]\n')  # takes seconds, in which the clock is read often
         whole = self.store_digest(self.taut("run", study, "--out", "whole", program="taut-faulty"))
         clock = self.folder / "clock.so"  # a path in LD_PRELOAD ends at a space
         clock.symlink_to(BINARIES / "libjumping_clock.so")
@@ -563,9 +563,9 @@ class Store(CommandLine):
         self.assertEqual(mark.read_text(), f"zeus {process.pid}\n")
         refused = self.taut("run", study, program="taut-faulty", env=ares, expect=2)
         self.assertIn("results.db: host zeus writes it too, and between hosts the locks of NFS are not reliable", refused.err)
-        self.taut("export", study, program="taut-faulty", env=ares, expect=3)  # reading is no harm
+        self.taut("export", study, program="taut-faulty", env=ares, expect=3)  # reading is allowed
         (self.folder / "go-on").touch()
-        self.taut("run", study, program="taut-faulty", env=zeus)  # nor is a second process of the host
+        self.taut("run", study, program="taut-faulty", env=zeus)  # and so is a second process of the same host
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0)
         self.assertFalse(mark.exists())
@@ -573,7 +573,7 @@ class Store(CommandLine):
         self.taut("run", study, program="taut-faulty", env=ares, expect=2)
         self.assertIn("(4 were stored already)", self.taut("run", study, program="taut-faulty", env=zeus).err)
         self.taut("run", study, program="taut-faulty", env=ares)
-        mark.write_text("zeus \n")  # cut by a full disk: of no process
+        mark.write_text("zeus \n")  # cut off by a full disk: names no process
         self.taut("run", study, program="taut-faulty", env=zeus)
         self.assertFalse(mark.exists())
 
@@ -581,7 +581,7 @@ class Store(CommandLine):
         study = self.study(solvers=TWO_AND_HELD)
         mine = self.folder / "taut-faulty"
         shutil.copy(BINARIES / "taut-faulty", mine)
-        process = self.start("run", study, "-j", 1, program=mine)  # an absolute path stays what it is
+        process = self.start("run", study, "-j", 1, program=mine)  # an absolute path is used unchanged
         while not self.keys():
             time.sleep(0.05)
         mine.unlink()
@@ -599,7 +599,7 @@ class Store(CommandLine):
         self.addCleanup(subprocess.run, ["umount", place])
         study = self.study(rest="axes.iterations = { from = 1, to = 60, steps = 60 }\n")
         whole = self.store_digest(self.taut("run", study))
-        for kilobytes in range(300, 348, 8):  # the disk is full at another moment of a case each time
+        for kilobytes in range(300, 348, 8):  # each time the disk is full at another moment of a case
             subprocess.run(["mount", "-o", f"remount,size={kilobytes}k", place], check=True)
             run = self.taut("run", study, "--out", "disk/results", expect=2)
             self.assertIn("No space left", run.err)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Markup, quotes, line breaks, marks of direction, 10,000 letters, shell and gnuplot syntax in names, summaries, questions, titles
-and what solvers say: everywhere a text stays a text."""
+"""Markup, quotes, line breaks, direction marks, 10,000 letters, shell and gnuplot syntax in names, summaries, questions, titles
+and messages of solvers: a text stays a text everywhere."""
 
 import contextlib
 import csv
@@ -35,7 +35,7 @@ class Page(html.parser.HTMLParser):
 class HostileText(CommandLine):
     def setUp(self):
         super().setUp()
-        for i, name in enumerate(NAMES):  # of different mass, so that no two are one case
+        for i, name in enumerate(NAMES):  # different masses, so that each is a case of its own
             summary = json.dumps(MARKUP + GNUPLOT + "\u202e\n" + LONG)
             (self.folder / f"{name}.toml").write_text(SCENE.replace('"A small sheet"', summary).replace("mass = 0.1", f"mass = {1 + i}"))
         self.scenes = [f"./{name}.toml" for name in NAMES]
@@ -62,7 +62,7 @@ class HostileText(CommandLine):
     def test_from_a_study_to_plots_tables_and_the_page(self):
         study = self.hostile_study()
         run = self.taut("run", study, "--table", "stretch.rms")
-        self.assertIn("'./a study; touch canary `touch canary`.toml'", run.err)  # what to type next
+        self.assertIn("'./a study; touch canary `touch canary`.toml'", run.err)  # the suggested command
         self.assertEqual(rows_of(self.answer("run", study), "statuses"), [{"status": "ok", "cases": 28}])
         rows = list(csv.DictReader(self.taut("export", study).out.splitlines()))
         self.assertEqual(len(rows), 28)
@@ -144,14 +144,14 @@ class StoredText(CommandLine):
         (registered / "mine.toml").write_text('cmd = "touch canary"\n')
         os.environ["TAUT_SOLVERS"] = str(registered)
         self.addCleanup(os.environ.pop, "TAUT_SOLVERS")
-        os.mkfifo(self.folder / "pipe.npy")  # who opens it waits for ever
+        os.mkfifo(self.folder / "pipe.npy")  # opening it would block forever
         self.texts = [f"x:cmd='touch {self.folder}/canary'", "mine", "mine:iterations=2", f"positions:file='{self.folder}/pipe.npy'"]
 
     def started(self):
         return [str(file) for file in self.folder.rglob("canary")]
 
     def replaced(self, value, text):
-        """Every text in it that names a solver is another one."""
+        """The value with every text that names a solver replaced by `text`."""
         if isinstance(value, dict):
             return {key: self.replaced(one, text) for key, one in value.items()}
         if isinstance(value, list):
@@ -159,7 +159,7 @@ class StoredText(CommandLine):
         return text if isinstance(value, str) and value.startswith("jakobsen") else value
 
     def plant(self, results, text):
-        """Into every table that holds a text of a solver, and into what a reader makes of it."""
+        """Plants `text` in every table that contains solver texts, and in JSON stored there."""
         with contextlib.closing(sqlite3.connect(results / "results.db")) as file:
             file.execute("UPDATE cases SET solver_text = ?", [text])
             file.execute("UPDATE planned SET id = ? || id", [text])

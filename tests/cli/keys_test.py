@@ -21,7 +21,7 @@ def rows_of(answer, name):
 
 
 def code(text):
-    """Backquotes around a value as typed; a default in words stays as it is."""
+    """The value in backquotes if it is typed like this; a default in words stays unchanged."""
     return f"`{text}`" if re.match(r"""[\[{"\d-]|(true|false)$""", text) else text
 
 
@@ -33,7 +33,7 @@ def markdown(columns, rows):
 
 
 def scene_tables(rows):
-    """heading -> its table"""
+    """heading -> the table below it"""
     tables = {}
     for row in rows:
         section = row["key"].rpartition(".")[0]

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""What ./taut promises, on a small project of its own in a folder whose name has spaces and umlauts: silent and quick
-when there is nothing to build, own sources after a copy or a move, the caller's paths, no root, two calls at once."""
+"""Promises of ./taut, tested on a small project in a folder whose name has spaces and umlauts: it is silent and quick when
+there is nothing to build, uses its own sources after a copy or a move, keeps the caller's paths, needs no root, and
+may be called twice at once."""
 
 import os
 import pathlib
@@ -59,7 +60,7 @@ int main(int count, char** words) {
 }
 """
 
-# Each tool that may be started writes its name down, then is itself; packages are all there, but for $MISSING.
+# Each tool that may be started logs its name, then becomes the real tool. All packages are present except for $MISSING.
 TOOL = """#!/bin/sh
 echo {name} >>"$TOOL_LOG"
 exec {real} "$@"
@@ -118,7 +119,7 @@ class Launcher(unittest.TestCase):
         return process
 
     def started(self):
-        """The tools that were started since it was last asked."""
+        """The tools that were started since the last call."""
         names = self.log.read_text().split()
         self.log.write_text("")
         return names
@@ -140,7 +141,7 @@ class Launcher(unittest.TestCase):
     def test_a_long_build_says_how_far_it_is_and_how_long_it_will_take(self):
         progress = re.search(r"^show_progress\(\) \{.*?^\}", (REPOSITORY / "taut").read_text(), re.MULTILINE | re.DOTALL)[0]
         feed = ["[1/40] Building a", "[2/40] Building b", "[10/40] Linking c", "[11/40] Building d", "[39/40] Building e"]
-        seconds = [0, 5, 60, 61, 200]  # told by a clock of the test's own: SECONDS of bash
+        seconds = [0, 5, 60, 61, 200]  # the test sets the clock, which is SECONDS of bash
         progress = progress.replace("while IFS= read -r line; do", 'while IFS="|" read -r SECONDS line; do')
         script = 'say() { echo "$1"; }\nSECONDS=0\n' + progress + "\nshow_progress default 2>&1"
         lines = "".join(f"{s}|taut: building default {line}\n" for s, line in zip(seconds, feed))
@@ -236,7 +237,7 @@ class Launcher(unittest.TestCase):
         self.started()
         again = self.call("python", "-c", "import taut; print(taut.version)", cwd=self.folder)
         self.assertEqual((again.out, again.err, self.started()), ("1\n", "", []))
-        # of another size: Python takes its compiled file of the same second and size for this one's
+        # Change the size as well, since Python reuses a compiled file if time (in seconds) and size are the same.
         (self.clone / "experiments/taut_module").write_text("version = 2  # changed\n")
         self.assertIn(f"version 2 [] {self.clone}/results\n", self.call("python", str(script), cwd=self.folder).out)
         self.call("--no-install", "python", "-c", "pass", MISSING="python3-matplotlib")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`taut render` and the report's pictures where something is missing: no renderer, no fonts, no ffmpeg, a run
-that explodes. Each costs pictures, never the rest, and says what to do."""
+"""`taut render` and the report's pictures if something is missing: no renderer, no fonts, no ffmpeg, a run
+that explodes. Each costs only pictures, and a message says what to do."""
 
 import json
 import os
@@ -55,7 +55,7 @@ class Pictures(CommandLine):
     def test_without_a_renderer_the_error_names_the_package_and_the_rest_works(self):
         damaged = self.folder / "libraries"
         damaged.mkdir()
-        (damaged / "libOSMesa.so.8").touch()  # found first, and no library
+        (damaged / "libOSMesa.so.8").touch()  # found first, but not a library
         nothing = {"LD_LIBRARY_PATH": str(damaged)}
         done = self.render(*SIDE_BY_SIDE, *SMALL, "-o", "a.png", expect=2, **nothing)
         for text in ["libOSMesa.so.8", "libosmesa6"]:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`taut require` on made-up scenes: what it has to drop and to keep, that the smallest model is one, patience and
-interruption."""
+"""`taut require` on made-up scenes: what it has to drop and to keep, that the smallest model keeps the answers, patience,
+and interruption."""
 
 import json
 import math
@@ -121,7 +121,7 @@ class Require(CommandLine):
         process = self.start("require", "./made.toml", "jakobsen")
         for _ in range(600):
             time.sleep(0.05)
-            if self.keys():  # it has most of its cases before it
+            if self.keys():  # most of its cases are still to be run
                 break
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)

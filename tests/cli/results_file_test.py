@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The results file for people: its document and the schema agree, README's query answers, and means take no zeros."""
+"""The results file for people: its document agrees with the schema, README's query works, and means ignore zeros."""
 
 import contextlib
 import os
@@ -89,7 +89,7 @@ class ResultsFile(CommandLine):
 
     def test_others_read_it_while_it_is_written(self):
         process = self.start("run", self.study(solvers=["jakobsen", "bullet", "faulty:mode=held"]), "-j", 1, program="taut-faulty")
-        while not self.keys():  # what has sweeps runs first
+        while not self.keys():  # solvers with sweeps run first
             pass
         reader = sqlite3.connect(self.folder / "results/runs/results.db")
         self.assertGreater(reader.execute(HOW_FAR).fetchall()[0][1], 0)
@@ -101,7 +101,7 @@ class ResultsFile(CommandLine):
 
 
 class Damage(CommandLine):
-    """What cannot be used is set aside once, said, and begun anew; what does not match its digest counts as none."""
+    """An unusable file is set aside once, with a message, and begun anew; what does not match its digest counts as missing."""
     RESULTS = "results/runs"
 
     def file(self, folder=RESULTS):
@@ -114,12 +114,12 @@ class Damage(CommandLine):
             file.commit()
 
     def flip_in(self, index, folder=RESULTS):
-        """A bit of the last entry of an index, which is read by nobody who looks at rows alone."""
+        """Flips a bit in the first entry of an index, which a reader of rows never reads."""
         with contextlib.closing(sqlite3.connect(self.file(folder))) as file:
             page, = file.execute("SELECT rootpage FROM sqlite_master WHERE name = ?", [index]).fetchone()
             size, = file.execute("PRAGMA page_size").fetchone()
         data = bytearray(self.file(folder).read_bytes())
-        data[page * size - 12] ^= 1  # within the text of the first entry that was put there
+        data[page * size - 12] ^= 1  # within the text of the entry inserted first, which is at the end of the page
         self.file(folder).write_bytes(data)
 
     def test_an_index_that_disagrees_with_its_table_is_set_aside_once(self):
@@ -154,7 +154,7 @@ class Damage(CommandLine):
             self.assertNotIn("damaged", self.taut("export", study, "--out", "merged").err)
             shutil.rmtree(self.folder / "merged")
         self.assertIn("damaged case", self.taut("cluster", "merge", "one", "--out", "merged", expect=3).err)
-        self.taut("cluster", "merge", "two", "--out", "one")  # the sound one stands in its place
+        self.taut("cluster", "merge", "two", "--out", "one")  # the sound record takes its place
         self.assertEqual(self.store_digest(self.taut("run", study, "--out", "one")), whole)
         said = self.taut("cluster", "merge", "one", "merged", "--out", "x", "--quiet", expect=None)
         self.assertNotEqual((said.returncode, said.err), (2, ""), "it says why it exits with 2")
@@ -198,7 +198,7 @@ class Damage(CommandLine):
             self.assertTrue(filmed(), film)
             self.assertFalse(filmed(), film)
             film.unlink()
-            os.mkfifo(film)  # nobody waits for the other end
+            os.mkfifo(film)  # must not block on the other end
             self.assertTrue(filmed(), film)
             self.assertFalse(filmed(), film)
 

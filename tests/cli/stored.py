@@ -1,4 +1,4 @@
-"""What a results file holds, as `taut case --json` prints it."""
+"""Access to the contents of a results file, in the form that `taut case --json` prints."""
 
 import contextlib
 import hashlib
@@ -10,7 +10,7 @@ import struct
 
 
 def query(folder, sql, *values):
-    """The rows of a query of folder/results.db, which is read as by any program; none if there is no such file."""
+    """The rows of a query on folder/results.db, read as any program would read it; none if there is no such file."""
     file = folder / "results.db"
     if not file.exists():
         return []
@@ -20,7 +20,7 @@ def query(folder, sql, *values):
 
 
 def change(folder, sql, *values):
-    """What nobody but a test does to a results file."""
+    """Changes a results file in a way that only tests do."""
     with contextlib.closing(sqlite3.connect(folder / "results.db", timeout=60)) as connection:
         connection.execute("PRAGMA foreign_keys = ON")
         connection.execute(sql, values)
@@ -28,7 +28,7 @@ def change(folder, sql, *values):
 
 
 def seal_benches(folder):
-    """Gives every scene's bench the digest of what it holds now."""
+    """Gives every scene's bench the digest of its current contents."""
     for bench in query(folder, "SELECT * FROM benches"):
         texts = [bench["study"], bench["host"], bench["build"], bench["scene"], "in turns" if bench["in_turns"] else ""]
         parts = [text.encode() for text in texts] + [number(bench[ratio]) for ratio in ("control_low", "control", "control_high")]
@@ -46,11 +46,11 @@ def number(value):
 
 def keys(folder):
     if not query(folder, "SELECT 1 FROM sqlite_master WHERE name = 'cases'"):
-        return []  # it is being made
+        return []  # it is being created
     return [row["key"] for row in query(folder, "SELECT key FROM cases ORDER BY key")]
 
 
-# key of the JSON, column of the file, type: the document's, which keys_test.py holds to the program's
+# (key in the JSON, column in the file, type) from the document, which keys_test.py compares with the program
 DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "experiments/cli/README.md"
 FIELDS = re.findall(r"^\| `([\w.]+)` \| `?(\w*)`? ?\| (text|number|whole number|JSON) \|", DOCUMENT.read_text(), re.MULTILINE)
 

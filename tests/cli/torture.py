@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The torture suite, in under five minutes: ours survives or says why it will not start, every other ends with a verdict."""
+"""The torture suite, in under five minutes: jakobsen survives or says why it will not start; every other solver ends with a verdict."""
 
 import pathlib
 import subprocess

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Each source file compiles by itself, without precompiled headers and without the files of its batch: it includes what
-it uses. Usage: alone.py BUILD [-j JOBS] [FOLDER ...]; `alone.py BUILD --self-test` plants a file that does not.
+"""Compiles each source file by itself, without precompiled headers and without the other files of its batch, to check
+that it includes what it uses. Usage: alone.py BUILD [-j JOBS] [FOLDER ...]; `alone.py BUILD --self-test` plants a file
+that lacks an include.
 """
 import argparse
 import concurrent.futures
@@ -17,14 +18,14 @@ FOLDERS = ["core", "bullet_ref", "experiments"]
 
 
 def sources_of(unit: pathlib.Path):
-    """The files of a batch; of anything else, the file itself."""
+    """The source files of a batch; any other file is its own source."""
     if "Unity" not in unit.parts:
         return [unit]
     return [pathlib.Path(name) for name in re.findall(r'^#include "(.*\.cpp)"$', unit.read_text(), re.M)]
 
 
 def alone(words):
-    """The command that checks a file with the flags of its target, but for the precompiled header and the output."""
+    """The command that checks a file with the flags of its target, except for the precompiled header and the output."""
     kept = []
     for before, word in zip([""] + words, words):
         takes_one = before in ("-o", "-c", "-include", "-Xclang")
@@ -34,7 +35,7 @@ def alone(words):
 
 
 def commands(build: pathlib.Path, folders):
-    """Source file -> command; of a file of several targets, that of the first."""
+    """Source file -> command. A file that belongs to several targets has the command of the first."""
     found = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
         for source in sources_of(pathlib.Path(entry["directory"], entry["file"])):
@@ -53,7 +54,7 @@ def first_error(source, command, directory):
 
 
 def failures(all_commands, jobs):
-    """The first error of each file that has one; each is printed as it is found."""
+    """The first error of each file that has errors. Prints each as it is found."""
     found = []
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         for line in pool.map(lambda one: first_error(one[0], *one[1]), all_commands.items()):
@@ -64,7 +65,7 @@ def failures(all_commands, jobs):
 
 
 def self_test(build, jobs):
-    """A file that lacks an include is found; with it, it is not."""
+    """Checks that a file is found if and only if it lacks an include."""
     command, directory = next(iter(commands(build, FOLDERS).values()))
     with tempfile.TemporaryDirectory() as folder:
         planted = pathlib.Path(folder, "planted.cpp")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What documents and comments point at exists: links, headings, files; and verbs, if a program is given.
+"""Checks that everything that documents and comments refer to exists: links, headings, files, and verbs if a program is given.
 
 Usage: documents_test.py [PROGRAM]     PROGRAM: a built taut, whose verbs the documents may name"""
 
@@ -16,7 +16,7 @@ MADE = re.compile(r"planted|STUDY|results/(runs|bench|verify)|core/solver/toy(_p
 
 
 def heading(text):
-    """The anchor of a heading, as GitHub makes it."""
+    """The anchor that GitHub makes for a heading."""
     return re.sub(r"[^\w -]", "", text.strip().lower()).replace(" ", "-")
 
 

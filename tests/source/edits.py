@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""What a build costs: a clean one, and after an edit of one line in each of ten files, by how many files are compiled as one
-(TAUT_BATCH_SIZE). In a copy of the sources, without a compiler cache; `taut` and `taut-f32` are built, which `./taut VERB` needs.
+"""Measures the cost of a clean build and of a build after an edit of one line in each of ten files, by the number of files that are
+compiled as one (TAUT_BATCH_SIZE). It works in a copy of the sources, without a compiler cache, and builds `taut` and `taut-f32`, which
+`./taut VERB` needs.
 
-Usage: edits.py [BATCH_SIZE ...]     default: 0 (a layer as one) and what CMakeLists.txt says
-Prints a table: CPU time is that of all processes and hardly depends on what else the machine does; wall time does."""
+Usage: edits.py [BATCH_SIZE ...]     default: 0 (a whole layer as one) and the value in CMakeLists.txt
+Prints a table. CPU time is the sum over all processes and hardly depends on what else the machine does; wall time does."""
 
 import os
 import pathlib
@@ -30,7 +31,7 @@ def copy_of_sources(folder):
 
 
 def timed(command):
-    """CPU and wall time [s]."""
+    """CPU and wall time of a command [s]."""
     def cpu():
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         return used.ru_utime + used.ru_stime
@@ -42,7 +43,7 @@ def timed(command):
 
 
 def measure(tree, batch):
-    """Times of a clean build, and of one after an edit of each file."""
+    """Times of a clean build, and of a build after an edit of each file."""
     build = tree / "build" / str(batch)
     timed(["cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DTAUT_TESTS=OFF", "-DTAUT_PYTHON=OFF",
            f"-DTAUT_BATCH_SIZE={batch}"])

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A stored result stays valid as long as nothing changed that it depends on: edits of a copy of the sources change the
-digests of the solvers that use what was edited, and no other.
+"""A stored result stays valid until something changes on which it depends. Edits in a copy of the sources have to change
+the digests of exactly those solvers that use what was edited.
 
 Usage: fingerprint_test.py FINGERPRINT_WRITER"""
 
@@ -36,7 +36,7 @@ class Fingerprint(unittest.TestCase):
 
     @classmethod
     def digests(cls, tools="g++"):
-        """What each solver, each layer (by one of its solvers) and each part is made of."""
+        """Digest of each solver, of each layer (through one of its solvers) and of each part."""
         out = cls.root.parent / "fingerprint.cpp"
         subprocess.run([WRITER, out, cls.root, tools, *LAYERS, "--", *PARTS], check=True)
         solvers, layers = (dict(re.findall(r'solver == "(\S+)"\) return "(\w+)"', part)) for part in out.read_text().split("layer_digest"))
@@ -44,7 +44,7 @@ class Fingerprint(unittest.TestCase):
         return {**solvers, **layers, **dict(re.findall(r'(\w+)\(\) \{ return "(\w+)"', out.read_text()))}
 
     def changed_by(self, *edits):
-        """The names of the digests that other texts of these files change: (file, text) or (file, old, new)."""
+        """Names of the digests that these edits change. An edit is (file, text) or (file, old, new)."""
         kept = {file: (self.root / file).read_text() if (self.root / file).exists() else None for file, *_ in edits}
         try:
             for file, *change in edits:
@@ -77,7 +77,7 @@ class Fingerprint(unittest.TestCase):
                 self.assertEqual(self.changed_by(edit), set(), edit)
 
     def digest_with(self, code):
-        """vbd's, with this code behind its own."""
+        """Digest of vbd with this code appended to its own."""
         file = self.root / "core/solver/vbd.cpp"
         text = file.read_text()
         try:
@@ -117,7 +117,7 @@ class Fingerprint(unittest.TestCase):
         used = self.add_to("core/solver/pd.cpp", f'#include "{new}.hpp"\n')
         self.assertEqual(self.changed_by(*files, used), {"pd", "core/solver"})
         before = self.before
-        try:  # now its source alone is another one
+        try:  # with only its source changed
             for name, text in (*files, used):
                 (self.root / name).write_text(text)
             type(self).before = self.digests()
@@ -136,7 +136,7 @@ class Fingerprint(unittest.TestCase):
         self.assertEqual(self.changed_by(self.add_to("experiments/case/record_io.cpp")), set())
 
     def test_a_part_has_what_it_uses_of_other_layers(self):
-        for file in ("core/solver/simd/panels_impl.hpp", "core/solver/simd/kernels.cpp"):  # exact steps are solved by them
+        for file in ("core/solver/simd/panels_impl.hpp", "core/solver/simd/kernels.cpp"):  # they solve exact steps
             self.assertEqual(self.changed_by(self.add_to(file)), OF_THE_LOOP | {"core/solver", "measurement", "pictures"}, file)
         self.assertEqual(self.changed_by(self.add_to("core/io/positions/sequence.cpp")), {"external_client", "pictures"})
         self.assertEqual(self.changed_by(self.add_to("experiments/case/computed_motion.cpp")), {"external_client"})

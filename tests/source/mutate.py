@@ -4,25 +4,26 @@
 Usage: mutate.py BUILD [--sample N] [--layers N] [--minutes M] [--seed S] [--layer L]... [--goal SHARE] [--limit SECONDS]
                        [--chosen FILE] [--jobs N] [--list]
 
-1. BUILD is a Ninja build of this tree. N places are drawn in some layers, which are drawn too: layers in turn, then an operator
-   (arithmetic, comparison, logic, a constant off by little or by much, a sign, an axis, min for max, a removed statement, swapped
-   arguments), then a place. The same seed plants the same errors in the same sources.
-2. All of them are planted at once: a function with an error has a second body, which it runs if $TAUT_ERROR is the number
-   of that error. So a layer is compiled once, as BUILD compiles it, however many errors it has. Errors that do not compile go.
-3. A check is a unit test, a truth of `taut verify` or a test of the command line. For each error the checks in the layer's own
-   folder of tests run, then others, quick ones before slow ones (as ctest last saw them in BUILD, else as one run here), until
-   one is red or they took --limit seconds of CPU. Every run writes down which functions with errors it reaches, and checks that
-   did not reach a function are not asked about its errors. A check also notices if it takes four times the CPU time that it
-   took before. A check that is red without the error as well says nothing.
+1. BUILD is a Ninja build of this tree. N errors are drawn in some layers, which are drawn too. The layers take turns; for each error
+   an operator is drawn (arithmetic, comparison, logic, a constant off by little or by much, a sign, an axis, min for max, a removed
+   statement, swapped arguments), then a place. The same seed plants the same errors in the same sources.
+2. All errors are planted at once: a function with an error has a second body, which runs if $TAUT_ERROR is the number of that error.
+   So a layer is compiled only once, as BUILD compiles it, however many errors it has. Errors that do not compile are dropped.
+3. A check is a unit test, a truth of `taut verify` or a test of the command line. For each error, the checks in the layer's own
+   folder of tests run first, then the others, quick ones before slow ones (by their time when ctest last ran them in BUILD, or in a
+   run here), until one is red or they took --limit seconds of CPU. Every run records which functions with errors it reaches, and
+   checks that do not reach a function are not run for its errors. A check also counts as red if it takes more than four times its
+   usual CPU time. A check that is red without the error as well does not count.
 
-Survivors are printed as a difference. Those that change no result are listed in equivalent_mutants.txt with the reason,
-and are not drawn. Left out, and counted: places outside of functions or in constexpr ones, and headers that layers include which
-were not drawn. The aim is 92 % noticed, no layer below 85 %. The run fails if so few are noticed as a sample of this size has once in
-a thousand times when the share is --goal; it ends with 77, neither passed nor failed, if so few were judged in --minutes that it would
-not have failed with three fifths of them unnoticed. The tests ask for 0.7: shares of
+Survivors are printed as differences. Errors that change no result are listed in equivalent_mutants.txt with the reason, and are not
+drawn. Places outside functions or in constexpr ones, and headers that are included by layers which were not drawn, are left out and
+counted. The aim is 92 % noticed, with no layer below 85 %. The run fails if the number noticed is so small that a sample of this size
+has it less than once in a thousand times when the true share is --goal. It ends with 77, neither passed nor failed, if so few errors
+were judged in --minutes that it would not have failed with three fifths of them unnoticed. The tests ask for a goal of 0.7: shares of
 0.8 and more were measured while one test of the command line was red with any error that reached it, and counted as noticing it.
---chosen plants the errors of a file instead (chosen_mutants.txt): the checks
-that stand there with an error must notice it, every one, however long they take.
+
+--chosen plants the errors of a file instead (chosen_mutants.txt). Every error must be noticed by the checks that
+its line names, however long they take.
 """
 import argparse
 import concurrent.futures
@@ -55,9 +56,9 @@ LAYERS = {"core/model": "taut_model", "core/io": "taut_io", "core/solver": "taut
           "bullet_ref": "taut_bullet64", **{f"experiments/{name}": f"taut_{name}" for name in (
               "system", "answer", "metrics", "case", "external", "results", "study", "timing", "steps", "require", "baseline", "truths",
               "report", "render")}, "experiments/cli": "taut_commands", "experiments/command_line": "taut_commands"}
-LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # no numbers in them
-PROGRAMS = (UNIT, TAUT, "taut-f32", "taut-faulty")  # have the errors: the last two are called by the others
-MOST = 1 << 16  # errors at a time
+LEFT_OUT = re.compile(r"/(gl|font|shaders)\.[ch]pp$")  # contain no numbers
+PROGRAMS = (UNIT, TAUT, "taut-f32", "taut-faulty")  # contain the errors; the others call the last two
+MOST = 1 << 16  # largest number of errors at a time
 CHOSEN = f"""
 #include <fcntl.h>
 #include <stdlib.h>
@@ -84,12 +85,12 @@ CHANCE = 0.001
 
 
 def chance(noticed, n, share):
-    """That of n errors at most so many are noticed where this share of all is"""
+    """Probability that at most `noticed` of n errors are noticed, if this share of all errors is"""
     return sum(math.comb(n, k) * share**k * (1 - share)**(n - k) for k in range(noticed + 1))
 
 
 def interval(k, n):
-    """Where the share lies of which k of n were seen: Wilson's score interval, 95 %"""
+    """95 % interval of a share of which k of n were seen (Wilson's score interval)"""
     z2 = 1.96**2
     middle, half = (k + z2 / 2) / (n + z2), math.sqrt(z2 * (k * (n - k) / n + z2 / 4)) / (n + z2)
     return f"{middle - half:.0%} to {middle + half:.0%}"
@@ -99,7 +100,7 @@ class Mutant:
     def __init__(self, layer, file, line, planted, checks="*", tests=()):
         self.layer, self.file, self.line, self.planted, self.checks, self.tests = layer, file, line, planted, checks, tests
         self.was = (ROOT / file).read_text().splitlines()[line - 1]
-        self.program = None  # whose checks may notice; None: of several
+        self.program = None  # the program whose checks may notice it; None: several programs
         self.number, self.compiles = 0, True
         self.by, self.tried, self.seconds = None, 0, 0.0
 
@@ -107,7 +108,7 @@ class Mutant:
         return f"{self.file}:{self.line}\n    - {self.was.strip()}\n    + {self.planted.strip()}"
 
     def body(self, text):
-        """Where its function's body is in the file's text, and that body with the error; None: it is in no function."""
+        """(start, end, text): the place of its function's body in the file's text, and that body with the error. None outside functions."""
         lines = text.splitlines(keepends=True)
         changed = "".join([*lines[:self.line - 1], self.planted + "\n", *lines[self.line:]])
         first, more = len(os.path.commonprefix([text, changed])), len(changed) - len(text)
@@ -116,7 +117,7 @@ class Mutant:
 
 
 class Build:
-    """How BUILD compiles the objects of the layers and links programs with them; and these with errors in them."""
+    """Compiles objects of the layers and links programs as BUILD does, but with errors in them."""
 
     def __init__(self, build, folder):
         self.build, self.folder = build, folder
@@ -139,7 +140,7 @@ class Build:
         return subprocess.run(["ninja", *words], cwd=self.build, check=True, text=True, capture_output=True).stdout
 
     def objects(self, file, tests=(), program=None):
-        """Those of the layers that depend on a source file (and that a program is linked of), and those of some files of the tests."""
+        """The objects of the layers that depend on a source file (and are linked into `program`, if given), and the objects of these test files."""
         of_tests = [self.dependents[str(ROOT / test)] for test in tests]
         of_file = self.dependents.get(str(ROOT / file), set()) & self.library.keys()
         if program:
@@ -153,12 +154,12 @@ class Build:
                                 if f"-o {program} " in line).removeprefix(": && ").split(" && ")[0])
 
     def compile(self, target, mutants):
-        """The object with all these errors in it but those that do not compile."""
+        """Compiles an object with all of these errors, except those that do not compile."""
         folder = self.folder / target.replace("/", "_")
         tree, out = folder / "tree", folder / "object.o"
         words = list(self.commands[target])
         words[words.index("-o") + 1] = str(out)
-        words[1:1] = [f"-I{tree}", f"-fmacro-prefix-map={tree}={ROOT}"]  # before the tree itself
+        words[1:1] = [f"-I{tree}", f"-fmacro-prefix-map={tree}={ROOT}"]  # searched before the tree itself
         source = pathlib.Path(words[words.index("-c") + 1])
         while mutants := [mutant for mutant in mutants if mutant.compiles]:
             ranges, text = {}, source.read_text()
@@ -166,14 +167,14 @@ class Build:
                 of_file = [mutant for mutant in mutants if mutant.file == file]
                 (tree / file).parent.mkdir(parents=True, exist_ok=True)
                 (tree / file).write_text(planted((ROOT / file).read_text(), of_file, ranges))
-                text = text.replace(f'"{ROOT / file}"', f'"{tree / file}"')  # a batch includes files by their whole paths
+                text = text.replace(f'"{ROOT / file}"', f'"{tree / file}"')  # a batch includes files by their full paths
             (folder / source.name).write_text(text)
             copy = tree / os.path.relpath(source, ROOT)
             words[words.index("-c") + 1] = str(copy if copy.exists() else folder / source.name)
             done = subprocess.run(words, cwd=self.build, capture_output=True, text=True)
             if done.returncode == 0:
                 return out
-            for error in (r":\d+: (?:fatal )?error:", ""):  # where it is, otherwise all that the compiler mentions
+            for error in (r":\d+: (?:fatal )?error:", ""):  # first the lines with errors, otherwise all lines that the compiler mentions
                 told = re.findall(rf"{re.escape(str(tree))}/(\S+?):(\d+){error}", done.stderr)
                 if bad := [m for m in mutants if any(name == m.file and int(line) in ranges[m] for name, line in told)]:
                     break
@@ -184,16 +185,16 @@ class Build:
     def link(self, program, objects, out):
         words = list(self.link_line(program))
         words[words.index("-o") + 1] = str(out)
-        # Those of the layers first: an inline function of a header is that of the first object that has it.
+        # Objects of the layers come first: the linker takes an inline function of a header from the first object that has it.
         mine = [target for target in objects if {target, self.library.get(target)} & set(words)]
         own = [str(objects[target]) for target in sorted(mine, key=lambda target: target not in self.library)]
-        # BUILD's libraries then have nothing left to give.
+        # Nothing is then left that the linker would take from BUILD's libraries.
         words = [words[0], "-Wl,--strip-debug", *own, str(self.folder / "chosen.o"), *(w for w in words[1:] if w not in objects)]
         subprocess.run(words, cwd=self.build, check=True)
 
     def plant(self, mutants, programs, pool):
-        """A folder with the programs that have the errors in them, and all else of BUILD. An error whose checks all are of one
-        program is in the objects of that one."""
+        """Makes a folder with the programs that contain the errors and with everything else in BUILD. If all checks of an error
+        belong to one program, only the objects of that program contain it."""
         beside, chosen = self.folder / "programs", self.folder / "chosen.c"
         for name in ("", "tests"):
             (beside / name).mkdir()
@@ -206,7 +207,7 @@ class Build:
         for mutant in mutants:
             for target in self.objects(mutant.file, mutant.tests, mutant.program):
                 of.setdefault(target, []).append(mutant)
-        # The largest first: both cores stay busy to the end.
+        # The largest come first, so that both cores stay busy to the end.
         targets = sorted(of, key=lambda target: -(self.build / target).stat().st_size)
         compiled = zip(targets, pool.map(lambda target: self.compile(target, of[target]), targets))
         objects = {target: object_ for target, object_ in compiled if object_}
@@ -215,7 +216,7 @@ class Build:
 
 
 def planted(text, mutants, ranges):
-    """The text of a file with every error in it, each in a body of its own; `ranges` get their lines."""
+    """The text of a file with every error, each in a body of its own. Stores their lines in `ranges`."""
     of = {}
     for mutant in mutants:
         start, end, body = mutant.body(text)
@@ -233,12 +234,12 @@ def planted(text, mutants, ranges):
 
 
 def rows(file):
-    """The columns of a list of errors: lines `file | what is there | what is planted | more`"""
+    """The columns of a list of errors, whose lines are `file | what is there | what is planted | more`"""
     return [[part.strip() for part in line.split(" | ")] for line in file.read_text().splitlines() if line and line[0] != "#"]
 
 
 def chosen(file):
-    """The errors of a file, each with the checks that must notice it"""
+    """The errors that a file lists, each with the checks that must notice it"""
     for name, there, instead, checks, *tests in rows(file):
         lines = (ROOT / name).read_text().splitlines()
         found = [number for number, line in enumerate(lines) if there in line]
@@ -252,7 +253,7 @@ def chosen(file):
 
 
 def draw(layers, random_, build):
-    """Mutants without end: layers in turn, then a random operator and place."""
+    """Draws mutants endlessly: from the layers in turn, with a random operator and place."""
     known, pools, wide, outside = {tuple(row[:3]) for row in rows(EQUIVALENT)}, {layer: {} for layer in layers}, 0, 0
     for layer in layers:
         for file in sorted(ROOT.glob(f"{layer}/**/*.[ch]pp")):
@@ -284,7 +285,7 @@ def draw(layers, random_, build):
 
 @contextlib.contextmanager
 def scratch():
-    """A folder that any user may enter: tests run the program as another one."""
+    """A folder that any user may enter, since tests run the program as another user."""
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o755)
         yield folder
@@ -295,12 +296,12 @@ class Batch:
 
     def __init__(self, checks):
         self.checks, self.folder = checks, checks[0].folder
-        self.seconds = sum(check.seconds for check in checks) / len(checks)  # of one
-        self.reached = None  # by number of an error: whether they run its function; None: unknown
+        self.seconds = sum(check.seconds for check in checks) / len(checks)  # mean time of a check
+        self.reached = None  # by number of an error: whether the checks run its function; None: unknown
 
 
 def batches_of(checks):
-    """Quick ones together, up to 3 s."""
+    """Groups checks of the same program and folder into batches of up to 3 s, quick ones first."""
     def program(check):
         return check.folder, check.program, str(check.script)
     for _, group in itertools.groupby(sorted(checks, key=lambda check: (*program(check), check.seconds)), program):
@@ -314,7 +315,7 @@ def batches_of(checks):
 
 
 def judge(mutant, batches, programs, limit, sound):
-    """Sets by whom it is noticed, and what that took. `sound`: names of checks that are known to be green without any error."""
+    """Runs checks until one notices the error, and sets `by` and the cost. `sound`: names of checks known to be green without any error."""
     own = mutant.layer.split("/")[-1]
     for batch in sorted(batches, key=lambda batch: (batch.folder != own, batch.seconds)):
         while batch.checks and (batch.reached is None or batch.reached[mutant.number]):
@@ -355,7 +356,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--list", action="store_true", help="only print what would be planted")
     options = parser.parse_args()
-    # Ignored where this runs in the background; what it runs would inherit that.
+    # A process in the background ignores SIGINT, and its children would inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     start = time.monotonic()
 
@@ -368,7 +369,7 @@ def main():
         layers = options.layer or sorted(random_.sample(list(LAYERS), options.layers))
         if options.chosen:
             mutants = list(chosen(options.chosen))
-        else:  # some do not compile
+        else:  # draws more than the sample, since some do not compile
             print(f"seed {options.seed}", flush=True)
             mutants = list(itertools.islice(draw(layers, random_, build), options.sample * 4 // 3))
         for number, mutant in enumerate(mutants, 1):

@@ -1,4 +1,4 @@
-"""What notices the errors that mutate.py plants: unit tests, truths and tests of the command line, each alone or in a batch."""
+"""The checks that notice errors planted by mutate.py: unit tests, truths and tests of the command line, run alone or in batches."""
 import ast
 import contextlib
 import csv
@@ -15,9 +15,9 @@ import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-UNIT, TAUT = "tests/taut_tests", "taut"  # the programs whose checks notice
+UNIT, TAUT = "tests/taut_tests", "taut"  # the programs that run checks
 SCRIPTS = [file for folder in ("cli", "study/cluster", "external", "truths") for file in (ROOT / "tests" / folder).glob("*_test.py")
-           if file.stem not in ("launcher_test", "contributing_test", "schedulers_test")]  # which build, or need a scheduler
+           if file.stem not in ("launcher_test", "contributing_test", "schedulers_test")]  # these build, or need a scheduler
 
 
 class Check:
@@ -30,14 +30,14 @@ class Check:
 
 
 def checks_of(build):
-    """Every check, with the seconds that it took when ctest last ran it in BUILD; unit tests that it has not run are run once,
-    for a few slow ones first would use up what an error's checks may take. One of a script, or a truth, counts as the mean of
-    all that ctest runs with it, or more than most take."""
+    """Every check, with the seconds that it took when ctest last ran it in BUILD. Unit tests that ctest has not run are run once to
+    learn their time, since a few slow ones at the start would use up the time for an error's checks. ctest runs the tests of a script
+    together, and likewise all truths: each counts as the mean of these, or, if they were not run, as longer than most take."""
     took = {}
     with contextlib.suppress(OSError):
         took = {words[0]: float(words[2]) for line in (build / "Testing/Temporary/CTestCostData.txt").read_text().splitlines()
                 if len(words := line.split()) == 3 and int(words[1])}
-    file_of = {".".join(test): file for file in (ROOT / "tests").rglob("*_test.cpp")  # several may have a suite of that name
+    file_of = {".".join(test): file for file in (ROOT / "tests").rglob("*_test.cpp")  # several files may have a suite of the same name
                for test in re.findall(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", file.read_text(), re.MULTILINE)}
     listed = subprocess.run([build / UNIT, "--gtest_list_tests", "--gtest_filter=-*.DISABLED_*"], check=True,
                             text=True, capture_output=True).stdout
@@ -55,7 +55,7 @@ def checks_of(build):
         checks.append(Check(UNIT, name, took.get(name, 15), file_of.get(f"{suite.split('/')[-1]}.{test.split('/')[0]}")))
     truths = subprocess.run([build / TAUT, "verify", "--list", "--csv"], check=True, text=True, capture_output=True).stdout
     names = [truth["name"] for truth in csv.DictReader(truths.splitlines())]
-    # On two cores.
+    # ctest runs the truths on two cores.
     checks += [Check(TAUT, name, 2 * took["truths"] / len(names) if "truths" in took else 15) for name in names]
     for script in SCRIPTS:
         names = [f"{of.name}.{test.name}" for of in ast.parse(script.read_text()).body if isinstance(of, ast.ClassDef)
@@ -65,7 +65,7 @@ def checks_of(build):
 
 
 def timed(build, names):
-    """The seconds that unit tests take, each run once."""
+    """Runs unit tests once and returns the seconds that each takes."""
     with tempfile.TemporaryDirectory() as where:
         environment = {**os.environ, "TMPDIR": where, "TEST_TMPDIR": where,
                        "GTEST_FILTER": ":".join(names), "GTEST_OUTPUT": f"json:{where}/took.json"}
@@ -79,7 +79,7 @@ def timed(build, names):
 
 
 def cpu_seconds(pid):
-    """Of a process and those of its children that have ended; 0: it is gone."""
+    """CPU time of a process and of those of its children that have ended; 0 if the process no longer exists."""
     with contextlib.suppress(OSError):
         times = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:15]
         return sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
@@ -87,8 +87,9 @@ def cpu_seconds(pid):
 
 
 def run(checks, program, where, seconds=600.0, **environment):
-    """(name of a red check or None, CPU seconds) of checks of one program; red if they take more CPU time, or hang"""
-    # A folder of its own for what the tests write: several run at the same time.
+    """Runs checks of one program and returns (name of a red check or None, CPU seconds). Checks are also red if they take more than
+    `seconds` of CPU time, or hang."""
+    # The tests write into a folder of their own, since several run at the same time.
     environment = {**os.environ, "TMPDIR": f"{where}/", "TEST_TMPDIR": f"{where}/", **environment}
     names = [check.name for check in checks]
     if checks[0].script:
@@ -108,7 +109,7 @@ def run(checks, program, where, seconds=600.0, **environment):
             resource.prlimit(process.pid, resource.RLIMIT_DATA, (8 << 30, 8 << 30))
         hangs = threading.Timer(60 + 10 * seconds, kill)
         hangs.start()
-        # Not RLIMIT_CPU: where it is set, Linux counts a process's CPU time in ticks, and what is shorter takes none.
+        # RLIMIT_CPU is not used: if it is set, Linux counts a process's CPU time in ticks, so that anything shorter takes no time.
         ended, nap = 0, 0.001
         while not ended:
             ended, status, usage = os.wait4(process.pid, os.WNOHANG)
@@ -118,7 +119,7 @@ def run(checks, program, where, seconds=600.0, **environment):
             nap = min(0.1, 1.5 * nap)
         process.returncode = os.waitstatus_to_exitcode(status)
         hangs.cancel()
-        kill()  # what it left behind
+        kill()  # processes that it left behind
         output.seek(0)
         text = output.read()
         told = re.findall(r"^\[ ( FAILED |RUN     ) \] ([^\s,]+)", text, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The small errors that mutate.py plants: patterns on a line of code, and what stands there instead."""
+"""The small errors that mutate.py plants: patterns on a line of code, and their replacements."""
 import functools
 import re
 
@@ -6,7 +6,7 @@ NUMBER = r"(?<![\w.'])(\d+\.?\d*(?:e-?\d+)?)(?![\w.'])"
 
 
 def scaled(factor, step):
-    """A literal times `factor`; a whole number that this leaves alone, plus `step`."""
+    """Multiplies a literal by `factor`. If that leaves a whole number unchanged, adds `step` instead."""
     def change(match):
         text = match[1]
         if text.isdigit():
@@ -21,7 +21,7 @@ def exchanged(*couples):
     return lambda match: match[0].replace(match[1], table[match[1]])
 
 
-# operator: (pattern on code without texts and comments, replacement)
+# operator -> (pattern on code without strings and comments, replacement)
 OPERATORS = {
     "arithmetic": (r" ([-+*/]) (?=[\w(])", exchanged("+-", "*/")),
     "assignment": (r" ([-+*/])= ", exchanged("+-", "*/")),
@@ -42,15 +42,15 @@ OPERATORS = {
                 r"[a-z_][\w.\[\]]*(->|\.|\(| [-+*/]?= |\+\+)[^{}]*;)$", lambda m: ";"),
     "swapped": (r"(?<=\w\()(?<!\bmin\()(?<!\bmax\()(\w+), (\w+)(?=\))", lambda m: f"{m[2]}, {m[1]}"),
 }
-# What no test could call an error: 2 % more of an order of magnitude (a tolerance of 1e-9, an infinity of 1e300), which of two
-# measured numbers is larger if they are equal to the last bit, how much memory is asked for in advance. Nor are the arguments of
-# a minimum swapped.
+# Changes that no test could call an error are not planted: 2 % more of an order of magnitude (a tolerance of 1e-9, an infinity of
+# 1e300), which of two measured numbers counts as larger if they are equal to the last bit, and how much memory is reserved in advance.
+# Nor are the arguments of a minimum swapped.
 NO_ERROR = {"little": re.compile(r"^1e-?\d+$"), "border": re.compile(r"^ [<>]=? \(?-?(\d+\.\d|\d+e-?\d)")}
 NOT_CODE = re.compile(r"^\s*(#|//|assert\(|static_assert|if constexpr|template|using |.*\.reserve\(|EXPECT_|ASSERT_|TAUT_)")
 
 
 def code_of(line):
-    """The line with texts and comments blanked out, or "" if there is nothing to plant in it."""
+    """The line with strings and comments blanked out, or "" if no error can be planted in it."""
     if NOT_CODE.match(line):
         return ""
     line = re.sub(r'"(\\.|[^"\\])*"', lambda m: '"' + "_" * (len(m[0]) - 2) + '"', line)
@@ -59,7 +59,7 @@ def code_of(line):
 
 
 def sites(file):
-    """operator -> every (line number, line with the error) in a file"""
+    """operator -> all (line number, line with the error) in a file"""
     found = {}
     for number, line in enumerate(file.read_text().splitlines()):
         code = code_of(line)
@@ -75,14 +75,14 @@ def sites(file):
     return found
 
 
-# Of formatted code without what stands in texts and comments: braces, and where a statement ends.
+# Tokens of formatted code: braces and ends of statements. Strings and comments are matched as a whole, so that their contents are skipped.
 TOKEN = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*.*?\*/|^ *#[^\n]*|[{};]',
                    re.DOTALL | re.MULTILINE)
 
 
 @functools.cache
 def bodies(text):
-    """(start, end) of what stands between the braces of every function that is not constexpr and not inside of another"""
+    """(start, end) of the text between the braces of every function that is neither constexpr nor inside another function"""
     found, opened, last = [], [], 0
     for token in TOKEN.finditer(text):
         if token[0] == "{":

@@ -13,7 +13,7 @@ namespace {
 
 struct Options {
   std::string scene, study, preset, metric = kErrorMetric, error, out;
-  double cpu = 8;     ///< s of each solver on a scene of a study
+  double cpu = 8;     ///< s for each solver on a scene of a study
   double budget = 0;  ///< ms per frame; 0: not given
   double fps = 1 / kFrame;
   std::vector<std::string> solvers, settings, keep;
@@ -31,7 +31,8 @@ Target target_of(const Options& options) {
   return {{}, options.budget * 1e-3 * options.fps};
 }
 
-/// What --keep says, or what the scene accepts; the error says how much of itself is accepted.
+/// The limits of --keep, or the default limits of the scene. The error is not limited, since it is
+/// the target itself.
 std::vector<Limit> limits_of(const Options& options, const Target& target) {
   const Scene scene = load_scene(find_scene(options.scene), options.settings);
   std::vector<Limit> limits;

@@ -45,9 +45,9 @@ StudyBench compared(const std::string& scene, const Options& options, Store& sto
   return bench({"", cases}, scene, options, store);
 }
 
-/// This build over another one, case by case; whether it is slower anywhere.
+/// Times this build against another one, case by case. Returns whether it is slower anywhere.
 bool against(const std::string& name, const Options& options, Store& store) {
-  folder_of_build(options.out, options.against);  // before anything runs
+  folder_of_build(options.out, options.against);  // reports errors before anything runs
   const Study study = load_study(name, options.preset);
   const auto records = run_and_collect({study.name, cases_of(study)}, store, "taut bench");
   const std::vector<TwoBuilds> found =
@@ -60,7 +60,7 @@ bool against(const std::string& name, const Options& options, Store& store) {
   return any_slower(found);
 }
 
-/// Serves samples of one case, the scene and the solver that were named.
+/// Serves samples of the case that the scene and the solver name.
 int serve(const Options& options) {
   if (options.what.size() != 2) throw InputError("bench --worker takes a scene and a solver");
   const Case one = make_case({options.what[0], options.settings, options.what[1]});

@@ -10,7 +10,8 @@ namespace taut::verb::effects {
 
 namespace {
 
-constexpr const char* kUnit = "hang";  ///< the scene of links alone that the others are held to
+/// The scene with only links to which the others are compared.
+constexpr const char* kUnit = "hang";
 
 struct Options {
   std::vector<std::string> scenes;
@@ -23,7 +24,7 @@ struct Options {
 
 constexpr Unit kNs = kNanoseconds;
 
-/// What `interval()` says of these samples, if there are any.
+/// Result of `interval()` for these samples; empty if there are none.
 template <class MakeInterval>
 Cell of(const std::vector<double>& samples, const MakeInterval& interval) {
   return samples.empty() ? Cell() : Cell(interval());
@@ -66,7 +67,7 @@ Table table_of(const std::vector<EffectRow>& rows, const Options& options, int s
   return table;
 }
 
-/// Every sample, two of each round.
+/// Adds every sample, two for each round.
 void add_samples_of(const std::vector<EffectRow>& rows, int side, Table& table) {
   for (const EffectRow& row : rows)
     for (const auto& [what, scale, samples] :

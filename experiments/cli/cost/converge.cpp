@@ -15,7 +15,8 @@ struct Options : StepQuestion {
   Format format;
 };
 
-/// Bullet in float and in double are two programs, and all solvers start from one state in one.
+/// Continues in the program that all solvers need, since all start from one state in one process.
+/// Bullet in float and in double are two programs.
 void continue_in_one_program(const std::vector<std::string>& solvers) {
   std::string_view program;
   for (const std::string& solver : solvers) {

@@ -9,9 +9,9 @@ namespace {
 
 struct Options {
   CaseOptions which;
-  std::vector<std::string> others;  ///< solvers that are asked the same
-  std::vector<std::string> keep;    ///< METRIC:LIMIT; empty: what the scene accepts
-  std::vector<std::string> all;     ///< solvers whose every parameter is asked for; empty: one case
+  std::vector<std::string> others;  ///< solvers that get the same question
+  std::vector<std::string> keep;    ///< METRIC:LIMIT; empty: the default limits of the scene
+  std::vector<std::string> all;  ///< solvers of which every parameter is searched; empty: one case
   std::string baselines;
   bool check = false, update = false;
   std::string of = "dt", out;
@@ -21,7 +21,7 @@ struct Options {
   Format format;
 };
 
-/// One setting of one scene.
+/// Searches one setting of one scene.
 int run_setting(const Options& options) {
   std::vector<std::string> solvers{options.which.spec().solver};
   solvers.insert(solvers.end(), options.others.begin(), options.others.end());
@@ -49,7 +49,7 @@ int run_setting(const Options& options) {
   return answered ? kPass : kNothing;
 }
 
-/// Every parameter of one or two solvers.
+/// Searches every parameter of one or two solvers.
 int run_every_parameter(const Options& options) {
   using report::Baseline;
   Store store(options.out);

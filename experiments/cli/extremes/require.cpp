@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPictureSeconds = 8;  ///< for which there has to be time
+constexpr double kPictureSeconds = 8;  ///< s that have to be left for the picture
 
 struct Options {
   std::string scene, solver = "jakobsen", output, out;
@@ -24,7 +24,7 @@ struct Options {
   Format format;
 };
 
-/// The picture's name; "": there is no renderer.
+/// Name of the picture; "" if there is no renderer.
 std::string draw(const Requirement& found, const Store& store, const fs::path& file) {
   try {
     draw_side_by_side({{found.full.spec, "full model"}, {found.smallest->spec, "smallest model"}},
@@ -42,7 +42,7 @@ int exit_code(const Requirement& found) {
   return found.not_done.empty() ? kPass : kIncomplete;
 }
 
-/// Adds a row to `scenes`; prints the whole answer of a scene asked for alone.
+/// Adds a row to `scenes`. If `alone`, prints the whole answer.
 int run_one(const Options& options, const std::string& scene, RequirementTable& scenes,
             bool alone) {
   const auto start = SteadyClock::now();

@@ -28,7 +28,7 @@ void tell(const Snapshot& m, int steps) {
             << fastest << " m/s\n";
 }
 
-/// Says of a run that takes over ten seconds how far it is and how long it will last.
+/// Reports the progress of a run that takes over ten seconds, and how long it will last.
 class SlowRun {
  public:
   explicit SlowRun(int steps) : steps_(steps) {}
@@ -45,10 +45,10 @@ class SlowRun {
  private:
   int steps_;
   SteadyClock::time_point start_ = SteadyClock::now();
-  double next_ = 2;  ///< when to speak [s since the start]
+  double next_ = 2;  ///< when to report next [s since the start]
 };
 
-/// What was asked for; of a case of which nothing was computed nothing is written.
+/// Writes the requested files, but none for a case of which nothing was computed.
 void write_files(const CaseRun& result, const Options& options) {
   if (!result.computed()) {
     std::cerr << result.record.id << ": " << describe(result.record.status) << '\n';
@@ -67,7 +67,7 @@ int run(const Options& options) try {
   for (const std::string& file : {options.final_state, options.series, options.trajectory})
     if (!file.empty()) test_writable(file);
   if (!options.trajectory.empty()) check_positions_name(options.trajectory);
-  std::unique_ptr<PositionWriter> motion;  // from the first state on: there may be none
+  std::unique_ptr<PositionWriter> motion;  // created with the first state, which may not exist
   SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(
       one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
@@ -86,7 +86,7 @@ int run(const Options& options) try {
     for (const ResolvedSetting& setting : result.record.resolved_settings)
       std::cerr << setting.name << ": " << setting.text << '\n';
   return result.record.status.is_result() ? kPass : kRegression;
-} catch (const std::bad_alloc&) {  // while the scene was read
+} catch (const std::bad_alloc&) {  // thrown while the scene was read
   if (options.into.empty()) throw;
   return kOutOfMemory;
 }

@@ -15,12 +15,13 @@ struct Options {
 
 struct SetUp {
   std::unique_ptr<Solver> solver;
-  double seconds = std::numeric_limits<double>::infinity();  ///< CPU time, the least of up to three
+  /// CPU time, the least of up to three samples.
+  double seconds = std::numeric_limits<double>::infinity();
 };
 
 SetUp set_up(const Case& one) {
   SetUp made;
-  constexpr double kLong = 1;  // s, of which one sample says enough
+  constexpr double kLong = 1;  // s; if a sample takes longer, one is enough
   for (int n = 0; n < 3 && (n == 0 || made.seconds < kLong); ++n) {
     made.solver.reset();
     const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);

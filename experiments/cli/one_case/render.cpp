@@ -44,7 +44,7 @@ fs::path output_of(const Options& options, const std::string& scene) {
   return scene + (options.video ? ".mp4" : options.sheet ? "-sheet.png" : ".png");
 }
 
-/// Throws InputError before anything is simulated: the name of the output is wrong.
+/// Throws InputError if the name of the output is wrong, before anything is simulated.
 void check_output(const Options& options) {
   if (options.video && options.sheet)
     throw InputError("give only one of --video (or -o NAME.mp4) and --sheet");
@@ -56,7 +56,8 @@ void check_output(const Options& options) {
     throw InputError("-o " + options.output + ": expected a name that ends in " + suffix);
 }
 
-/// What the options say of the drawing, but its moments. Throws InputError before anything is run.
+/// The drawing that the options describe, without its moments. Throws InputError before anything is
+/// run.
 Drawing drawing_of(const Options& options) {
   Drawing drawing;
   if (options.video) drawing.kind = Drawing::Kind::video;
@@ -70,8 +71,8 @@ Drawing drawing_of(const Options& options) {
   return drawing;
 }
 
-/// Moments that were asked for, ascending; a run ends with the last of them where nothing later is
-/// seen. Throws InputError: one is not within the scene's time.
+/// Requested moments in ascending order. If nothing later is shown, the run is shortened to end
+/// with the last of them. Throws InputError if one lies outside the scene's time.
 std::vector<double> times_of(const Options& options, std::vector<std::string>& overrides) {
   std::vector<double> times;
   for (const std::string& at : options.at) times.push_back(parse_number(at));

@@ -21,7 +21,7 @@ struct Options {
   Format format;
 };
 
-/// The lines of `nodes`: what --sshlogin and --node-file say; "" if neither does.
+/// The lines of the file `nodes`, from --sshlogin and --node-file; "" without either.
 std::string nodes_of(const Options& o) {
   std::string nodes = o.node_file.empty() ? "" : read_text(o.node_file);
   for (const std::string& login : o.logins) nodes += login + '\n';

@@ -19,7 +19,7 @@ int run(const Options& options) {
   if (store.reading())
     csv.emplace(study, store);
   else
-    each_case(study, [](Case&&) {});  // what is wrong with it is said first
+    each_case(study, [](Case&&) {});  // reports errors of the study first
   if (!csv || csv->stored() == 0)
     throw InputError("no case of study '" + study.name + "' is in " + options.results +
                      " as this build would run it; taut run " + study_words(study) + " makes them" +

@@ -13,7 +13,8 @@ struct Options {
   bool json = false;
 };
 
-/// "mine" or "sub/mine.toml" -> the file; letters, digits, '-', '_' and '.' in its name.
+/// File for a name: "mine" or "sub/mine.toml". Its name consists of letters, digits, '-', '_' and
+/// '.'.
 std::filesystem::path file_of(const std::string& name) {
   std::filesystem::path file = name.ends_with(".toml") ? name : name + ".toml";
   const std::string stem = file.stem();
@@ -26,7 +27,7 @@ std::filesystem::path file_of(const std::string& name) {
   return file;
 }
 
-/// The template of the kind has @ where the name goes.
+/// Fills in the template of the kind, which has @ in place of the name.
 int run(const Options& o) {
   const std::filesystem::path file = file_of(o.name);
   std::string text = read_text(data_folder() / "templates" / (o.kind + ".toml"));

@@ -15,8 +15,8 @@ struct Options {
   bool no_title = false, json = false;
 };
 
-/// What the command line asks for; without --kind, --x and --y the pictures that the study asks
-/// for.
+/// The pictures that the command line requests; without --kind, --x and --y, those that the study
+/// requests.
 std::vector<report::FigureRequest> wanted(const Options& options, const Study& study) {
   using Title = report::FigureRequest::Title;
   std::vector<report::FigureRequest> all;
@@ -64,7 +64,7 @@ int run(const Options& options) {
       } catch (const InputError& error) {
         throw InputError(key + error.diagnostics().front().message);
       }
-  make_folder(out);  // what cannot be written is said once, not for every scene
+  make_folder(out);  // reports a folder that cannot be written once, not for every scene
   report::StudyFigures figures;
   bool drawn = true;
   try {

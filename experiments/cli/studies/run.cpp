@@ -56,7 +56,7 @@ int run(Options options) {
   }
   const Shard shard = Shard::parse(options.shard);
   if (!options.build.empty()) setenv("TAUT_BUILD_ID", options.build.c_str(), 1);
-  given_build();  // is one
+  given_build();  // throws InputError if the text names no valid build
   const std::vector<Study> studies =
       load_studies_to_plot(options.studies, options.preset, options.steps);
   const std::vector<StudyCases> cases = cases_of_each(studies);

@@ -14,7 +14,7 @@ struct Options : BaselineOptions {
   Format format;
 };
 
-/// A baseline is made of results of all its cases.
+/// Whether all cases have results, which a baseline requires. Reports those that were not run.
 bool complete(const BaselineStudy& study) {
   for (const std::string& id : study.not_run)
     std::cerr << study.name << ": " << id << ": was not run\n";
@@ -43,7 +43,7 @@ int diff(const Options& options) {
   return comparison.findings.empty() ? kPass : kRegression;
 }
 
-/// Appends the reason; the file says in the order of time why the baseline is what it is.
+/// Appends the reason. The file explains, in order of time, why the baseline is what it is.
 void note_reason(const BaselineStudy& study, const std::string& why, const Comparison& changes) {
   const std::filesystem::path file = study.folder / "why.md";
   std::string text = std::filesystem::exists(file) ? read_text(file)
@@ -64,7 +64,8 @@ int update(Options options) {
   const BaselineStudy study = baseline_study(options.study, options, false);
   if (const int code = early_exit(study); code != kPass) return code;
   const Comparison changes = study.compare();
-  if (!changes.findings.empty()) {  // what cannot be written is said before anything is printed
+  // A file that cannot be written is reported before anything is printed.
+  if (!changes.findings.empty()) {
     write_baseline(study.folder, updated(study.before, study.now, study.tolerances));
     note_reason(study, options.why, changes);
   }

@@ -15,7 +15,7 @@ struct Options : BaselineOptions {
   Format format;
 };
 
-/// Adds what each study costs over the kept build; whether anything is slower.
+/// Adds the cost of each study relative to the kept build. Returns whether anything is slower.
 bool add_speed(Answer& answer, const std::vector<std::string>& studies, const Options& options) {
   const std::filesystem::path folder = folder_of_build(options.out, options.against);
   Store store(options.out);
@@ -31,7 +31,8 @@ bool add_speed(Answer& answer, const std::vector<std::string>& studies, const Op
 }
 
 int check(const Options& options) {
-  if (options.speed) folder_of_build(options.out, options.against);  // before anything runs
+  // Reports errors before anything runs.
+  if (options.speed) folder_of_build(options.out, options.against);
   Check found = check_studies(options.studies, options, options.strict);
   if (options.speed && found.end != CheckEnd::interrupted) {
     const auto studies =

@@ -26,7 +26,7 @@ struct Check {
   bool good = true;
 };
 
-/// Seconds of CPU time for a fixed piece of arithmetic, about 5 ms.
+/// CPU time of a fixed amount of arithmetic, about 5 ms [s].
 double fixed_work() {
   const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
   volatile double sink = 1;
@@ -34,7 +34,7 @@ double fixed_work() {
   return seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
-/// Half the spread between quartiles of the time of identical code, over its median.
+/// Half the interquartile range of the time of identical code, relative to its median.
 double noise() {
   std::vector<double> times(21);
   for (double& time : times) time = fixed_work();
@@ -57,7 +57,7 @@ Check writable(const fs::path& results) {
 }
 
 Check arithmetic() {
-  // Extended precision or contraction would give another remainder.
+  // With extended precision or contraction the result would not be 0.
   volatile double a = 1 + DBL_EPSILON, b = 1 - DBL_EPSILON;
   const double product = a * b - 1;
   const bool exact = FLT_EVAL_METHOD == 0 && product == 0;
@@ -95,8 +95,8 @@ std::vector<Check> examine() {
   return all;
 }
 
-/// What keys of stored results contain of each solver. One that is a program of its own is in no
-/// layer of this one.
+/// A table of the digests of each solver that keys of stored results contain. A solver that is a
+/// program of its own belongs to no layer of this one.
 Table fingerprints() {
   Table table{"fingerprints",
               "what solvers are made of",

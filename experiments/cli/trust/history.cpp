@@ -17,7 +17,7 @@ struct Options : Walk {
   Format format;
 };
 
-/// How it ended; the last build is what continuous integration asks about.
+/// Exit code; continuous integration asks about the last build.
 int exit_code(const History& history) {
   if (history.compared == 0) return kNothing;
   if (history.last_stepped()) return kRegression;

@@ -14,11 +14,11 @@ struct Options {
   std::vector<std::string> names, solvers;
   int section = 0, jobs = 2;
   bool assertions = false, update = false, list = false, record = false;
-  bool here = false;  ///< in this process
+  bool here = false;  ///< whether to check in this process
   Format format;
   std::string baselines, out;
 
-  /// Whether every truth that an assertion rests on is checked, for every solver.
+  /// Whether every truth that an assertion rests on is checked for every solver.
   bool of_all_assertions() const { return names.empty() && solvers.empty() && section == 0; }
 };
 
@@ -34,7 +34,7 @@ std::vector<const TruthEntry*> choose(const Options& options) {
   return chosen;
 }
 
-/// Holds the verdicts of assertions to those that were kept, or keeps them.
+/// Compares the verdicts on assertions with the kept ones, or keeps them.
 int compare_with_baseline(const Answer& answer, const Options& options) {
   const std::filesystem::path file = assertion_baseline(options.baselines);
   if (options.update) {

@@ -1,4 +1,4 @@
-// taut-solver/1 for C++17, no dependency: copy this file beside your solver.
+// The protocol taut-solver for C++17, without dependencies: copy this file beside your solver.
 //
 //     struct Mine {
 //       using Json = taut_solver::Json;
@@ -6,23 +6,24 @@
 //       static constexpr const char* kAbout =
 //           R"("name": "mine", "version": "1.0", "params": {"iterations":
 //              {"type": "integer", "min": 1, "max": 1000, "default": 8, "doc": "Sweeps"}})";
-//       // Optional; it gets no scenes with anything else. "taut-solver/1": rigid links; planes,
-//       // balls and boxes. /2: also elastic links, bending, capsules, seams, pins that let go.
-//       // /3: also bodies of triangles. /4: also bodies that deform.
+//       // Optional: the newest protocol that it knows; newer scenes are then not sent to it.
+//       // "taut-solver/1" (the default): rigid links; planes, balls and boxes. /2: also elastic
+//       // links, bending, capsules, seams, pins that let go. /3: also bodies of triangles. /4:
+//       // also bodies that deform.
 //       static constexpr const char* kProtocol = "taut-solver/2";
-//       // Why the scene would be misread; empty: it is not.
+//       // Reasons why the scene would be misread; empty if it is read correctly.
 //       static std::vector<std::string> cannot(const Json& scene, const Json& params);
 //       Mine(const Json& scene, const Json& params);  // scene["dt"].number, ...
 //       void load(const double* x, const double* v);  // start here: 3n [m] and 3n [m/s]
 //       void step(double t, double dt);               // advance from t to t + dt [s]
 //       void store(double* x, double* v) const;       // 3n each
-//       // "" or more members of the answer to "scene" (its plan, its settings), after a comma.
+//       // "", or further members of the answer to "scene" (plan, settings), after a comma.
 //       std::string extras() const;
 //     };
 //     int main() { return taut_solver::serve<Mine>(); }
 //
-// A new version for every change that moves results. Standard output belongs to the protocol: print
-// to standard error. MIT licence, as taut.
+// Change the version with every change that alters results. Standard output belongs to the
+// protocol: print to standard error. MIT licence, as taut.
 #pragma once
 
 #include <cstdio>
@@ -41,7 +42,7 @@
 
 namespace taut_solver {
 
-/// A JSON value: what a scene file and a request consist of.
+/// A JSON value, as in scene files and requests.
 struct Json {
   enum class Kind { null, boolean, number, text, array, object } kind = Kind::null;
   double number = 0;  ///< 1 for true
@@ -57,7 +58,7 @@ struct Json {
   const Json& operator[](std::size_t i) const { return items.at(i); }
   std::size_t size() const { return items.size(); }
   int integer() const { return static_cast<int>(number); }
-  /// Null, false, 0, "" and [] are nothing.
+  /// False for null, false, 0, "" and [].
   bool something() const {
     return number != 0 || !text.empty() || !items.empty() || !members.empty();
   }
@@ -68,7 +69,7 @@ struct Json {
   }
 };
 
-/// Reads one value; throws std::runtime_error if there is none.
+/// Reads one value. Throws std::runtime_error if the text is not exactly one value.
 class JsonParser {
  public:
   static Json parse(const std::string& text) {
@@ -167,7 +168,7 @@ class JsonParser {
         case 'f':
           s += '\f';
           break;
-        case 'u':  // names outside ASCII are not looked at
+        case 'u':  // characters outside ASCII are not needed
           for (int k = 0; k < 4; ++k)
             if (*++at_ == '\0') fail();
           s += '?';

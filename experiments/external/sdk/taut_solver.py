@@ -1,24 +1,24 @@
-"""taut-solver/1 for Python 3.8 and later, standard library alone: copy this file beside your solver.
+"""The protocol taut-solver for Python 3.8 and later, without dependencies: copy this file beside your solver.
 
     class Mine:
-        name, version = "mine", "1.0"         # a new version for every change that moves results
+        name, version = "mine", "1.0"         # change the version with every change that alters results
         params = {"iterations": {"type": "integer", "min": 1, "max": 1000, "default": 8, "doc": "Sweeps"}}
         def __init__(self, scene, params): ...  # scene: the scene file as a dict; params["iterations"]
         def load(self, x, v): ...               # start here: array('d') of 3n [m] and 3n [m/s]
         def step(self, t, dt): ...              # advance from t to t + dt [s]
-        def store(self): ...                    # gives x and v: 3n numbers each (array, list, numpy)
+        def store(self): ...                    # returns x and v: 3n numbers each (array, list, numpy)
 
     taut_solver.serve(Mine)
 
 Optional:
-    protocol                 version, by what the solver must handle; it gets no scenes with anything else:
+    protocol                 the newest version that the solver knows; scenes that need a newer one are not sent to it:
         "taut-solver/1"      rigid links; planes, balls and boxes (the default)
         "taut-solver/2"      also elastic links (stiffness), bending stiffness (bending), capsules, seams, pins that let go
         "taut-solver/3"      also bodies of triangles
         "taut-solver/4"      also bodies that deform
     summary, source          texts
-    unmeasurable             why its CPU time says nothing, "it computes on a GPU"; then no cost is published
-    cannot(scene, params)    static method: a list of reasons why the scene would be misread
+    unmeasurable             why its CPU time means nothing, "it computes on a GPU"; then no cost is published
+    cannot(scene, params)    static method: a list of reasons why the scene would be misread; empty if it is read correctly
     plan()                   list of {"pass", "items", "repeats", "bytes", "projections"}
     settings()               dict of texts
 Standard output belongs to the protocol: print() goes to standard error here. MIT licence, as taut.
@@ -35,7 +35,7 @@ PROTOCOL = "taut-solver/1"
 
 def serve(solver):
     requests, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # print() must not reach the protocol
+    os.dup2(2, 1)  # print() must not write into the protocol
     state = {"live": None, "vertices": 0}
 
     def hello(request):
@@ -76,7 +76,7 @@ def serve(solver):
             if request["op"] not in known:
                 raise ValueError(f"unknown op {request['op']!r}")
             answer = known[request["op"]](request)
-        except Exception as error:  # includes MemoryError: the answer begins with its name
+        except Exception as error:  # includes MemoryError: the answer starts with its name
             answer = {"error": f"{type(error).__name__}: {error}"}
         answers.write(json.dumps(answer).encode() + b"\n" + state["bytes"])
         answers.flush()

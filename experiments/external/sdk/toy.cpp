@@ -39,13 +39,13 @@ struct Toy {
   }
 
   void step(double, double dt) {
-    for (std::size_t k = 0; k < x.size(); ++k) {  // Verlet; a pin has the inverse mass 0
+    for (std::size_t k = 0; k < x.size(); ++k) {  // Verlet; pins have inverse mass 0
       const double now = x[k];
       if (w[k / 3] > 0) x[k] += now - before[k] + dt * dt * gravity[k % 3];
       before[k] = now;
     }
     for (int sweep = 0; sweep < sweeps; ++sweep)
-      for (const auto& [a, b, rest] : links) {  // each gets its rest length in turn
+      for (const auto& [a, b, rest] : links) {  // restores each rest length in turn
         double *p = &x[3 * a], *q = &x[3 * b];
         const double d[] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, both = w[a] + w[b];
         const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);

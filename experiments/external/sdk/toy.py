@@ -26,14 +26,14 @@ class Toy:
 
     def step(self, t, dt):
         x, before = self.x, self.before
-        for i, w in enumerate(self.w):  # Verlet; a pin has the inverse mass 0
+        for i, w in enumerate(self.w):  # Verlet; pins have inverse mass 0
             for k in range(3 * i, 3 * i + 3):
                 now = x[k]
                 if w > 0:
                     x[k] += now - before[k] + dt * dt * self.gravity[k % 3]
                 before[k] = now
         for _ in range(self.sweeps):
-            for a, b, rest, family in self.links:  # each gets its rest length in turn
+            for a, b, rest, family in self.links:  # restores each rest length in turn
                 w, i, j = self.w[a] + self.w[b], 3 * a, 3 * b
                 d = [x[j] - x[i], x[j + 1] - x[i + 1], x[j + 2] - x[i + 2]]
                 length = math.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])

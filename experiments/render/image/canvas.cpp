@@ -22,8 +22,8 @@ namespace taut {
 
 namespace {
 
-/// Share of a pixel on the inner side of an edge whose signed distance (negative inside) from the
-/// pixel's centre is known.
+/// Share of a pixel that lies inside an edge, from the signed distance of the pixel's centre to the
+/// edge (negative inside).
 double inner_share(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
 
 double distance_to_rounded(double px, double py, double half_width, double half_height,
@@ -32,7 +32,7 @@ double distance_to_rounded(double px, double py, double half_width, double half_
   return std::hypot(std::max(x, 0.0), std::max(y, 0.0)) + std::min(std::max(x, y), 0.0) - radius;
 }
 
-/// Takes one code point off the front of `text`; a malformed byte counts as U+FFFD.
+/// Removes the first code point of `text` and returns it; a malformed byte yields U+FFFD.
 int next_code_point(std::string_view& text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
@@ -71,7 +71,7 @@ struct Font {
   }
   Font(const Font&) = delete;  // `info` points into `bytes`
   Font& operator=(const Font&) = delete;
-  /// Calls `plot(x, y, coverage)` for each pixel of the text whose baseline starts at (x, y);
+  /// Calls `plot(x, y, coverage)` for each pixel of the text, whose baseline starts at (x, y), and
   /// returns the advance in pixels. `size` is the em in pixels.
   double draw(double x, double y, std::string_view utf8, double size,
               const std::function<void(int, int, double)>& plot) const;
@@ -110,8 +110,8 @@ double Font::draw(double x, double y, std::string_view utf8, double size,
   return x - start;
 }
 
-/// DejaVu Sans of Debian's fonts-dejavu-core; read once. Throws InputError that lists the folders
-/// searched ($TAUT_FONTS first).
+/// DejaVu Sans from Debian's fonts-dejavu-core, read once. If it is missing, throws InputError,
+/// which lists the folders searched: $TAUT_FONTS alone if it is set.
 const Font& font(Weight weight) {
   if (weight == Weight::bold) {
     static const Font bold(read_font("DejaVuSans-Bold.ttf"));

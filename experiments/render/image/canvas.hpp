@@ -15,7 +15,7 @@ struct Point {
 enum class Weight { regular, bold };
 enum class Align { left, centre, right };
 
-/// How text looks: DejaVu Sans, anti-aliased, kerned.
+/// Style of text. The typeface is DejaVu Sans, anti-aliased and kerned.
 struct TextStyle {
   double size = 16;  ///< em in pixels
   Rgb8 colour;
@@ -23,7 +23,7 @@ struct TextStyle {
   Align align = Align::left;
 };
 
-/// Draws flat shapes and text on an image, all of it anti-aliased.
+/// Draws flat, anti-aliased shapes and text on an image.
 class Canvas {
  public:
   explicit Canvas(Image& image) : image_(image) {}
@@ -31,9 +31,10 @@ class Canvas {
   void fill_rounded(double x, double y, double width, double height, double radius, Rgb8,
                     double opacity = 1);
   void disc(Point centre, double radius, Rgb8);
-  /// Three corners in any order.
+  /// Accepts the corners in any order.
   void triangle(const std::array<Point, 3>&, Rgb8);
-  /// At baseline point `at`; returns the advance in pixels. Throws InputError if no font is found.
+  /// Draws text whose baseline starts at `at` and returns its advance in pixels. Throws InputError
+  /// if no font is found.
   double text(Point at, std::string_view utf8, const TextStyle&);
 
  private:

@@ -62,12 +62,13 @@ std::vector<Rgb8> tabulate(const Function& colour) {
   return table;
 }
 
-constexpr double kLight = 0.955, kDark = 0.445;  ///< lightness at zero and at the ends
+/// OKLab lightness at zero and at both ends of the strain map.
+constexpr double kLight = 0.955, kDark = 0.445;
 
-/// How each of them is named and shown, in the order of the enumeration.
+/// Name and appearance of each ColourBy, in the order of the enumeration.
 struct Style {
   const char *name, *title;
-  double shown;  ///< number of units in one of SI
+  double shown;  ///< displayed units per SI unit
   const char* unit;
   const ColourMap& (*map)();
 };

@@ -8,15 +8,16 @@
 namespace taut {
 
 /// A colour map: a table of sRGB colours over [0, 1]. Everything that shows data (cloth, colour
-/// bar, inset) takes its colours from here.
+/// bar, inset) takes its colours from one of these.
 class ColourMap {
  public:
-  static constexpr int kSize = 513;  ///< odd: the middle is an entry
-  /// Blue, near-white in the middle, red: symmetric in OKLab lightness, so that folds stay visible
-  /// and neither sign looks louder. OKLab: Ottosson 2020.
+  static constexpr int kSize = 513;  ///< odd, so that the middle is an entry
+  /// Blue to near-white to red. Its lightness is symmetric in OKLab (Ottosson 2020), so that folds
+  /// stay visible and neither sign stands out more than the other.
   static const ColourMap& diverging();
-  /// Near-white to violet (penetration) or to deep teal (speed).
+  /// Near-white to violet, for penetration.
   static const ColourMap& violet();
+  /// Near-white to deep teal, for speed.
   static const ColourMap& teal();
 
   Rgb8 at(double s) const;  ///< s is clamped to [0, 1]
@@ -27,17 +28,17 @@ class ColourMap {
   std::vector<Rgb8> table_;
 };
 
-/// What colours the cloth.
+/// The quantity that colours the cloth.
 enum class ColourBy {
-  strain,       ///< mean strain of the structural links at a vertex, signed
+  strain,       ///< mean signed strain of the structural and shear links at a vertex
   penetration,  ///< depth below the surface of a collider, m
   speed         ///< m/s
 };
 
 ColourBy parse_colour_by(const std::string&);  ///< throws InputError
 
-/// How numbers become colours: [low, high] is the bar; what lies beyond takes the end's colour and
-/// is announced by the bar's arrows.
+/// Maps numbers to colours. [low, high] is the range of the colour bar; values beyond it get the
+/// colour of the nearer end, which the arrows of the bar stand for.
 struct ColourScale {
   ColourBy colour_by = ColourBy::strain;
   double high = 1;  ///< SI units, > 0; low is -high for strain, 0 otherwise
@@ -46,14 +47,14 @@ struct ColourScale {
   double position(double value) const { return (value - low()) / (high - low()); }
   const ColourMap& map() const;
   Rgb8 colour(double value) const { return map().at(position(value)); }
-  double shown() const;                  ///< number of shown units in one of SI: 100 for %
+  double shown() const;                  ///< displayed units per SI unit: 100 for %
   std::string title() const;             ///< "mean edge strain ε at each vertex"
-  std::string text(double value) const;  ///< "+2 %", "1.5 mm", "0.8 m/s": three digits
-  std::vector<double> ticks() const;     ///< both ends and round numbers between
+  std::string text(double value) const;  ///< three significant digits: "+2 %", "1.5 mm", "0.8 m/s"
+  std::vector<double> ticks() const;     ///< both ends, and round numbers between them
 };
 
-/// The smallest round number (1, 1.5, 2, 3, 4, 5, 6, 8 x 10^k) that is not below `value`; at least
-/// `least`. Precondition: both positive.
+/// Smallest round number (1, 1.5, 2, 3, 4, 5, 6, 8 x 10^k) that is at least max(value, least).
+/// Precondition: both positive.
 double round_up(double value, double least);
 
 double linear_of(std::uint8_t srgb);  ///< sRGB transfer function: [0, 255] -> [0, 1]

@@ -33,7 +33,7 @@ class Image {
   Rgb8& at(int x, int y) { return pixels_[index(x, y)]; }
   const Rgb8& at(int x, int y) const { return pixels_[index(x, y)]; }
   const std::vector<Rgb8>& pixels() const { return pixels_; }
-  /// Copies `part` to (x, y); what lies outside is dropped.
+  /// Copies `part` to (x, y) and drops the pixels that fall outside.
   void paste(const Image& part, int x, int y);
 
  private:
@@ -48,7 +48,7 @@ class Image {
 /// The mean of each k x k block. Precondition: k divides both sides.
 Image shrunk(const Image&, int k);
 
-/// PNG, without a time stamp: the same image gives the same bytes.
+/// PNG without a time stamp: the same image gives the same bytes.
 std::string png_bytes(const Image&);
 void write_png(const std::filesystem::path&, const Image&);  ///< throws InputError
 

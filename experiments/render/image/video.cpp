@@ -11,7 +11,7 @@ namespace taut {
 
 namespace {
 
-/// A command of words that hold no blank.
+/// The words of a command. No word may contain a blank.
 std::vector<std::string> split(const std::string& text) {
   std::istringstream in(text);
   return {std::istream_iterator<std::string>(in), {}};

@@ -17,34 +17,34 @@ struct FrameRate {
 /// Nearest fraction to 1 / seconds with a numerator of at most six digits.
 FrameRate frame_rate(double seconds);
 
-/// Feeds frames to ffmpeg through a pipe: H.264, yuv420p, BT.709 tags and conversion, index at the
-/// front, a key frame every 12 frames so that scrubbing is quick, the same bytes for the same
-/// frames.
+/// Pipes frames to ffmpeg, which writes H.264 in yuv420p, converted to and tagged as BT.709. The
+/// index is at the front, and every twelfth frame is a key frame so that scrubbing is quick. The
+/// same frames give the same bytes.
 class VideoWriter {
  public:
   struct Options {
     int width = 0, height = 0;  ///< even
     FrameRate rate;
-    int crf = 25;  ///< x264's constant rate factor: smaller is better and larger
+    int crf = 25;  ///< x264's constant rate factor: smaller is better, but gives a larger file
   };
   VideoWriter(const std::filesystem::path& mp4, const Options&);
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
-  /// False once ffmpeg is gone: stop drawing and call finish().
+  /// False once ffmpeg has exited: the caller should stop drawing and call finish().
   bool write(const Image&);
-  /// "" if the file is there; otherwise why not ("ffmpeg is not installed").
+  /// "" on success, otherwise the reason why there is no file ("ffmpeg is not installed").
   std::string finish();
 
  private:
   std::filesystem::path path_, temporary_;
   Options options_;
-  EndsWithProgram with_program_;  ///< of the temporary file
+  EndsWithProgram with_program_;  ///< removes the temporary file when a signal ends the program
   std::string failure_;
   std::optional<Process> ffmpeg_;
 };
 
-/// The frame as JPEG by ffmpeg; "" without it.
+/// The frame as JPEG, encoded by ffmpeg; "" without ffmpeg.
 std::string jpeg_bytes(const Image&);
 
 }  // namespace taut

@@ -56,9 +56,9 @@ Vec3 up_direction(const Scene& scene) {
 
 namespace {
 
-/// Which way the camera looks; no place yet.
+/// Camera with its orientation set but not its position.
 Camera turned(const Vec3& up, const View& view) {
-  // Azimuth 0 is +z, or what of it is level; +x if up is along z.
+  // Azimuth 0 is the level part of +z, or of +x if up is along z.
   Vec3 ahead = Vec3::UnitZ() - up * up.z();
   if (ahead.norm() < 0.1) ahead = Vec3::UnitX() - up * up.x();
   ahead.normalize();
@@ -75,9 +75,9 @@ Camera turned(const Vec3& up, const View& view) {
   return camera;
 }
 
-/// One direction of the picture. A point p is seen at
-/// s = (p.axis - e.axis) / ((e.back - p.back) tan): s <= high and s >= low are linear in the eye e.
-/// `most` and `least` are the tightest of them over all points:
+/// Constraints on the eye e along one axis of the picture. A point p appears at
+/// s = (p.axis - e.axis) / ((e.back - p.back) tan), so s <= high and s >= low are linear in e.
+/// `most` and `least` are the tightest bounds over all points:
 ///     e.axis + high tan e.back >= most,    e.axis + low tan e.back <= least
 struct Bounds {
   double low, high, most = -1e300, least = 1e300;
@@ -97,7 +97,7 @@ Bounds bounds(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& bac
 
 struct Fit {
   Camera camera;
-  double distance = 0;  ///< m, of the eye along the line of sight
+  double distance = 0;  ///< m, of the eye along the line of sight, from the origin
 };
 
 Fit fit(const std::vector<Vec3>& points, Camera camera, double aspect, const FitRegion& frame) {

@@ -8,8 +8,9 @@ namespace taut {
 
 namespace {
 
-/// Mesa's off-screen library (dropped from Mesa in 25.1). Names and values: GL/osmesa.h. It stays
-/// open until the process ends: Mesa's threads and caches outlive a context.
+/// Mesa's off-screen library, which Mesa dropped in 25.1. Names and values are those of
+/// GL/osmesa.h. The library stays open until the process ends, because Mesa's threads and caches
+/// outlive a context.
 struct OsMesa {
   OsMesa() {
     void* const library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
@@ -42,7 +43,7 @@ const OsMesa& osmesa() {
 GlContext::GlContext() {
   constexpr int kFormat = 0x22, kProfile = 0x33, kCore = 0x34, kMajor = 0x36, kMinor = 0x37;
   const int wanted[] = {kFormat, GL_RGBA, kProfile, kCore, kMajor, 3, kMinor, 3, 0};
-  static unsigned char surface[4];  // a pixel that nobody draws to
+  static unsigned char surface[4];  // one pixel, never drawn to
   context_ = osmesa().create(wanted, nullptr);
   if (!context_) throw InputError("libOSMesa.so.8 makes no OpenGL 3.3 core context");
   if (osmesa().make_current(context_, surface, GL_UNSIGNED_BYTE, 1, 1)) return;

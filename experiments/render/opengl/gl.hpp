@@ -1,15 +1,15 @@
 #pragma once
 
-#define GL_GLEXT_PROTOTYPES  // for the types of the functions below
+#define GL_GLEXT_PROTOTYPES  // declares the types of the functions below
 #include <GL/glcorearb.h>
 
 #include <string>
 
 namespace taut {
 
-/// The functions of OpenGL 3.3 core that the renderer calls, opened when the first context is made.
-/// Linked, Mesa and its LLVM would be loaded by every process of every case: 30 ms at each start
-/// instead of 1 ms.
+/// The functions of OpenGL 3.3 core that the renderer calls. They are loaded when the first context
+/// is made. If they were linked, the process of every case would load Mesa and its LLVM: 30 ms at
+/// each start instead of 1 ms.
 // clang-format off
 #define TAUT_GL_FUNCTIONS(X)                                                                       \
   X(glActiveTexture) X(glAttachShader) X(glBindBuffer) X(glBindFramebuffer) X(glBindRenderbuffer)  \
@@ -32,11 +32,12 @@ namespace taut {
 TAUT_GL_FUNCTIONS(TAUT_GL_DECLARE)
 #undef TAUT_GL_DECLARE
 
-/// An off-screen OpenGL 3.3 core context of Mesa's software rasteriser, OSMesa: no display,
-/// graphics card or network. Current on the thread that made it; draw to framebuffer objects only.
+/// An off-screen OpenGL 3.3 core context of Mesa's software rasteriser, OSMesa, which needs no
+/// display, graphics card or network. It is current on the thread that made it. Draw only to
+/// framebuffer objects.
 class GlContext {
  public:
-  GlContext();  ///< throws InputError with the reason if the machine has no OSMesa
+  GlContext();  ///< throws InputError with the reason if there is no usable OSMesa
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;

@@ -8,9 +8,10 @@ namespace taut {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kGoldenAngle = 2.3999632f;  ///< Vogel's spiral covers discs and domes evenly
+/// Angle between successive points of Vogel's spiral, which covers discs and domes evenly.
+constexpr float kGoldenAngle = 2.3999632f;
 
-/// Directions spread over a disc of angular radius `spread` around `centre`.
+/// Adds lights spread over a disc of angular radius `spread` around `centre`.
 void add_disc(std::vector<Light>& lights, int count, const Vec3f& centre, float spread,
               float weight) {
   const Vec3f a = centre.unitOrthogonal(), b = centre.cross(a);
@@ -23,7 +24,7 @@ void add_disc(std::vector<Light>& lights, int count, const Vec3f& centre, float 
   }
 }
 
-/// Directions spread over the sky, evenly by solid angle.
+/// Adds lights spread over the sky, evenly by solid angle.
 void add_dome(std::vector<Light>& lights, int count, const Vec3f& up, const Vec3f& start,
               float weight) {
   const Vec3f b = up.cross(start);
@@ -41,7 +42,8 @@ void add_dome(std::vector<Light>& lights, int count, const Vec3f& up, const Vec3
 std::vector<Light> light_set(int count, const Vec3f& up, const Camera& camera) {
   const Vec3f toward = (camera.back - up * up.dot(camera.back)).normalized();
   const Vec3f right = up.cross(toward);
-  const auto from = [&](float azimuth, float elevation) {  // degrees; azimuth from the camera
+  // Both in degrees; azimuth is relative to the camera.
+  const auto from = [&](float azimuth, float elevation) {
     const float a = azimuth * kPi / 180, e = elevation * kPi / 180;
     return Vec3f(std::cos(e) * (std::cos(a) * toward + std::sin(a) * right) + std::sin(e) * up);
   };

@@ -12,17 +12,17 @@ struct Light {
   float weight = 0;
 };
 
-/// A fixed set of distant lights that together light a scene softly: a third of them a key disc
-/// from the camera's left, a sixth a broad fill from its right, half a sky dome. Shadows come out
-/// soft, corners dark, without noise and the same in every frame. Precondition:
-/// 6 <= count <= kMostLights.
+/// A fixed set of distant lights that light a scene softly. A third of them form a key disc on the
+/// camera's left, a sixth a broad fill on its right, and half a sky dome. Shadows are soft and
+/// corners dark, without noise and the same in every frame. Precondition: 6 <= count <=
+/// kMostLights.
 std::vector<Light> light_set(int count, const Vec3f& up, const Camera&);
 
-/// Where shadows fall beside the cloth, and where the ground's lines lie.
+/// The plane that shows the shadows around the cloth and the ground lines.
 struct Ground {
   Vec3f origin = Vec3f::Zero();                                       ///< its centre
   Vec3f u = Vec3f::UnitX(), v = Vec3f::UnitZ(), up = Vec3f::UnitY();  ///< unit, right-angled
-  float half_side = 1;                                                ///< m, of what is shaded
+  float half_side = 1;                                                ///< m, of the shaded square
 };
 
 /// How finely light is computed.
@@ -33,8 +33,8 @@ struct LightQuality {
 };
 inline constexpr int kMostLights = 96;
 
-/// What casts shadows lies in it. One that stays the same over a video makes shadows that do not
-/// shimmer.
+/// A sphere that contains everything that casts shadows. Keep it constant over a video, or the
+/// shadows shimmer.
 struct Sphere {
   Vec3f centre = Vec3f::Zero();
   float radius = 1;

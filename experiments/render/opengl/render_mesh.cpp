@@ -12,7 +12,7 @@ namespace taut {
 
 namespace {
 
-/// A regular grid of points with a value and a depth each.
+/// A regular grid of points, each with a value and a depth.
 struct Lattice {
   int nu = 0, nv = 0;
   std::vector<Vec3f> x;
@@ -22,8 +22,8 @@ struct Lattice {
   }
 };
 
-/// Refines along u by `pieces`: positions by Catmull-Rom with linear continuation at the ends,
-/// values linearly. The result is transposed, so that two calls refine both directions.
+/// Refines along u into `pieces` per quad side: positions with Catmull-Rom, continued linearly at
+/// the ends, values linearly. The result is transposed, so that two calls refine both directions.
 Lattice refine_and_transpose(const Lattice& in, int pieces) {
   Lattice out{in.nv, (in.nu - 1) * pieces + 1, {}, {}, {}};
   out.x.resize(in.x.size() / static_cast<std::size_t>(in.nu) * static_cast<std::size_t>(out.nv));
@@ -65,8 +65,8 @@ std::vector<std::array<std::uint32_t, 3>> lattice_triangles(int nu, int nv) {
   return triangles;
 }
 
-/// Adds a surface of rows x columns quads, two triangles each; at(j, i) returns the position and
-/// the normal of its point i of row j.
+/// Adds a surface of rows x columns quads with two triangles each. at(j, i) returns position and
+/// normal of point i in row j.
 template <class At>
 void append_surface(RenderMesh& mesh, int rows, int columns, float value, const At& at) {
   const auto first = static_cast<std::uint32_t>(mesh.position.size()),
@@ -212,14 +212,14 @@ RenderMesh ball_mesh(const Ball& ball, double inset, int segments) {
   return mesh;
 }
 
-/// A box whose edges are rounded by `radius`: points of the cube's faces, pulled to within the
-/// smaller box and pushed out by the radius.
+/// A box whose edges are rounded by `radius`: each point on the faces of the cube is clamped to the
+/// box that is smaller by `radius`, then pushed out by `radius`.
 RenderMesh box_mesh(const Box& box, double inset, double rounding, int pieces) {
   const Vec3 half = (box.half_extents.array() - inset).max(box.half_extents.array() * 0.5);
   const double radius = std::min(rounding, 0.4 * half.minCoeff());
   const Vec3 inner = half.array() - radius;
   RenderMesh mesh;
-  // Points crowd towards the edges, where the rounding is.
+  // Points are denser near the edges, where the rounding is.
   const auto place = [pieces](int k) {
     const double s = 2.0 * k / pieces - 1;
     return s * (1.5 - 0.5 * s * s);
@@ -253,7 +253,7 @@ RenderMesh plane_mesh(const Plane& plane, double inset, const Vec3& centre, doub
   return mesh;
 }
 
-/// A ball whose halves are apart.
+/// A ball cut in half, with the halves moved apart.
 RenderMesh capsule_mesh(const Capsule& capsule, double inset, int segments) {
   const int rings = segments / 2;
   const double radius = std::max(capsule.radius - inset, 0.5 * capsule.radius);
@@ -262,7 +262,7 @@ RenderMesh capsule_mesh(const Capsule& capsule, double inset, int segments) {
   const Vec3 other = side.cross(up);
   RenderMesh mesh;
   append_surface(mesh, rings + 1, segments, 0, [&](int j, int i) {
-    const bool upper = j <= rings / 2;  // the middle ring is there twice
+    const bool upper = j <= rings / 2;  // the middle ring exists twice
     const double down = std::numbers::pi * (upper ? j : j - 1) / rings;
     const double turn = 2 * std::numbers::pi * i / segments;
     const Vec3 out =
@@ -273,7 +273,7 @@ RenderMesh capsule_mesh(const Capsule& capsule, double inset, int segments) {
   return mesh;
 }
 
-/// Round where triangles meet at less than `kCrease`, with an edge elsewhere.
+/// Smooth where triangles meet at less than the angle of `kCrease`, with a sharp edge elsewhere.
 RenderMesh body_mesh(const MeshBody& body, double inset) {
   constexpr double kCrease = 0.8;  // cosine: 37 degrees
   const TriangleMesh& mesh = *body.mesh;
@@ -305,7 +305,7 @@ RenderMesh body_mesh(const MeshBody& body, double inset) {
   return drawn;
 }
 
-/// The depth [m] up to which it is clear on which side of the collider cloth belongs.
+/// Depth [m] up to which the side of the collider on which cloth belongs is unambiguous.
 double liftable(const Ball& ball, const Scene&) { return 0.2 * ball.radius; }
 double liftable(const Box& box, const Scene&) { return 0.2 * box.half_extents.minCoeff(); }
 double liftable(const Capsule& capsule, const Scene&) { return 0.2 * capsule.radius; }

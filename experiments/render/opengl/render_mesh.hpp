@@ -9,32 +9,32 @@
 
 namespace taut {
 
-/// A surface to be drawn: triangles with what the shader needs at each vertex.
+/// A surface to draw: triangles, with the data that the shader needs at each vertex.
 struct RenderMesh {
   std::vector<Vec3f> position;      ///< m
   std::vector<Vec3f> normal;        ///< unit
-  std::vector<Eigen::Vector2f> uv;  ///< of a sheet: material coordinates in quads
-  std::vector<float> hidden;        ///< of a sheet: particles' depth below a collider [m]
-  std::vector<float> value;         ///< the quantity that colours it, SI
+  std::vector<Eigen::Vector2f> uv;  ///< of a sheet only: material coordinates in quads
+  std::vector<float> hidden;  ///< of a sheet only: depth of its particles below a collider [m]
+  std::vector<float> value;   ///< the quantity that colours it, SI
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
-  /// Area-weighted means of the faces' normals.
+  /// Sets the normals to the area-weighted means of the faces' normals.
   void compute_normals();
 };
 
-/// Makes the mesh of one scene's cloth again and again: what does not move is computed once.
-/// A sheet is drawn as the Catmull-Rom surface through its particles (it passes through each of
-/// them), a mesh as it is, cloth without triangles as a tube along its links.
+/// Makes meshes of one scene's cloth, and computes only once what does not change between them. A
+/// sheet is drawn as the Catmull-Rom surface through its particles, a mesh as it is, and cloth
+/// without triangles as a tube along its links.
 class ClothMesher {
  public:
-  /// `finest`: at most this many quads along a side; coarser sheets are refined towards it.
+  /// `finest`: most quads along a side. Coarser sheets are refined up to it.
   ClothMesher(const Scene&, int finest);
   /// Preconditions: x, values and depths (below colliders, m) have the scene's size; x is finite.
   RenderMesh mesh(const std::vector<Vec3>& x, const std::vector<double>& values,
                   const std::vector<double>& depths) const;
-  /// Quads between two lines of the material grid; 0: no grid.
+  /// Quads between two lines of the material grid; 0 if there is no grid.
   int grid_spacing() const { return grid_spacing_; }
-  /// Of a link [m].
+  /// Mean rest length of the links [m].
   double mean_rest_length() const { return mean_rest_; }
 
  private:
@@ -50,20 +50,23 @@ class ClothMesher {
 
 /// How colliders are drawn.
 struct ColliderLook {
-  double inset = 0;            ///< m that they are smaller, so that cloth on them is not pierced
-  double rounding = 0;         ///< m: radius of a box's edges, which coarse triangles cut
-  Vec3 centre = Vec3::Zero();  ///< planes are a square patch around this point
-  double reach = 1;            ///< m, half its side
-  int segments = 72;           ///< of a full circle; flat faces have pieces in proportion
+  /// m by which colliders are drawn smaller, so that they do not pierce cloth that lies on them.
+  double inset = 0;
+  /// m: radius of a box's edges, so that coarse triangles of cloth do not cut into them.
+  double rounding = 0;
+  Vec3 centre = Vec3::Zero();  ///< a plane is drawn as a square patch around this point
+  double reach = 1;            ///< m, half the side of that patch
+  int segments = 72;           ///< of a full circle; flat faces get a proportional number
 };
 /// A collider at its place at time t.
 RenderMesh collider_mesh(const Collider&, double t, const ColliderLook&);
 
-/// Moves what is less than `clearance` [m] outside a collider, or inside but not deep, to just
-/// outside: cloth that sinks into a ball stays visible, the renderer hatches it by `hidden`.
+/// Moves vertices that lie less than `clearance` [m] outside a collider, or slightly inside it, to
+/// `clearance` outside. Cloth that sinks into a ball thus stays visible; the renderer hatches it
+/// according to `hidden`.
 void lift_out_of_colliders(RenderMesh&, const Scene&, double t, double clearance);
 
-/// A ball of this radius [m]: a pin, a bead.
+/// Adds a ball of this radius [m], for a pin or a bead.
 void append_ball(RenderMesh&, const Vec3f& centre, float radius, int segments, float value);
 
 }  // namespace taut

@@ -15,7 +15,7 @@ struct Vertex {
   float position[3], normal[3], uv[2], data[2];
 };
 
-/// `lit`: which of the two sums up the lights; 0: neither.
+/// `lit` is the type of the shader (vertex or fragment) that sums up the lights, 0 if neither does.
 GLuint compile(const GlContext& gl, const char* vertex, const char* fragment, GLenum lit = 0) {
   std::string log(2000, '\0');
   const auto length = static_cast<GLsizei>(log.size());
@@ -75,8 +75,8 @@ void append(std::vector<Vertex>& vertices, const RenderMesh& mesh) {
   }
 }
 
-/// The triangles that are lower than a pixel where the picture is `width` x `height` pixels: none
-/// of a pixel's samples may lie in them.
+/// Triangles lower than a pixel in a picture of `width` x `height` pixels: they may miss all
+/// samples of a pixel.
 std::vector<std::array<std::uint32_t, 3>> thinner_than_a_pixel(const RenderMesh& mesh,
                                                                const Eigen::Matrix4f& world_to_clip,
                                                                float width, float height) {
@@ -97,7 +97,7 @@ std::vector<std::array<std::uint32_t, 3>> thinner_than_a_pixel(const RenderMesh&
   return thin;
 }
 
-/// Linear between texels; stays bound.
+/// A texture with linear interpolation between texels; it stays bound.
 GLuint make_texture(GLenum kind, GLint beyond) {
   GLuint texture = 0;
   glGenTextures(1, &texture);
@@ -192,7 +192,7 @@ void Renderer::make_targets() {
                      std::to_string(height) + " pixels");
 }
 
-/// Beyond a map nothing casts shadows: its border is as far as can be.
+/// The border of a depth map has the largest depth, so that nothing beyond the map casts a shadow.
 void Renderer::make_light_maps() {
   const GLsizei side = quality_.depth_map, ground = quality_.ground_map;
   depth_maps_ = make_texture(GL_TEXTURE_2D_ARRAY, GL_CLAMP_TO_BORDER);
@@ -243,7 +243,8 @@ std::vector<Renderer::Range> Renderer::upload(const Panel& panel) const {
   return ranges;
 }
 
-/// World to a light's map: texture coordinates in x and y, depth in z, the nearest to the light 0.
+/// Transform from the world to a light's map: x and y are texture coordinates, z is depth, 0
+/// nearest to the light.
 Eigen::Matrix4f Renderer::to_map(const Light& light, const Sphere& casters) const {
   const Vec3f u = light.direction.unitOrthogonal(), v = light.direction.cross(u);
   const float across = static_cast<float>(quality_.depth_map - 4) /
@@ -256,7 +257,7 @@ Eigen::Matrix4f Renderer::to_map(const Light& light, const Sphere& casters) cons
   return m;
 }
 
-/// The share of each light is that of what open, level ground receives.
+/// Each light's share is relative to the light that open, level ground receives.
 void Renderer::set_lights(GLuint program, const Panel& panel) const {
   float open = 0;
   for (const Light& light : panel.lights)
@@ -282,7 +283,7 @@ void Renderer::set_lights(GLuint program, const Panel& panel) const {
   glActiveTexture(GL_TEXTURE0);
 }
 
-/// The depth map of each light, then the light on the ground.
+/// Draws the depth map of each light, then the light on the ground.
 void Renderer::draw_light(const Panel& panel, const std::vector<Range>& ranges) const {
   glBindFramebuffer(GL_FRAMEBUFFER, lit_);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
@@ -290,7 +291,7 @@ void Renderer::draw_light(const Panel& panel, const std::vector<Range>& ranges) 
   glViewport(0, 0, quality_.depth_map, quality_.depth_map);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_DEPTH_CLAMP);
-  glEnable(GL_POLYGON_OFFSET_FILL);  // what light grazes does not shade itself
+  glEnable(GL_POLYGON_OFFSET_FILL);  // keeps surfaces at a grazing angle from shading themselves
   glPolygonOffset(1.5f, 0);
   glUseProgram(depth_);
   const GLsizei indices = static_cast<GLsizei>(ranges.back().first_index) + ranges.back().indices;
@@ -367,7 +368,8 @@ void Renderer::draw_mesh(const Panel& panel, const Painted& painted, const Range
   glDrawElements(GL_TRIANGLES, range.indices, GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t)));
   if (painted.colour) return;
-  // Cloth never vanishes: what is too thin to be filled is drawn by its edges, a pixel wide.
+  // Triangles too thin to be filled are drawn by their edges, a pixel wide, so that cloth never
+  // vanishes.
   auto thin = thinner_than_a_pixel(*painted.mesh, world_to_clip, static_cast<float>(width_),
                                    static_cast<float>(height_));
   if (thin.empty()) return;
@@ -389,7 +391,7 @@ Image Renderer::read() const {
   std::vector<Rgb8> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
   Image image(width, height);
-  for (int y = 0; y < height; ++y)  // OpenGL's rows start at the bottom
+  for (int y = 0; y < height; ++y)  // rows of OpenGL start at the bottom
     std::copy_n(pixels.begin() + std::ptrdiff_t{y} * width, width, &image.at(0, height - 1 - y));
   return shrunk(image, supersampling_);
 }

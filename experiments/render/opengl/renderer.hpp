@@ -11,26 +11,27 @@
 
 namespace taut {
 
-/// The surroundings of the cloth.
+/// Appearance of everything but the cloth.
 struct Theme {
-  Rgb8 top, bottom;     ///< background, a vertical gradient
-  Rgb8 collider;        ///< lit fully
-  Rgb8 pin;             ///< lit fully
-  float shadow = 0.7f;  ///< how much of the missing light the ground shows
-  float line = 0;  ///< of the ground: > 0 is added to the background, < 0 darkens it by this share
+  Rgb8 top, bottom;     ///< ends of a vertical gradient behind the scene
+  Rgb8 collider;        ///< when fully lit
+  Rgb8 pin;             ///< when fully lit
+  float shadow = 0.7f;  ///< share of the missing light by which the ground darkens in shadow
+  /// Ground lines: > 0 is added to the background, < 0 darkens it by this share.
+  float line = 0;
 
   static Theme paper();  ///< light, for papers
-  static Theme dark();   ///< #242A34, for the report in both of its themes
+  static Theme dark();   ///< #242A34, for the report in both its light and its dark theme
 };
 
-/// A mesh and how to paint it: by its values, or in one colour.
+/// A mesh and its paint: its values or one colour.
 struct Painted {
   const RenderMesh* mesh = nullptr;
-  std::optional<Rgb8> colour;  ///< disengaged: by value
+  std::optional<Rgb8> colour;  ///< empty: coloured by value
   int grid_spacing = 0;        ///< quads between material lines; 0: none
 };
 
-/// One panel to be drawn.
+/// Everything that one panel shows.
 struct Panel {
   Camera camera;
   Theme theme;
@@ -38,18 +39,19 @@ struct Panel {
   std::vector<Painted> painted;
   Ground ground;
   std::vector<Light> lights;
-  Sphere casters;             ///< of shadows
+  Sphere casters;             ///< contains all that casts shadows
   float ground_cell = 0.25f;  ///< m between lines of the ground
   float hatch_depth = 0;      ///< m: cloth hidden deeper than this is hatched
 };
 
-/// Draws panels of one size with OpenGL: for each light a depth map of all meshes, then the light
-/// that reaches the ground and every vertex, then the picture with 4x multisampling where the
-/// driver has it, times `supersampling` squared. Cloth that is open and faces the sky shows the
-/// exact colour of its bar.
+/// Draws panels of one size with OpenGL: first a depth map of all meshes for each light, then the
+/// light that reaches the ground and every vertex, then the picture. The picture has 4x
+/// multisampling where the driver supports it, times `supersampling` squared. Open cloth that faces
+/// the sky shows exactly the colour of the colour bar.
 class Renderer {
  public:
-  /// Throws InputError if the driver refuses. The context stays current and outlives the renderer.
+  /// Throws InputError if the driver refuses. The context has to stay current and outlive the
+  /// renderer.
   Renderer(const GlContext&, int width, int height, int supersampling, const LightQuality&);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -57,7 +59,7 @@ class Renderer {
   Image draw(const Panel&) const;
 
  private:
-  /// Where a mesh lies among the vertices and indices of all.
+  /// Place of one mesh in the shared vertex and index buffers.
   struct Range {
     std::size_t first_vertex = 0, first_index = 0;
     GLsizei indices = 0;
@@ -74,11 +76,11 @@ class Renderer {
                  const Eigen::Matrix4f& world_to_clip) const;
   Image read() const;
   const GlContext& gl_;
-  int width_, height_, supersampling_;  ///< of the picture, in pixels
+  int width_, height_, supersampling_;  ///< width and height of the picture in pixels
   LightQuality quality_;
   GLuint background_ = 0, depth_ = 0, ground_light_ = 0, ground_ = 0, surface_ = 0;  ///< programs
   GLuint drawn_ = 0, resolved_ = 0, lit_ = 0;  ///< framebuffers
-  GLuint buffers_[3] = {};                     ///< of the first two: colour, depth, colour
+  GLuint buffers_[3] = {};  ///< renderbuffers of drawn_ (colour, depth) and resolved_ (colour)
   GLuint vertices_ = 0, indices_ = 0, thin_ = 0, layout_ = 0;
   GLuint colours_ = 0, ground_map_ = 0, depth_maps_ = 0;  ///< textures
 };

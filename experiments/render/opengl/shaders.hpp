@@ -1,13 +1,13 @@
 #pragma once
 
-/// The renderer's shaders, GLSL 3.30. Light is computed linearly and encoded as sRGB at the end.
+/// The renderer's shaders in GLSL 3.30. Light is computed linearly and encoded as sRGB at the end.
 namespace taut::shaders {
 
 inline constexpr const char* kVersion = "#version 330 core\n";
 
-/// What a point receives of all lights: `light.w` weighs each by its share of the light of
-/// open ground, `visible` is the share of four texels around the point that the light sees; nothing
-/// beyond the maps casts a shadow.
+/// Light that a point receives from all lights. `light.w` is the light's share of the light on open
+/// ground. `visible` is the share of the four texels around the point that the light reaches;
+/// nothing beyond the maps casts a shadow.
 inline constexpr const char* kLightCommon = R"(#version 330 core
 const int kMostLights = 96;
 uniform int lights;
@@ -54,7 +54,7 @@ out vec4 pixel;
 void main() { pixel = vec4(mix(bottom, top, height), 1.0); }
 )";
 
-/// A depth map: nothing but depth.
+/// A depth map, without colour.
 inline constexpr const char* kDepthVertex = R"(
 uniform mat4 to_map;
 layout(location = 0) in vec3 at;
@@ -62,7 +62,7 @@ void main() { gl_Position = vec4(2.0 * (to_map * vec4(at, 1.0)).xyz - 1.0, 1.0);
 )";
 inline constexpr const char* kDepthFragment = "void main() {}\n";
 
-/// Light that reaches the ground, in units of open ground: a texel of a map that covers it.
+/// Light that reaches the ground, relative to open ground: one texel of a map that covers it.
 inline constexpr const char* kGroundLightFragment = R"(
 uniform vec3 origin, u, v, up;
 uniform float half_side, size;
@@ -76,8 +76,8 @@ void main() {
 }
 )";
 
-/// The ground catches shadows: what is open is the background itself, so that there is no horizon.
-/// Blended as pixel.rgb + background * pixel.a.
+/// The ground shows only shadows and lines. Unshaded ground is the background itself, so there is
+/// no horizon. Blended as pixel.rgb + background * pixel.a.
 inline constexpr const char* kGroundVertex = R"(
 uniform mat4 world_to_clip;
 uniform vec3 origin, u, v;
@@ -109,7 +109,7 @@ void main() {
 }
 )";
 
-/// Light on either side of the surface, per vertex.
+/// Light on both sides of the surface, per vertex.
 inline constexpr const char* kSurfaceVertex = R"(
 uniform mat4 world_to_clip;
 layout(location = 0) in vec3 at;
@@ -132,8 +132,9 @@ void main() {
   gl_Position = world_to_clip * vec4(at, 1.0);
 }
 )";
-/// Light of the side that is seen, 0.12 of the other side's shining through, ambient and the
-/// light that the ground throws back; normalised to 1 for open cloth that faces the sky.
+/// Sum of the light on the visible side, 0.12 of the light on the other side shining through,
+/// ambient light, and light reflected by the ground. Normalised to 1 for open cloth that faces the
+/// sky.
 inline constexpr const char* kSurfaceFragment = R"(
 uniform sampler2D map;
 uniform vec2 range;      // values of the map's ends

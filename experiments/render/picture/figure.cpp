@@ -38,7 +38,7 @@ void draw_title(Canvas& canvas, const RecordedRun& run, Point corner, const Page
     canvas.text({left + advance, y}, "   " + run.settings, {21 * u * shrink, kMuted});
 }
 
-/// The cloth laid flat, in a panel's upper right corner [px].
+/// An inset in a panel's upper right corner that shows the cloth laid flat [px].
 struct Flat {
   static constexpr int kRim = 3;
   int side, margin;
@@ -46,7 +46,7 @@ struct Flat {
       : side(std::min(layout.panel_height / 5, layout.panel_width / 4)),
         margin(layout.panel_height / 28) {}
 
-  /// Some of a run's cloth lies below it.
+  /// True if part of a run's cloth lies behind the inset.
   bool hides(const SceneRenderer& renderer, std::size_t run, double t) const {
     const auto edge = [&](int pixels) {
       return 1 - 2.f * static_cast<float>(side + margin + kRim) / static_cast<float>(pixels);
@@ -67,7 +67,7 @@ struct Flat {
   }
 };
 
-/// A run's panel with what is written on it.
+/// A run's panel, with its inset and texts.
 Image panel_of(const SceneRenderer& renderer, const PageLayout& layout, std::size_t run, double t,
                bool with_flat) {
   const double u = layout.unit;
@@ -185,7 +185,7 @@ Image compose(const SceneRenderer& renderer, const PageLayout& layout,
                 layout.has_text() ? rgb(0xFFFFFF) : renderer.options().theme.top);
   Canvas canvas(picture);
   for (std::size_t m = 0; m < times.size(); ++m) {
-    // In the first moments a sheet may reach into the corner: all panels do without the flat then.
+    // A sheet may reach into the corner in the first moments; then no panel shows the inset.
     bool flats = true;
     for (std::size_t k = 0; k < renderer.runs().size(); ++k)
       flats = flats && !Flat(layout).hides(renderer, k, times[m]);
@@ -223,7 +223,7 @@ void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const BarPlace& p
 
 namespace {
 
-/// A line of text on a plate, in the lower left corner.
+/// Draws a line of text on a plate in the lower left corner.
 void plate(Image& panel, const std::string& text, Rgb8 colour, double unit) {
   Canvas canvas(panel);
   const double size = std::max(11.0, 19 * unit), wide = text_width(text, size, Weight::bold);

@@ -16,8 +16,8 @@ bool is_sound(const State& state, const Vec3& centre, double reach) {
       state.x, [&](const Vec3& p) { return p.allFinite() && (p - centre).norm() <= reach; });
 }
 
-/// Fills in what a trajectory without velocities leaves out: backward differences, as Verlet has
-/// them; the scene's own at the start.
+/// Fills in velocities that a trajectory lacks: backward differences, as Verlet has them; for the
+/// first frame, the scene's initial velocities.
 void add_velocities(const Scene& scene, std::vector<Frame>& frames) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
     State& now = frames[k].state;
@@ -58,7 +58,7 @@ std::vector<double> vertex_depths(const Scene& scene, const State& state, double
   return depth;
 }
 
-/// None of a plane, which has no end.
+/// Points that span a collider. A plane has no end and yields none.
 std::vector<Vec3> collider_points(const Collider& collider, double t) {
   const Shape shape = shape_at(collider, t);
   std::vector<Vec3> points;
@@ -101,7 +101,7 @@ const Collider* level_floor(const Scene& scene, const Vec3& up) {
   return nullptr;
 }
 
-/// Cloth at the times, relative to its centroid if the camera follows.
+/// Positions of the cloth at these times, relative to its centroid if the camera follows it.
 std::vector<Vec3> cloth_points(const std::vector<RecordedRun>& runs,
                                const std::vector<double>& times, bool follows) {
   std::vector<Vec3> points;
@@ -113,8 +113,7 @@ std::vector<Vec3> cloth_points(const std::vector<RecordedRun>& runs,
   return points;
 }
 
-/// What the camera has to see: a collider that moves counts while it is at the cloth, not all the
-/// way there and back.
+/// Points that the camera has to see. A moving collider counts only while it is at the cloth.
 std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<RecordedRun>& runs,
                                      const std::vector<Vec3>& cloth,
                                      const std::vector<double>& times) {
@@ -128,8 +127,8 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Recor
     }
   }
   Eigen::AlignedBox3d near = box_around(scene.start.x).extend(box_around(points));
-  // What is held swings within the cloth's own size; what lands spreads a little; down an endless
-  // slope it slides.
+  // Cloth that is held swings within its own size, cloth that lands spreads a little, and cloth on
+  // an endless slope slides far.
   const bool slope = std::ranges::any_of(scene.colliders, [&](const Collider& collider) {
     const auto* plane = std::get_if<Plane>(&collider.shape);
     return plane && plane->normal.dot(up_direction(scene)) < 0.9999;
@@ -141,8 +140,8 @@ std::vector<Vec3> points_of_interest(const Scene& scene, const std::vector<Recor
   return points.empty() ? scene.start.x : points;
 }
 
-/// The view, or its mirror image if the cloth shows more of itself there: farther spread across the
-/// line of sight. A flag is not seen along its wind.
+/// The view, or its mirror image if the cloth spreads more across the line of sight there: a flag
+/// seen along its wind shows little.
 View better_side(const View& view, const std::vector<Vec3>& cloth, const Vec3& up) {
   if (!view.either_side) return view;
   const auto spread = [&](const View& candidate) {
@@ -310,8 +309,9 @@ std::vector<double> SceneRenderer::sampled_times() const {
   return times;
 }
 
-/// The bar ends at a round number that 98 of 100 vertices do not exceed. A run that blew up has no
-/// say beside stable ones, and strain ends at 100 %: else all that is stable would look unstrained.
+/// Ends the bar at a round number that 98 of 100 vertices do not exceed. Runs that blew up are
+/// ignored if any run is stable, and strain ends at 100 %; otherwise everything stable would look
+/// unstrained.
 void SceneRenderer::choose_scale() {
   if (scale_.high > 0) return;
   constexpr double kMostStrain = 1;
@@ -410,7 +410,7 @@ Image SceneRenderer::material_space(std::size_t index, double t, int longest_sid
   const double scale = longest_side / std::max(across, down);
   Image image(std::max(longest_side / 9, static_cast<int>(std::lround(across * scale))),
               std::max(longest_side / 9, static_cast<int>(std::lround(down * scale))));
-  // Linear between the vertices; the outermost vertices lie on the border.
+  // Linear interpolation between the vertices; the outermost vertices lie on the border.
   const auto locate = [](int pixel, int pixels, int vertices) {
     const double s = std::clamp((pixel + 0.5) / pixels, 0.0, 1.0) * (vertices - 1);
     const int i = std::min(static_cast<int>(s), std::max(vertices - 2, 0));

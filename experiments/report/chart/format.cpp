@@ -25,8 +25,8 @@ std::string escape_html(std::string_view text) {
 }
 
 std::string gnuplot_string(std::string_view text) {
-  // gnuplot 5.4 ends '''x' after two quotes, and backquotes inside "..." run commands: whatever is
-  // not plain goes in octal.
+  // gnuplot 5.4 ends '''x' after two quotes, and backquotes inside "..." run commands. Therefore
+  // every character that is not plain is written in octal.
   std::string out;
   bool escaped = false;
   for (const char c : text) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Texts as files of other languages want them.
+// Texts in the form that other languages need.
 
 #include <string>
 #include <string_view>
@@ -9,9 +9,10 @@
 
 namespace taut::report {
 
-/// For a page: & < > " ' escaped; control characters become U+FFFD.
+/// Text for a page: & < > " ' are escaped, control characters become U+FFFD.
 std::string escape_html(std::string_view);
-std::string gnuplot_string(std::string_view);  ///< a literal that no text can leave; one line
+/// A literal on one line that no text can break out of.
+std::string gnuplot_string(std::string_view);
 std::string base64(std::string_view bytes);
 
 }  // namespace taut::report

@@ -11,10 +11,14 @@ namespace taut::report {
 
 namespace {
 
-constexpr double kAir = 0.06;          ///< of what an axis shows, beyond either end
-constexpr double kLeastFactor = 1.12;  ///< the same of a logarithmic axis
-constexpr double kDecades = 1e8;       ///< that a logarithmic axis shows
-constexpr double kFarBelow = 30;       ///< a floor is not drawn below the least point over this
+/// Margin of an axis beyond either end, as a share of its range.
+constexpr double kAir = 0.06;
+/// Least margin of a logarithmic axis, as a factor.
+constexpr double kLeastFactor = 1.12;
+/// Largest ratio that a logarithmic axis shows.
+constexpr double kDecades = 1e8;
+/// A floor is not drawn if it is below the smallest point by this factor.
+constexpr double kFarBelow = 30;
 
 void for_each_point(std::span<const Chart> charts, const std::function<void(const Point&)>& see) {
   for (const Chart& chart : charts)
@@ -22,7 +26,7 @@ void for_each_point(std::span<const Chart> charts, const std::function<void(cons
       for (const Point& p : curve.points) see(p);
 }
 
-/// Of x, in SI units: also the ends of the intervals of costs.
+/// Values of x in SI units, including the ends of cost intervals.
 std::vector<double> all_x(std::span<const Chart> charts) {
   std::vector<double> values;
   for_each_point(charts, [&](const Point& p) { values.push_back(p.x); });
@@ -34,7 +38,7 @@ std::vector<double> all_x(std::span<const Chart> charts) {
   return values;
 }
 
-/// Of y, in SI units, with the floors.
+/// Values of y in SI units, including floors.
 std::vector<double> all_y(std::span<const Chart> charts) {
   std::vector<double> values;
   for_each_point(charts, [&](const Point& p) {

@@ -1,4 +1,4 @@
-// Error over the iterations of one step, drawn by what draws cases.
+// Error over the iterations of one step, drawn in the same way as cases.
 #include "experiments/report/chart/one_step.hpp"
 
 #include <algorithm>

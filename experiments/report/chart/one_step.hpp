@@ -8,13 +8,13 @@
 
 namespace taut::report {
 
-/// Title of one of its solvers, with its parameters where several have that title.
+/// Title of a solver in `step`; with its parameters if several solvers share the title.
 std::string solver_label(const OneStep&, const std::string& solver);
 
-/// The records with a value above 0, which a logarithmic axis shows. Throws InputError if there is
-/// none.
+/// The records with a value above 0, which a logarithmic axis can show. Throws InputError if there
+/// are none.
 Records step_records(const OneStep&, std::string_view kind);
-/// Points into the records. Throws as step_records().
+/// A chart that points into the records. Throws as step_records() does.
 Chart step_chart(const OneStep&, std::string_view kind);
 
 }  // namespace taut::report

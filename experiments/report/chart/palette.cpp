@@ -9,14 +9,15 @@ namespace taut::report {
 
 namespace {
 
-// Text in these colours keeps a contrast of 4.5 on its theme's background. Hues follow Wong (2011),
-// darkened for text on white and lightened for text on #14171C.
+// Text in these colours has a contrast of 4.5 on the background of its theme. Hues follow Wong
+// (2011), darkened for text on white and lightened for text on #14171C.
 
 struct Named {
   std::string_view solver;
   SolverStyle style;
 };
-/// Most lines are dashed because a correct pair coincides: the lower one must show through.
+/// Most lines are dashed, since the lines of two correct solvers coincide and the lower one must
+/// show through.
 constexpr Named kSolvers[] = {
     {"bullet", {{"#C8470C", "#FF8A54"}, "square", "5", "9 4"}},  // orange
     {"bullet-deformable",
@@ -30,7 +31,7 @@ constexpr Named kSolvers[] = {
     {"vbd", {{"#5B6B00", "#B5C94A"}, "triangle", "9", "6 2"}},                     // olive
     {"avbd", {{"#9C2FA8", "#E08CEB"}, "plus", "'✚' ps 1.1", "9 4"}},               // violet
 };
-/// Of solvers that the program does not have.
+/// Styles of solvers that are not part of the program.
 constexpr std::array kOthers{
     SolverStyle{{"#0C7680", "#4CC8D4"}, "hexagon", "'⬢' ps 1.2", "12 3"},  // teal
     SolverStyle{{"#866000", "#E0B040"}, "bar", "'▬' ps 1.2", "5 3"},       // brown
@@ -38,7 +39,7 @@ constexpr std::array kOthers{
 };
 
 constexpr Colour kWhite{"#FFFFFE", "#FFFFFE"}, kBlack{"#1A1A19", "#1A1A19"};
-/// In the order of the enumeration, up to the last that is stored.
+/// In the order of the enumeration, up to the last status that is stored.
 constexpr StatusStyle kStatuses[] = {
     {{"#2F9E77", "#2C8F6C"}, "✓", "settled or ran to the end", kWhite},
     {{"#C9423B", "#C9473F"},

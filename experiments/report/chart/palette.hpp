@@ -8,28 +8,28 @@
 
 namespace taut::report {
 
-/// A colour of the light theme (paper, figures) with its twin of the dark theme.
+/// A colour in the light theme (also paper and figures) and its counterpart in the dark theme.
 struct Colour {
   std::string_view light;  ///< "#0B6BCB"
   std::string_view dark;
 };
 
-/// How a solver is drawn in every picture: hue, marker and dash each tell solvers apart alone, so
-/// that colour-blind readers, greyscale prints and coinciding lines lose nothing.
+/// Style of a solver in every picture. Hue, marker and dash each distinguish solvers on their own,
+/// so that nothing is lost to colour-blind readers, in greyscale prints and where lines coincide.
 struct SolverStyle {
   Colour colour;
-  std::string_view shape;      ///< of its marker, another for each solver: "circle"
-  std::string_view marker;     ///< the same as gnuplot's point type: "7", "'★' ps 1.2"
+  std::string_view shape;      ///< shape of its marker, different for each solver: "circle"
+  std::string_view marker;     ///< the same marker as gnuplot's point type: "7", "'★' ps 1.2"
   std::string_view dash = "";  ///< lengths of strokes and gaps: "9 4"; "": solid
 };
 
-/// By its name: the same in every figure, whatever else is drawn beside it.
+/// Style of a solver, the same in every figure.
 SolverStyle solver_style(std::string_view solver);
 
-/// Lengths of strokes and gaps of a solver's line; each further choice of its settings has another.
+/// Lengths of strokes and gaps of a solver's line, different for each choice of its settings.
 std::string_view dash_of(std::string_view solver, int variant);
 
-/// How a status is drawn in maps, and the glyph that stands for it everywhere.
+/// Style of a status in maps, and the glyph that represents it everywhere.
 struct StatusStyle {
   Colour colour;
   std::string_view glyph;  ///< one character
@@ -38,12 +38,12 @@ struct StatusStyle {
 };
 StatusStyle status_style(Status::Kind);
 
-/// What completed is drawn in maps in shades of "ok", by its RMS stretch.
+/// A shade of "ok" in which maps show completed cases, chosen by RMS stretch.
 struct StretchShade {
-  double end;    ///< of the stretch; infinite: all beyond
-  double share;  ///< of the colour of "ok"; the rest is the background
+  double end;    ///< upper end of the stretch; infinite: everything beyond
+  double share;  ///< share of the colour of "ok"; the rest is the background
   std::string_view text;
 };
-std::span<const StretchShade> stretch_shades();  ///< ascending
+std::span<const StretchShade> stretch_shades();  ///< in ascending order
 
 }  // namespace taut::report

@@ -1,4 +1,4 @@
-// What publications assert, with verdicts.
+// Assertions of publications, with verdicts.
 
 #include "experiments/truths/assertions/assertions.hpp"
 

@@ -1,4 +1,4 @@
-// Cases of the model: one of them, how several are set, and what is counted of all of a scene.
+// Cases in the model: a single case, the settings of several, and the counts over a scene's cases.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -18,7 +18,7 @@ namespace taut::report {
 
 namespace {
 
-/// "1, 2, 4" or "1 to 256 (9 values)".
+/// Text of a set of values: "1, 2, 4" or "1 to 256 (9 values)".
 std::string range_of(const std::set<double>& values, const Quantity& q) {
   if (values.empty()) return "–";
   const auto one = [&](double v) { return tick_of(q, v); };
@@ -51,8 +51,8 @@ Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& 
     table.columns.emplace_back(r->solver, compared.all[i].label);
     for (const ResolvedSetting& one : r->resolved_settings) push_unique(names, one.name);
   }
-  /// `setting` of a record is a ResolvedSetting; one without a name: the solver has none of it,
-  /// which is no difference.
+  /// `setting` returns the ResolvedSetting of a record. If its name is empty, the solver does not
+  /// have this setting, which does not count as a difference.
   const auto row = [&](const std::string& name, const auto& setting) -> std::vector<Cell>& {
     std::vector<Cell> cells{name};
     std::set<std::string> different;

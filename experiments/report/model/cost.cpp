@@ -16,14 +16,16 @@ namespace taut::report {
 
 namespace {
 
-/// Of one scene, with what all of its solvers have: the answers and the whole page compare that.
+/// Costs on one scene, with the accelerators that all of its solvers have: both the answers and the
+/// page compare these.
 struct CostScene {
   SceneBench bench;
   CaseList& refs;
   std::vector<Candidate> candidates;
 
   bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
-  /// The cell of a case: its note is the setting, and what a small strain may have cost.
+  /// Cell of a case. Its note has the setting and the values of motion, since a small strain may
+  /// come from cloth that hardly moves.
   Cell of(std::size_t at, Cell cell) const {
     const Record& r = bench.cases[at].record;
     cell.note = setting_text(bench, at);
@@ -78,7 +80,8 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
   return table;
 }
 
-/// "1 of XPBD, 3 of PD": problems that the cheapest setting tried of a solver reaches already.
+/// "1 of XPBD, 3 of PD": number of problems that even the cheapest tried setting of a solver
+/// solves.
 std::string upper_bounds(const std::vector<SceneBench>& scenes) {
   std::map<std::string, int> bounds;
   for (const SceneBench& scene : scenes) {
@@ -93,7 +96,7 @@ std::string upper_bounds(const std::vector<SceneBench>& scenes) {
               [](const auto& one) { return std::to_string(one.second) + " of " + one.first; });
 }
 
-/// Dolan and More's performance profiles at a few factors.
+/// A table of Dolan and More's performance profiles at a few factors.
 Table profile_table(const std::vector<SceneBench>& scenes) {
   const std::vector<PerformanceProfile> profiles = performance_profiles(scenes, kErrorMetric);
   const std::size_t problems = profiles.empty() ? 0 : profiles.front().ratios.size();
@@ -134,7 +137,7 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, 
   refs.use("cpu.per_step");
   std::vector<SceneBench> shared;
   std::vector<Chart> charts;
-  std::list<std::vector<Record>> kept;  // charts point into them
+  std::list<std::vector<Record>> kept;  // charts point into these
   for (const SceneBench& bench : study.scenes) {
     const std::vector<Record>& records = kept.emplace_back(StudyBench{"", "", {bench}}.records());
     shared.push_back(with_shared_parameters(bench));
@@ -144,7 +147,7 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, 
       charts.push_back(cost_chart(bench, records));
       one["charts"].push_back(charts.back().id);
     } catch (const InputError&) {
-      // nothing completed: the tables say so
+      // Nothing completed, which the tables report.
     }
     add_table(one, levels_table(scene, winners.rows[shared.size() - 1]), tables);
     cost["scenes"].push_back(std::move(one));

@@ -1,4 +1,4 @@
-// What differs between two results folders.
+// Differences between two results folders.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,9 +14,10 @@ namespace taut::report {
 
 namespace {
 
-constexpr std::size_t kMostRows = 200;  ///< of the table; the data has all
+constexpr std::size_t kMostRows = 200;  ///< rows shown in the table; the data contain all
 
-/// A case that both have, with its values that are numbers in both, if it completed in both.
+/// A case that both folders have. If it completed in both, includes the values that are numbers in
+/// both.
 struct ComparedCase {
   const std::pair<Record, Record>* pair;
   std::vector<ComparedValue> values;
@@ -34,14 +35,14 @@ std::vector<ComparedCase> compared_cases(const Differences& differences) {
   return all;
 }
 
-/// A value of a case that B has otherwise.
+/// A value or status of a case that differs in B.
 struct Changed {
   const std::pair<Record, Record>* pair;
-  const ComparedValue* value;  ///< nullptr: the status
-  double size;                 ///< |b - a| over the larger; 2: another status
+  const ComparedValue* value;  ///< nullptr: the status differs
+  double size;                 ///< |b - a| over the larger of the two; 2: the status differs
 };
 
-/// The largest first.
+/// All changes, the largest first.
 std::vector<Changed> all_changed(const std::vector<ComparedCase>& cases) {
   std::vector<Changed> all;
   for (const ComparedCase& one : cases) {
@@ -58,7 +59,7 @@ std::vector<Changed> all_changed(const std::vector<ComparedCase>& cases) {
   return all;
 }
 
-/// Its row: what it is, in A, in B, the change, and whether that is better.
+/// Row of a change: the case, its value in A and in B, the change, and whether that is better.
 std::vector<Cell> row_of(const Changed& changed, CaseList& refs) {
   const auto& [a, b] = *changed.pair;
   Cell head(b.scene + " " + solver_title(b.solver) + " " + brief_settings(b.spec.solver) + ", " +
@@ -78,7 +79,7 @@ std::vector<Cell> row_of(const Changed& changed, CaseList& refs) {
                                  : Cell("worse")};
 }
 
-/// How cases end, pair by pair.
+/// A table of how cases end in A and in B.
 Table ends_table(const Differences& differences) {
   Table table{"differences-ends",
               "How cases end",
@@ -94,7 +95,7 @@ Table ends_table(const Differences& differences) {
   return table;
 }
 
-/// In how many cases a value is less or more in B.
+/// Counts the cases in which a value is less or more in B.
 class Counted {
  public:
   void add(double before, double now, const std::string& key) {
@@ -114,7 +115,7 @@ class Counted {
   Cell largest_;
 };
 
-/// Values with a role, and what a step cost.
+/// A table of the values with a role and of the cost of a step.
 Table compared_table(const Differences& differences, const std::vector<ComparedCase>& cases,
                      CaseList& refs) {
   Table table{
@@ -142,7 +143,8 @@ Table compared_table(const Differences& differences, const std::vector<ComparedC
   return table;
 }
 
-/// What B costs over A; each was timed in a session of its own, so nothing is clear.
+/// A table of the cost of B relative to A. Each was timed in its own session, so no difference
+/// counts as clear.
 Table costs_table(const Differences& differences) {
   Table table{"differences-cost",
               "CPU time of B over that of A",

@@ -53,7 +53,8 @@ Json json_of(const Frame& frame) {
   return {{"x", json_of(frame.x)}, {"y", json_of(frame.y)}, {"least", frame.least}};
 }
 
-/// Of values over time, with zero; rounding, below a millionth of the unit, lies on the axis.
+/// Scale for values over time. It includes zero; rounding below a millionth of the unit lies on the
+/// axis.
 Scale scale_of_series(const std::vector<TimeSeries>& all, const Unit& unit) {
   std::vector<double> values{0};
   for (const TimeSeries& series : all)
@@ -63,7 +64,7 @@ Scale scale_of_series(const std::vector<TimeSeries>& all, const Unit& unit) {
   return scale_of(false, values);
 }
 
-/// Times and values of a series.
+/// A series as JSON, with its times and values.
 Json json_of(const TimeSeries& series, Variants& variants, CaseList& refs) {
   Json one{{"solver", series.solver},
            {"label", series.label},
@@ -86,8 +87,8 @@ Json json_of_tracks(const std::string& scene, double until, const ReportInput& i
     cut.y.resize(static_cast<std::size_t>(end));
     if (cut.t.size() > 1) by_value[series.value].push_back(std::move(cut));
   }
-  // The scene's own quantity before an error that every scene has; what stays zero but for rounding
-  // shows nothing.
+  // The scene's own quantities come before errors, which every scene has. Values that are zero up
+  // to rounding are not shown.
   constexpr double kNoise = 1e-6;
   const auto place = [&](const std::string& value) {
     double largest = 0;
@@ -130,8 +131,8 @@ Json json_interval(const Interval& i, std::size_t n) {
 
 namespace {
 
-/// Its curves, all of a small chart; of a large one as many points as a page can draw, and a
-/// sentence on what is left out.
+/// Adds a chart's curves: all points of a small chart, or as many points of a large one as a page
+/// can draw, with a sentence on what is left out.
 void add_curves(Json& one, const Chart& chart, CaseList& refs) {
   std::size_t all = 0, failures = 0;
   for (const Curve& curve : chart.curves)

@@ -1,4 +1,4 @@
-// How values of a study went from build to build.
+// How the values of a study changed from build to build.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::size_t kMostBuilds = 200, kMostSentences = 20, kMostValues = 40;
 
-/// A case of a build: the address of its result, and its entry among the page's cases, if it has
-/// one.
+/// A case in a build: the key of its result, and its entry among the page's cases, if it has one.
 Json json_of_point(const HistoryPoint* point, const std::map<std::string, const Record*>& listed,
                    CaseList& refs) {
   Json one{{"status", point ? point->status : "no result"}};
@@ -25,7 +24,7 @@ Json json_of_point(const HistoryPoint* point, const std::map<std::string, const 
   return one;
 }
 
-/// Where a case stepped: both builds and all values that did.
+/// Steps of a case, by build: both builds and all values that stepped.
 Json json_of_row_steps(const History& history, std::size_t row, std::size_t first,
                        const std::map<std::string, const Record*>& listed, CaseList& refs) {
   std::map<std::size_t, Json> by_build;

@@ -55,7 +55,7 @@ Json json_of_limits(const ReportInput& input, CaseList& refs, Answer& tables) {
   for (const StudyResult& study : input.studies)
     if (Table map = failure_map(study.records, timed, &refs); !map.rows.empty()) {
       add_table(limits, std::move(map), tables);
-      break;  // the first study that has one
+      break;  // only the first study that has one
     }
   Table table{"required",
               "The smallest model that keeps a scene's answers",

@@ -40,7 +40,7 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
                              ", or at settings between those timed (taut advise searches them)."
                        : "Cost: no CPU time was measured; equal sweeps are equal work, not equal "
                          "time.");
-  std::map<std::string, std::vector<std::string>> computing;  // by arithmetic
+  std::map<std::string, std::vector<std::string>> computing;  // solver titles by arithmetic
   std::set<std::string> shown;
   for (const Record* r : refs.cases()) {
     shown.insert(r->solver);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Parts of the model as JSON. Included by sources of the model only: the JSON library is large.
+// Parts of the model as JSON. Only sources of the model include this header, since the JSON library
+// is large.
 
 #include <string>
 
@@ -12,47 +13,47 @@
 
 namespace taut::report {
 
-/// Appends a chart, a map or a film to those of the model, and its id to a list of `part`.
+/// Appends a chart, a map or a film to `all`, and its id to a list of `part`.
 void add_by_id(Json& part, const char* list, Json one, Json& all);
-/// Charts of the model, and the figures whose panels they are.
+/// Charts of the model, and the figures of which they are the panels.
 struct DrawnCharts {
   Json charts, figures;
 };
-/// `of`: which part of the page has it.
+/// Adds a figure. `of` names the part of the page that shows it.
 void add_figure(DrawnCharts&, std::string_view of, const Figure&, CaseList&);
-/// Adds a table to those of the page, if it has rows, and its name to the tables of `part`.
+/// If a table has rows, adds it to the tables of the page and its name to the tables of `part`.
 void add_table(Json& part, Table, Answer& tables);
-/// The tables of an answer by name, as `taut --json` writes them everywhere.
+/// The tables of an answer, by name, in the form that `taut --json` always writes.
 Json json_of_tables(const Answer&);
-/// To more significant digits than a page can show: a third of the bytes of what it lists.
+/// Rounds to more significant digits than a page shows, which saves two thirds of the bytes.
 double rounded(double, int digits = 7);
-/// {low, mid, high, n}, as MODEL.md has intervals.
+/// {low, mid, high, n}, as MODEL.md defines intervals.
 Json json_interval(const Interval&, std::size_t n);
 
-/// `timed`: where its cost was measured; nullptr: nowhere.
+/// `timed`: where the cost was measured; nullptr: not measured.
 Json json_of_case(const Record&, const BenchedCase* timed, CaseList&);
-/// Counts and ranges of settings of a scene's cases.
+/// Counts of a scene's cases, and ranges of their settings.
 Json facts_of(const CaseList&, const std::string& scene);
 Json json_of(const Chart&, CaseList&);
 Json json_of(const StatusMap&, const std::string& id, CaseList&);
 Json json_of(const SceneMedia&, const ReportInput&, CaseList&, std::size_t& budget);
-/// Who wins where, and what that says in all; null: nothing was timed.
+/// Which solver wins where, and a summary; null if nothing was timed.
 Json json_of_winners(const ReportInput&, CaseList&);
-/// What accuracy costs, scene by scene.
+/// Cost of accuracy, scene by scene.
 Json json_of_cost(const ReportInput&, CaseList&, DrawnCharts&, Answer& tables);
-/// What two folders have otherwise.
+/// Differences between two folders.
 Json json_of(const Differences&, CaseList&, Answer& tables);
-/// How values went from build to build, study by study; null: of one build alone.
+/// How values changed from build to build, study by study; null if there is only one build.
 Json json_of_history(const ReportInput&, CaseList&);
-/// What scenes require, how far solvers go and where their methods fail; null without any.
+/// What scenes require, how far solvers go, and where their methods fail; null if nothing is known.
 Json json_of_limits(const ReportInput&, CaseList&, Answer& tables);
-/// What iterations inside one step bring, scene by scene; null: no step was followed.
+/// What iterations achieve inside one step, scene by scene; null if no step was followed.
 Json json_of_steps(const ReportInput&, CaseList&, DrawnCharts&, Answer& tables);
-/// What publications assert, with verdicts: as its truths say now, if they were checked.
+/// Assertions of publications with verdicts, which follow from the truths if those were checked.
 Table assertions_table(const std::optional<Truths>&);
-/// Settings of every solver on a scene, row by row; without rows if nothing was run.
+/// Resolved settings of every solver on a scene, one per row; without rows if nothing was run.
 Table resolved_settings_table(const QuotedScene&, const ComparedSolvers&, CaseList&);
-/// What this run does not show, a sentence each.
+/// Sentences on what this run does not show.
 std::vector<std::string> limits_of(const ReportInput&, const CaseList&);
 
 }  // namespace taut::report

@@ -1,4 +1,4 @@
-// Inside one step: how near each solver's iterations come to the exact one.
+// Inside one step: how close each solver's iterations come to the exact step.
 #include <cmath>
 
 #include "core/model/input_error.hpp"
@@ -13,13 +13,13 @@ namespace {
 
 constexpr int kLooked = 16;  ///< iterations, as in the comparison at equal work
 
-/// After so many iterations [m]; NaN: not measured.
+/// Distance after this many iterations [m]; NaN if not measured.
 double distance_after(const StepSolver& solver, int iterations) {
   const auto at = solver.distances.find(iterations);
   return at == solver.distances.end() ? std::nan("") : at->second;
 }
 
-/// What the solver's links are, and how its iterations go.
+/// Row of a solver: its links, and how its iterations proceed.
 std::vector<Cell> row_of(const OneStep& step, const StepSolver& solver) {
   const auto below = [&](double gap) {
     const auto at = solver.iterations.find(gap);
@@ -39,8 +39,8 @@ std::vector<Cell> row_of(const OneStep& step, const StepSolver& solver) {
           below(1e-4)};
 }
 
-/// Whether kLooked iterations leave it farther from the exact step than one, by more than the
-/// tolerance.
+/// Whether the solution after kLooked iterations is farther from the exact step than after one, by
+/// more than the tolerance.
 bool is_leaving(const StepSolver& solver) {
   return distance_after(solver, kLooked) > (1 + kTolerance) * distance_after(solver, 1);
 }

@@ -1,9 +1,9 @@
 'use strict';
-// What every other file of the page uses: elements and numbers; the model, its entries by id, and
-// what the reader chose, which is kept in the address: every view has a permalink. Whatever comes
-// from the model becomes a text node or an attribute, never markup.
+// Basics that all other files of the page use: elements and numbers, the model and its entries by
+// id, and the reader's choices. Choices are kept in the address, so that every view has a
+// permalink. Whatever comes from the model becomes a text node or an attribute, never markup.
 
-/** A text of any length; a very long one scrolls in a box of its own. */
+/** Text of any length; a very long one scrolls in a box of its own. */
 function boxed(child) {
   if (typeof child !== 'string' || child.length < 500) return child;
   const box = document.createElement('span');
@@ -12,8 +12,8 @@ function boxed(child) {
 }
 
 /**
- * An element. `props` are properties (`className`, `onclick`), else attributes; children are
- * elements or texts.
+ * Makes an element. `props` are properties (`className`, `onclick`) or else attributes; children
+ * are elements or texts.
  */
 function el(name, props = {}, ...children) {
   const node = document.createElement(name);
@@ -36,7 +36,7 @@ const folded = (title, ...content) =>
 const row = (head, ...cells) =>
     el('tr', {}, el('th', {scope: 'row'}, head), cells.map((cell) => el('td', {}, cell)));
 
-/** A table that scrolls in its box where it is too wide. */
+/** A table that scrolls within its box if it is too wide. */
 const scrolling = (title, heads, rows) =>
     el('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': short(title, 100)},
        el('table', {}, el('caption', {className: 'hidden'}, short(title, 120)),
@@ -44,19 +44,19 @@ const scrolling = (title, heads, rows) =>
 const tableOf = (title, columns, rows) =>
     scrolling(title, el('tr', {}, columns.map((text) => el('th', {scope: 'col'}, text))), rows);
 
-/** Names and values. */
+/** A list of names and values. */
 const factList = (facts) => facts?.length ?
     el('dl', {className: 'facts'},
        facts.map(({name, value}) => [el('dt', {}, name), el('dd', {}, value)])) :
     null;
 
-/** A text as a heading or a chip can hold it. */
+/** A text shortened to fit a heading or a chip. */
 function short(text, length = 60) {
   const letters = [...String(text)];
   return letters.length > length ? letters.slice(0, length - 1).join('') + '…' : String(text);
 }
 
-/** 0.012345 as "0.0123", 5e-5 as "5×10⁻⁵", no value as "–". */
+/** Text of a number: "0.0123" for 0.012345, "5×10⁻⁵" for 5e-5, "–" for no value. */
 function number(value, digits = 3) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   if (value === 0) return '0';
@@ -72,7 +72,7 @@ function number(value, digits = 3) {
   return factor === '1' ? '10' + power : factor + '×10' + power;
 }
 
-/** The glossary's entry of a metric; an unknown one is shown in SI under its own name. */
+/** Entry of a metric in the glossary; an unknown metric is shown in SI under its own name. */
 const metric = (name) => Object.hasOwn(model.metrics, name) ?
     model.metrics[name] :
     {title: name, help: '', unit: '', scale: 1, axis: 'linear', window: ''};
@@ -83,7 +83,7 @@ function shown(value, quantity, digits) {
   return text === '–' || !quantity.unit ? text : text + '\u00A0' + quantity.unit;
 }
 
-/** "0.31–0.35 %": a 95 % interval; "" without one. */
+/** A 95 % interval: "0.31–0.35 %"; "" if there is none. */
 function interval(low, high, quantity) {
   if (typeof low !== 'number' || typeof high !== 'number') return '';
   return number(low * quantity.scale) + '–' + shown(high, quantity);
@@ -92,10 +92,7 @@ function interval(low, high, quantity) {
 const titled = (quantity) => quantity.title + (quantity.unit ? ` [${quantity.unit}]` : '');
 const count = (n, one, many = one + 's') => `${n} ${n === 1 ? one : many}`;
 
-/**
- * A field of a CSV file. A spreadsheet would run a text that begins like a formula: such a text
- * gets an apostrophe.
- */
+/** A field of a CSV file. A text that a spreadsheet would take for a formula gets an apostrophe. */
 function csvField(value) {
   if (value === null || value === undefined) return '';
   if (typeof value === 'number') return Number.isFinite(value) ? String(value) : '';
@@ -103,12 +100,12 @@ function csvField(value) {
   return /[",\r\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text;
 }
 
-/** The text of a CSV file, of its lines as lists of fields. */
+/** Text of a CSV file. `lines` are lists of fields. */
 const csvText = (lines) => lines.map((fields) => fields.join(',') + '\r\n').join('');
 
 /**
- * A button that hands a text to the clipboard; where that is refused, the text is shown to be
- * copied by hand.
+ * A button that copies a text to the clipboard; if that is refused, it shows the text to be copied
+ * by hand.
  */
 function copyButton(text) {
   const button = el('button', {type: 'button', className: 'copy'}, 'copy');
@@ -149,12 +146,12 @@ const all = (ids, from) => (ids ?? []).map((id) => from.get(id)).filter(Boolean)
 /** Figures of a part of the page. */
 const figuresOf = (part) => (model.figures ?? []).filter(({of}) => of === part);
 
-/** What the reader chose, by the keys of the address. */
+/** The reader's choices, by their keys in the address. */
 const state = {
   watchers: [],
   params() { return new URLSearchParams(location.hash.slice(1)); },
   get(key) { return state.params().get(key) ?? ''; },
-  /** The section asked for: `at=cost`, or an address that ends in `#cost`. */
+  /** The requested section: `at=cost`, or an address that ends in `#cost`. */
   section() {
     const bare = [...state.params()].find(([, value]) => !value);
     return state.get('at') || bare?.[0] || '';
@@ -181,7 +178,7 @@ const state = {
 };
 addEventListener('popstate', () => state.tell());
 
-/** A link that is a permalink by itself and, clicked, keeps all other choices. */
+/** A link that is a permalink, but keeps all other choices when clicked. */
 function choice(changes, props, ...children) {
   return el(
       'a', {
@@ -199,8 +196,8 @@ function choice(changes, props, ...children) {
 const isOff = (solver) => state.params().getAll('off').includes(solver);
 
 /**
- * Colours of the solvers and statuses as custom properties, and the rules by which switched-off
- * solvers vanish.
+ * Sets the colours of solvers and statuses as custom properties, and the rules that hide solvers
+ * that are switched off.
  */
 function paint() {
   const sheet = document.styleSheets[0];

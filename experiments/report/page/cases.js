@@ -1,9 +1,10 @@
 'use strict';
-// The table of all cases: sorted, filtered, taken away as CSV; and the dialog of one case.
+// The table of all cases, which can be sorted, filtered and exported as CSV, and the dialog of a
+// case.
 
 /**
- * Columns in the order of importance: `value` sorts and goes into the CSV (SI); `extra` ones are
- * shown if asked for.
+ * The columns in order of importance. `value` is used for sorting and for the CSV (in SI); `extra`
+ * columns are shown on request.
  */
 const caseColumns = (() => {
   const plain = (name, title, value, cell) =>
@@ -19,7 +20,7 @@ const caseColumns = (() => {
   });
   const used = (name) => model.cases.some((c) => Number.isFinite(c.values[name]));
   const values = Object.keys(model.metrics).filter(used), told = (name) => model.metrics[name].role;
-  const place = (name) => [...questions.keys(), name].indexOf(name);  // as the answer asks
+  const place = (name) => [...questions.keys(), name].indexOf(name);  // in the answer's order
   const cost = measured('cpu.per_second', (c) => c.cost?.['cpu.per_second']?.mid);
   const extra = (column) => ({...column, extra: true});
   return [
@@ -49,7 +50,10 @@ const caseColumns = (() => {
   ];
 })();
 
-/** A filter: words that the case must have, and conditions such as "dt<=5" in the units shown. */
+/**
+ * Parses a filter: words that the case must have, and conditions such as "dt<=5" in the units
+ * shown.
+ */
 function caseFilter(text) {
   const tests = text.toLowerCase().split(/\s+/).filter(Boolean).map((word) => {
     const [, name, sign, limit] = word.match(/^([\w.]+)(<=|>=|<|>)(.+)$/) ?? [];
@@ -73,7 +77,7 @@ const wordsOf =
                                                        .toLowerCase();
 const caseRows = model.cases.map((entry) => ({entry, words: wordsOf(entry)}));
 
-/** The cases that the reader's choices leave, in the order chosen. */
+/** The cases that remain after the reader's choices, in the chosen order. */
 function chosenCases() {
   const [name, down] = [state.get('sort').replace(/^-/, ''), state.get('sort').startsWith('-')];
   const column = caseColumns.find((c) => c.name === name), passes = caseFilter(state.get('find'));
@@ -103,7 +107,7 @@ const rowsAtFirst = 100;
 const shownColumns = () =>
     caseColumns.filter((c) => !c.extra || state.params().getAll('column').includes(c.name));
 
-/** Which of the further columns are shown. */
+/** Checkboxes for the extra columns. */
 function columnChooser() {
   const boxes = caseColumns.filter((c) => c.extra).map(({name, title}) => {
     const box = el('input', {
@@ -239,7 +243,7 @@ function casesSection() {
          'The table of all cases is on the screen; it is too wide for paper.'));
 }
 
-/** What a case measured: value, and window or interval. */
+/** Measured values of a case, each with its window or interval. */
 function caseValues(entry) {
   const line = (quantity, text, remark) => {
     const node = row(quantity.title, text, remark);
@@ -260,7 +264,7 @@ function caseValues(entry) {
 }
 
 /**
- * The dialog of one case: how it ended, its settings, its values, its film, and the command that
+ * Fills the dialog of a case: how it ended, its settings, values and film, and the command that
  * runs it again.
  */
 function fillCase(dialog, entry) {

@@ -38,8 +38,8 @@ const markerPath = (name, size) => d3.symbol().type(markers[name] ?? d3.symbolCi
 const dashOf = ({solver, dash}) => dash ?? solverOf(solver).dash;
 
 /**
- * Pixels: of a chart alone and beside others, above and below its plot, of a row of failed cases
- * and of one of their glyphs.
+ * Sizes in pixels: height of a chart alone and beside others, room above and below its plot, height
+ * of a row of failed cases in each, and size of one of their glyphs.
  */
 const box = {
   height: 250,
@@ -51,13 +51,13 @@ const box = {
   glyph: 8
 };
 
-/** The scale of an axis of the model, over pixels. */
+/** Scale for an axis of the model, in pixels. */
 const scaleOf = ({axis, low, high}, range) =>
     (axis === 'log' ? d3.scaleLog() : d3.scaleLinear()).domain([low, high]).range(range);
 
 /**
- * Ticks that can be read: the values of a study's setting, or 1, 2 and 5 of each power of ten as
- * far as they fit; of many powers every second.
+ * Readable ticks: the values of a study's setting, or as many of 1, 2 and 5 (or 1 and 3, or 1) of
+ * each power of ten as fit; if there are many powers, not all of them.
  */
 function ticksOf(scale, axis, kind, wanted) {
   const [low, high] = scale.domain(), inside = (v) => v >= low && v <= high;
@@ -73,8 +73,8 @@ function ticksOf(scale, axis, kind, wanted) {
 }
 
 /**
- * Takes away texts that would lie on one kept before them or on an obstacle; measured, not
- * estimated.
+ * Removes texts that would overlap one kept before them or an obstacle. Their places are measured,
+ * not estimated.
  */
 function thin(texts, obstacles = []) {
   const taken = obstacles.map((node) => node.getBoundingClientRect());
@@ -100,17 +100,17 @@ function pointLines(spec, series, point) {
   ].filter(Boolean);
 }
 
-/** Draws when a plot gets its width and whenever that changes, save for paper. */
+/** Calls `draw` when a plot gets its width and whenever the width changes, except for printing. */
 function watchWidth(plot, draw) {
   new ResizeObserver(() => {
     if (!document.body.classList.contains('printing')) draw();
   }).observe(plot);
 }
 
-/** Charts that are on the page: they are drawn again when the page is printed. */
+/** Charts on the page, which are drawn again for printing. */
 const drawn = new Set();
 
-/** A swatch of the key: a stretch of the line with its marker. */
+/** A swatch for a key: a piece of the line with its marker. */
 function swatch(series) {
   const svg = d3.create('svg')
                   .attr('class', 'swatch')
@@ -133,9 +133,9 @@ function swatch(series) {
 }
 
 /**
- * The key of all panels, without what the solvers' switches say for the whole page: further
- * settings of a solver, lines of theory, and, where they occur, what × above the plot, the triangle
- * and the hollow marker mean.
+ * The key of all panels. It omits what the solvers' switches of the page show; it has further
+ * settings of a solver, lines of theory and, if they occur, the meanings of × above the plot, the
+ * triangle and the hollow marker.
  */
 function chartKey(specs, {kind, frame}) {
   const points = specs.flatMap(pointsOf), grey = (dash) => swatch({colour: 'var(--muted)', dash});
@@ -187,7 +187,7 @@ function chartKey(specs, {kind, frame}) {
 
 const pointsOf = (spec) => spec.series.flatMap((s) => s.points);
 /**
- * Of each failed case the place among those that failed near its x: [row, from the left, how many
+ * Place of each failed case among those that failed near its x: [row, index from the left, number
  * in the row].
  */
 function failedPlaces(spec, px) {
@@ -209,7 +209,9 @@ function failedPlaces(spec, px) {
 const onFloor = (p, {y}, {y: {axis}, least}) =>
     axis === 'log' && !p.failed && (p.zero || (p.y > 0 && p.y * y.scale < least));
 
-/** A figure of the model: a panel for each chart, all on the same axes, `nameOf` above each. */
+/**
+ * A figure of the model: a panel for each chart, all on the same axes, with `nameOf` above each.
+ */
 function chartFigure(figure, nameOf) {
   const specs = all(figure.charts, charts), {x, y} = specs[0],
         common = (get) => specs.every((spec) => get(spec) === get(specs[0]));
@@ -259,7 +261,7 @@ function chartFigure(figure, nameOf) {
       el('div', {className: 'x-title'}, titled(x)));
 }
 
-/** One panel of a figure. It is drawn when it gets a width, and again when that changes. */
+/** One panel of a figure. It is drawn when it gets a width, and again when the width changes. */
 function chartPanel(spec, view, name, remarks) {
   const points = pointsOf(spec), said = remarks.filter(Boolean).map((text) => el('div', {}, text));
   const panel = (...content) =>
@@ -391,7 +393,7 @@ function drawChart(svg, spec, {kind, height, frame, failed, floored, clip}, widt
   nameBest(svg, spec);
 }
 
-/** A bar over the 95 % interval of x, with caps. */
+/** A bar for the 95 % interval of x, with caps. */
 function errorBar(p, px, py) {
   const cy = py(p.y), cap = 3;
   if (typeof p.x_low !== 'number' || typeof p.x_high !== 'number') return '';
@@ -432,8 +434,7 @@ function drawPoint(group, {spec, series, point, place, order, cx, cy, floored, s
 }
 
 /**
- * The names of the points on the front, as many as find room; the others say theirs at the
- * pointer.
+ * Keeps the names of points on the front as far as there is room; others are shown at the pointer.
  */
 function nameBest(svg, spec) {
   const texts = svg.selectAll('.point .name').nodes();

@@ -1,8 +1,9 @@
 'use strict';
-// Films of a scene with their quantities over time beside them. Times are seconds of simulated
-// time.
+// Films of a scene, with quantities over time beside them. Times are seconds of simulated time.
 
-/** A data URI as a blob: it may be played while the page may ask for nothing from a network. */
+/**
+ * Converts a data URI to a blob, which can be played even though the page may not load anything.
+ */
 function blobUrl(uri) {
   const [head, body] = uri.split(',', 2);
   const bytes = Uint8Array.from(atob(body), (letter) => letter.charCodeAt(0));
@@ -15,7 +16,7 @@ const compared =
 
 const seconds = (t) => t.toFixed(2) + '\u00A0s';
 
-/** Lines over time with a cursor and the values at it; calls `seek` with the time pointed at. */
+/** Lines over time with a cursor and the values there. Calls `seek` with the time pointed at. */
 function timeChart(track, seek, until) {
   const quantity = metric(track.metric), key = el('ul', {className: 'key'}),
         plot = el('div', {className: 'plot time'});
@@ -81,7 +82,7 @@ function timeChart(track, seek, until) {
     if (cursor) cursor.attr('d', `M${xs(Math.min(t, span))},6V${h - foot}`);
     track.series.forEach((s, i) => {
       const at = Math.max(0, d3.bisectRight(s.t, t + 1e-9) - 1);
-      // A run that ended early has no last value: how it ended stands there.
+      // A run that ended early has no value here; the text says how it ended.
       const over = t > s.t[s.t.length - 1] + 0.1 && cases.get(s.case)?.status;
       outputs[i].textContent = over ? statusOf(over).title : shown(s.y[at], quantity);
     });
@@ -100,7 +101,7 @@ function timeChart(track, seek, until) {
   return {node, show, span};
 }
 
-/** A chart over time without a film: its slider moves the cursor. */
+/** A chart over time for a scene without a film; a slider moves its cursor. */
 function seriesFigure(spec) {
   const track = {metric: spec.y.metric, title: spec.title, range: spec.range, series: spec.series};
   const seek = (t) => {
@@ -144,7 +145,7 @@ function panels(film) {
       film.panels.map(panel));
 }
 
-/** The compared solvers that the film does not show. */
+/** A note on the compared solvers that the film does not show. */
 function notFilmed(film) {
   const seen = film.panels.map(({solver}) => solver),
         others = compared.filter((id) => !seen.includes(id));
@@ -188,7 +189,9 @@ function player(scene, film) {
     video.addEventListener('loadedmetadata', place);
     video.src = blobUrl(film.src);
   };
-  /** Seeks a little past the beginning of a frame, or rounding could show the frame before. */
+  /**
+   * Seeks slightly past the start of a frame, since rounding could otherwise show the previous one.
+   */
   const place = () => {
     const into = (time + (time > 0 ? film.frame / 8 : 0)) / film.speed;
     if (video.readyState) video.currentTime = Math.min(video.duration, into);

@@ -1,10 +1,10 @@
 'use strict';
-// What a point or a cell says at the pointer and at the focus, and how the arrow keys move between
-// them.
+// Texts of points and cells, shown at the pointer and on focus, and navigation between them with
+// the arrow keys.
 
 const tip = document.getElementById('tip');
 
-let told = null;  // what the tip is about: {anchor, lines}
+let told = null;  // subject of the tip: {anchor, lines}
 
 function showTip(anchor, lines) {
   told = {anchor, lines};
@@ -29,7 +29,7 @@ addEventListener('keydown', (event) => {
   if (event.key === 'Escape') hideTip();
 });
 
-/** Gives an element its text at the pointer and at the focus, and to readers of the screen. */
+/** Gives an element a text for the pointer, for focus and for screen readers. */
 function describe(node, lines) {
   node.setAttribute('aria-label', lines.join('; '));
   const show = () => showTip(node, lines);
@@ -39,7 +39,7 @@ function describe(node, lines) {
   node.addEventListener('blur', hideTip);
 }
 
-/** Lines about a case: how it ended, which one it is, and how to see more of it. */
+/** Lines about a case: how it ended, which case it is, and how to see more of it. */
 function caseLines(status, reason, key) {
   const entry = statusOf(status), known = cases.get(key), why = reason ?? known?.reason;
   return [
@@ -51,9 +51,9 @@ function caseLines(status, reason, key) {
 }
 
 /**
- * One stop of the Tab key for all items of a box, which have `data-group` (a series, a row of a
- * map): left and right move within the group, up and down to the nearest item of the group before
- * and behind.
+ * Makes all items of a box a single stop of the Tab key. Each item has a `data-group` (a series, or
+ * a row of a map). Left and right move within the group, up and down to the nearest item of the
+ * previous or next group.
  */
 function rove(box, selector) {
   const items =

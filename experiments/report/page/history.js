@@ -1,8 +1,10 @@
 'use strict';
-// From build to build: a line for each case, a mark where it stepped; a click shows both builds
-// there.
+// History from build to build: a line for each case with a mark at each step; a click shows both
+// builds of the step.
 
-/** A small curve over builds; null breaks it. Equal values are a straight line in the middle. */
+/**
+ * A small curve over builds. A null interrupts it; equal values give a straight line in the middle.
+ */
 function sparkline({values, steps = []}, title) {
   const width = 260, height = 26, pad = 4, known = values.filter((v) => v !== null);
   let [low, high] = d3.extent(known);

@@ -1,14 +1,14 @@
 'use strict';
 // Stability maps: how cases end over two settings, as a table with a glyph in every cell.
 
-/** Statuses with their glyphs, as far as `used` has them. */
+/** Key of the statuses in `used`, with their glyphs. */
 function statusKey(used) {
   const entry = ({id, title, help}) =>
       item(glyphBox(id), el('span', {}, [title, help].filter(Boolean).join(': ')));
   return el('ul', {className: 'key'}, model.statuses.filter(({id}) => used.has(id)).map(entry));
 }
 
-/** A glyph on its colour. */
+/** A glyph on the colour of its status. */
 function glyphBox(id) {
   const i = statusIndex(id);
   return el(
@@ -20,7 +20,7 @@ const shadeOf = (value) => model.shades.find(({end}) => end === null || value <=
 const shaded = ({share}) =>
     `background:color-mix(in srgb, var(--c${statusIndex('ok')}) ${100 * share}%, var(--card));` +
     (share < 1 ? 'color:var(--ink)' : '');
-/** What the shades mean, if a cell has one. */
+/** Key of the shades, if any cell has one. */
 function shadeKey(cells) {
   if (cells.every(({value}) => value === undefined)) return null;
   const box = (shade) =>
@@ -82,7 +82,7 @@ function mapFigure(map) {
       box, el('div', {className: 'x-title'}, `${titled(map.x)} →`));
 }
 
-/** All maps of a scene: those of one study stand side by side under their question. */
+/** All maps of a scene. Those of one study are side by side under their question. */
 function mapsOf(scene) {
   const shown = all(scene.maps, maps);
   if (!shown.length) return null;

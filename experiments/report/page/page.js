@@ -1,12 +1,12 @@
 'use strict';
-// The page from top to bottom: its contents, the solvers' switches, printing.
+// The page as a whole: its contents, the solvers' switches, and printing.
 
 const name = (part) =>
     part.id === 'answer' && !model.differences ? 'Answer' : part.querySelector('h2').textContent;
 
 /**
- * What goes on paper, by the ids of sections in the address: all scenes and all cases are many
- * pages.
+ * Ids of the sections to print. By default all scenes and all cases are left out, since they take
+ * many pages.
  */
 const toPaper = () => state.get('print') ? state.params().getAll('print') :
                                            ['differences', 'answer', 'charts', 'cost'];
@@ -30,7 +30,7 @@ function printChooser(sections) {
       el('button', {type: 'button', onclick: () => print()}, 'print these'));
 }
 
-/** The contents, which stay in sight, and the solvers' switches. */
+/** The contents, which stay visible, and the solvers' switches. */
 function contents(sections) {
   const links = sections.map((part) => choice({at: part.id}, {}, name(part)));
   const seen = new IntersectionObserver(() => {
@@ -56,7 +56,10 @@ function contents(sections) {
           printChooser(sections));
 }
 
-/** All scenes and folded parts of what goes on paper; afterwards as it was. */
+/**
+ * Before printing, shows all scenes and folded parts of the printed sections; restores them
+ * afterwards.
+ */
 function watchPrinting() {
   let closed = [];
   const begin = () => {
@@ -80,7 +83,8 @@ function watchPrinting() {
 }
 
 /**
- * A section, a table or a chart by its id, or the part of that name of the scene shown ("film").
+ * The element with this id (a section, a table or a chart), or the visible part with that name of
+ * the shown scene ("film").
  */
 const placeOf = (id) => document.getElementById(id) ??
     [...document.querySelectorAll(`[data-at="${CSS.escape(id)}"]`)].find(
@@ -100,8 +104,8 @@ function start() {
   let at = null, scene = null;
   state.watch(() => {
     const wanted = state.section(), now = state.get('scene');
-    // A frame later charts and films have their heights: what is shown stays where it was scrolled
-    // to.
+    // Wait until charts and films have their heights, so that the target does not move away after
+    // scrolling.
     if (wanted && (wanted !== at || now !== scene))
       requestAnimationFrame(() => requestAnimationFrame(() => placeOf(wanted)?.scrollIntoView()));
     [at, scene] = [wanted, now];

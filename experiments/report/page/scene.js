@@ -1,5 +1,5 @@
 'use strict';
-// What there is of one scene, and the scenes one at a time.
+// Everything about one scene, and the choice of the scene that is shown.
 
 /** How the cases of a scene ended, solver by solver. */
 function ends(counts) {
@@ -14,8 +14,7 @@ function ends(counts) {
 }
 
 /**
- * The film of a scene, or its picture, or a note that it has neither; without a film, the command
- * that makes one.
+ * The film of a scene or its picture. Without a film, also a note with the command that makes one.
  */
 function filmOf(scene) {
   const film = films.get(scene.film), moves = film?.type?.startsWith('video/');
@@ -49,8 +48,8 @@ function scenePart(scene) {
 }
 
 /**
- * One of several parts on screen, chosen by `key` of the address or by an element in it that the
- * address asks for; each is built when it is first shown, all of them for print.
+ * Shows one of several parts, chosen by `key` in the address or by an element within the part that
+ * the address requests. Each part is built when it is first shown; all are built for printing.
  */
 function oneOf(key, parts, label) {
   const boxes = parts.map(() => el('div', {hidden: true})), built = new Set();
@@ -101,8 +100,8 @@ function oneOf(key, parts, label) {
 oneOf.views = [];
 
 /**
- * All scenes at one glance: of each quantity, over what it was drawn, a panel for each scene on
- * the same axes.
+ * Charts of all scenes together: for each quantity and what it is drawn over, a panel for each
+ * scene on the same axes.
  */
 function chartsSection() {
   const nameOf = (spec) => choice(

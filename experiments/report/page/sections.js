@@ -1,11 +1,14 @@
 'use strict';
-// The sections about all scenes but the answer, which is in table.js. One without content is not
+// The sections on all scenes, except for the answer (table.js). A section without content is not
 // made.
 
 const section = (id, title, ...content) => el('section', {id}, el('h2', {}, title), content);
 const list = (title, items) => items?.length ? [el('h3', {}, title), el('ul', {}, items)] : null;
 
-/** Of two folders: it heads the page, above what the second one has. */
+/**
+ * Differences between two folders. This section heads the page, above the contents of the second
+ * folder.
+ */
 function differencesSection() {
   const both = model.differences;
   if (!both) return null;

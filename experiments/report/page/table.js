@@ -1,7 +1,7 @@
 'use strict';
-// Tables, of whichever answer: a cell is a number with its unit, a text or an interval; it may be
-// the best of its row, have a bar, and lead to its case. The answer on the first screen is such
-// tables, a row each, which unfold to their scenes.
+// Tables of any answer. A cell is a number with its unit, a text or an interval; it can be marked
+// as the best of its row, have a bar, and lead to its case. The answer on the first screen consists
+// of such tables, each shown as one row that unfolds to its scenes.
 
 /** Tables by name; their cells are {value, state, note, key, scene, best}. */
 function unpacked(tables) {
@@ -15,7 +15,7 @@ function unpacked(tables) {
 }
 const tables = unpacked(model.tables), questions = unpacked(model.answer?.tables);
 
-/** A solver's mark: its colour and its marker, so that hue is not the only carrier. */
+/** Mark of a solver with its colour and its marker, so that hue is not the only distinction. */
 function mark(id) {
   const svg = d3.create('svg')
                   .attr('class', 'mark')
@@ -42,13 +42,13 @@ const bySolver = (counts) =>
 const middle = (value) => Array.isArray(value) ? value[1] : typeof value === 'number' ? value : NaN;
 const unitOf = (column) => ({unit: column.shown ?? '', scale: column.scale ?? 1});
 
-/** The text of a cell; of an interval its middle. */
+/** Text of a cell; for an interval, its middle. */
 function cellText({value}, column) {
   if (Number.isFinite(middle(value))) return shown(middle(value), unitOf(column), column.digits);
   return value === null ? '' : typeof value === 'boolean' ? value ? 'yes' : 'no' : value;
 }
 
-/** The half width of an interval, "±0.3 %", with the interval itself as a tooltip. */
+/** Half width of an interval, "±0.3 %", with the interval as a tooltip. */
 function spreadOf([low, mid, high], column) {
   return el(
       'small', {title: interval(low, high, unitOf(column))},
@@ -57,12 +57,12 @@ function spreadOf([low, mid, high], column) {
 
 /**
  * Whether a cell has words in place of a value: "not run", "exploded". Cloth that hardly moves has
- * its number, which is not compared.
+ * a number, but it is not compared.
  */
 const lacks = ({state, value}) =>
     Boolean(state) && state !== 'value' && !Number.isFinite(middle(value));
 
-/** What a cell shows. `most`: the number of a full bar; without it there is no bar. */
+/** Content of a cell. `most` is the number of a full bar; without it there is no bar. */
 function cellContent(cell, column, most) {
   const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value),
         note = cell.note ?? '';
@@ -82,7 +82,7 @@ function cellContent(cell, column, most) {
   ];
 }
 
-/** A row: its head, then a cell for each column; cells of a solver are hidden with it. */
+/** A row: its head, then a cell for each column. Cells of a solver are hidden with the solver. */
 function tableRow(table, cells, props, head, bars) {
   const most = bars ? d3.max(cells, (cell) => middle(cell.value)) : 0;
   return el(
@@ -94,7 +94,9 @@ function tableRow(table, cells, props, head, bars) {
             cellContent(cell, column, most));
       }));
 }
-/** The heads of the columns with their units; `first` replaces the first head and omits units. */
+/**
+ * Heads of the columns with their units. `first` replaces the first head; units are then omitted.
+ */
 function tableHeads(table, first) {
   const solverHead = ({name, heading}) => {
     const {arithmetic} = solverOf(name);
@@ -111,7 +113,7 @@ function tableHeads(table, first) {
   return el('tr', {}, table.columns.map(cell));
 }
 
-/** What is copied: the table for a spreadsheet, numbers in SI. */
+/** Text for copying: the table for a spreadsheet, with numbers in SI. */
 function tableCsv(table) {
   const field = ({value}) => csvField(Array.isArray(value) ? value[1] : value);
   const unit = (c) => c.unit && c.unit !== '1' ? ` [${c.unit}]` : '';
@@ -131,19 +133,19 @@ const tableNode = (table, heading = 'h4') =>
 const foldedTable = (table) =>
     folded(table.title, copyButton(() => tableCsv(table)), tableBody(table));
 
-/** Names of unfolded questions. Default on a wide window: the first. */
+/** Names of unfolded questions; by default the first, if the window is wide. */
 function unfolded() {
   const chosen = state.params().getAll('open').filter((name) => name !== 'none');
   return state.get('open') || innerWidth < 1000 ? chosen : [...questions.keys()].slice(0, 1);
 }
 
-/** The scene that a row is of; "": of all together. */
+/** The scene of a row; "" for the row of all scenes. */
 const sceneOf = ([{scene}]) => scene ?? '';
 const scenesOf = (table) => table.rows.length > 2 ? table.rows.slice(0, -1) : [];
 
 /**
- * Rows of one question: what all scenes say together, or the scene that was chosen; then each of
- * them, unfolded by a click.
+ * Rows of a question: that of all scenes together or of the chosen scene, then those of each scene,
+ * which a click unfolds.
  */
 function questionRows(table) {
   const last = table.rows[table.rows.length - 1], id = `answer-${table.name}`;
@@ -188,8 +190,9 @@ function questionRows(table) {
   return body;
 }
 
-/** The scene whose cells the questions show; "" for all scenes together. */
+/** Scenes for which there are answers. */
 const answered = [...new Set([...questions.values()].flatMap(scenesOf).map(sceneOf))];
+/** The scene whose cells the questions show; "" for all scenes together. */
 const chosenScene = () => answered.includes(state.get('scene')) ? state.get('scene') : '';
 function sceneChooser() {
   const links = ['', ...answered].map((scene) => choice({scene}, {}, scene || 'All scenes'));
@@ -204,7 +207,7 @@ function sceneChooser() {
       el('span', {}, 'The table below is of'), links);
 }
 
-/** What the page is and what it asks. */
+/** Head of the page: what it is about and the question. */
 function pageHead() {
   const {meta} = model, of = meta.cases < meta.planned ? ` of ${meta.planned}` : '';
   const facts = [`${meta.cases}${of} cases`, meta.preset, meta.made, meta.machine].filter(Boolean);
@@ -214,7 +217,7 @@ function pageHead() {
   ];
 }
 
-/** The first screen: a row for each question. */
+/** The first screen, with a row for each question. */
 function answerSection() {
   const asked = [...questions.values()];
   return el(

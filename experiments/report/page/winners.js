@@ -1,8 +1,8 @@
 'use strict';
-// Who wins where: the map of the cheapest solvers, error over cost beside it, what both say in a
-// sentence, and the meaning of every abbreviation.
+// Winners: the map of the cheapest solvers, error over cost beside it, a summary in sentences, and
+// the meaning of every abbreviation.
 
-/** What the abbreviations in a text mean, a line each. */
+/** Meanings of the abbreviations in a text, one per line. */
 function explain(text) {
   const plain = text.replaceAll('\u00A0', ' ');
   const isWork = (term) => /^\d+ × \d+$/.test(term);
@@ -12,7 +12,7 @@ function explain(text) {
       .map(({term, meaning}) => `${term}: ${meaning}`)
       .join('\n');
 }
-/** The setting with "2 × 8" kept on one line. */
+/** Keeps "2 × 8" in a setting on one line. */
 const kept = (text) => text.replaceAll(' × ', '\u00A0×\u00A0');
 const explained = (text, props = {}) => el('small', {...props, title: explain(text)}, kept(text));
 
@@ -25,7 +25,7 @@ function termList() {
   return el('p', {className: 'note terms'}, model.terms.map(entry), '.');
 }
 
-/** A part of a sentence: a number links to its case, or to the map whose cells it counts. */
+/** Part of a sentence. A number links to its case, or to the map whose cells it counts. */
 function saidPart({text, case: key, map}) {
   if (key) return caseLink(key, text);
   return map ? choice({at: 'winners'}, {}, text) : text;
@@ -38,8 +38,9 @@ const frameCost = {
 };
 
 /**
- * A setting that reaches the error: who, over whom by how much, at what cost, at which setting, in
- * which arithmetic, of which links, and its largest error of the run, if that is above `level`.
+ * A setting that reaches the error: its solver, how much cheaper it is than which other one, its
+ * cost, its parameters, arithmetic and links, and its largest error during the run if that exceeds
+ * `level`.
  */
 function contender(one, over, level) {
   const cost = (one.at_most ? '≤ ' : '') + shown(one.cost[1], frameCost, 2);
@@ -53,7 +54,7 @@ function contender(one, over, level) {
       largest && el('small', {className: 'how'}, largest));
 }
 
-/** How many times cheaper than the cheapest setting of another solver. */
+/** How many times cheaper it is than the cheapest setting of another solver. */
 function overNext(next, times) {
   const {title} = solverOf(next.solver);
   const cost = `${shown(next.cost[1], frameCost, 2)} by ${title}, ${next.setting}`;
@@ -65,7 +66,7 @@ function overNext(next, times) {
       el('b', {}, `${number(times[1], 2)}×`), ` cheaper than ${short(title, 24)}`);
 }
 
-/** A cell; on a phone, where the columns stand below each other, it says which error it is of. */
+/** A cell. On a phone, where columns are below each other, it also shows its error. */
 function winnerCell(cell, level) {
   const error = shown(level, metric(model.winners.metric), 2);
   const node = (props, ...content) =>
@@ -139,7 +140,7 @@ function winnersCard() {
           certainty));
 }
 
-/** The first screen of what was timed. */
+/** The part of the first screen about what was timed. */
 function winnersPart() {
   if (!model.winners) return null;
   const costs = figuresOf('cost');

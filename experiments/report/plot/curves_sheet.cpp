@@ -19,13 +19,14 @@ namespace {
 
 constexpr const char* kGrey = " lc rgb '#5B6472'";
 
-/// Rows whose first column is this curve and whose status is, or is not, a failure.
+/// Data of a curve: the rows that are failures, or those that are not.
 std::string only(std::size_t curve, bool failures, const std::string& x, const std::string& y) {
   return "'@CSV@' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(8) eq '" +
          (failures ? "yes" : "no") + "' ? " + x + " : NaN):" + y;
 }
 
-/// Titles of the axes and scales; the ticks of a setting are the values that a study tried.
+/// Sets titles, scales and ticks of the axes. The ticks of a setting are the values that a study
+/// tried.
 void set_axes(Sheet& sheet, const Frame& frame, const std::vector<Chart>& charts) {
   const Quantity &x = charts.front().x, &y = charts.front().y;
   sheet.x_label = x.label();
@@ -66,7 +67,7 @@ std::string csv_rows(std::size_t id, const Curve& curve) {
   return rows;
 }
 
-/// How a failure is named above the plot: by the statuses that occur.
+/// Name of failures above the plot: the statuses that occur.
 std::string ends_of(const std::vector<Chart>& charts) {
   std::vector<std::string> ends;
   for (const Chart& chart : charts)
@@ -76,7 +77,7 @@ std::string ends_of(const std::vector<Chart>& charts) {
   return "above: " + joined(ends);
 }
 
-/// x of the k-th of n curves that fail in a panel: their marks stand beside each other.
+/// x of the k-th of n curves that fail in a panel, shifted so that their marks are side by side.
 std::string beside(const std::string& x, const Frame& frame, std::size_t k, std::size_t n) {
   const double share = 0.022 * (static_cast<double>(k) - 0.5 * static_cast<double>(n - 1));
   if (n < 2) return x;
@@ -84,8 +85,8 @@ std::string beside(const std::string& x, const Frame& frame, std::size_t k, std:
                              : x + "+(" + exact(share * (frame.x.high - frame.x.low)) + ")";
 }
 
-/// One curve in the last panel: its points, what failed on the upper edge, what is too small for a
-/// logarithmic axis on the lower one. What these marks mean goes to `marks`: look and title.
+/// Draws one curve in the last panel: its points, failures on the upper edge, and values too small
+/// for a logarithmic axis on the lower edge. Adds the look and title of these marks to `marks`.
 void draw_curve(Sheet& sheet, std::size_t id, const Curve& curve, const Chart& chart,
                 const Frame& frame, const std::string& ends,
                 std::vector<std::pair<std::string, std::string>>& marks) {
@@ -121,7 +122,8 @@ void draw_curve(Sheet& sheet, std::size_t id, const Curve& curve, const Chart& c
        zeros ? "below: exactly zero" : "below: zero, or less than " + significant(frame.least, 1)});
 }
 
-/// What is no curve: the theory's slope, the value's floor, the Pareto front.
+/// Draws everything that is not a curve: the slope of a theory, the floor of the value, the Pareto
+/// front.
 void draw_guides(Sheet& sheet, const Chart& chart, const Frame& frame) {
   const double x = chart.x.unit.scale, y = chart.y.unit.scale;
   if (const double factor = theory_factor(chart); std::isfinite(factor))

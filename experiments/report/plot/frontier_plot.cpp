@@ -1,4 +1,4 @@
-// How far each parameter goes, as bars: a figure of its own kind.
+// Bars that show how far each parameter goes.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ double theory_headroom(const ParameterFrontier& one) {
   return one.downwards ? one.from / one.theory : one.theory / one.from;
 }
 
-/// A row for each frontier: where its bar stands and how far it goes. `most` grows to the longest.
+/// Rows for each frontier: place and length of its bar. `most` grows to the longest.
 std::string frontier_rows(const std::vector<ParameterFrontier>& all,
                           const std::vector<std::string>& parameters,
                           const std::vector<std::string>& solvers, double& most) {
@@ -43,13 +43,13 @@ std::string frontier_rows(const std::vector<ParameterFrontier>& all,
   return csv;
 }
 
-/// A bar for each row of a solver, its end's name, and where theory has the end.
+/// Bars for the rows of each solver, the names of their ends, and the ends according to theory.
 std::string frontier_bars(const std::vector<std::string>& solvers, const std::string& stem) {
   std::string plot;
   for (std::size_t i = 0; i < solvers.size(); ++i) {
     const std::string name = parse_solver(solvers[i]).entry->name.data();
     const std::string rows = "'" + stem + ".csv' skip 1 using (column(1) == " + std::to_string(i);
-    // Two settings of one solver share its colour: the second is paler.
+    // Two settings of one solver share its colour; the second is paler.
     const bool again = i > 0 && parse_solver(solvers[i - 1]).entry->name == name;
     plot += (plot.empty() ? "plot " : ", \\\n  ") + rows +
             " ? 1 : NaN):3:(1):5:($3-$4):($3+$4) with boxxyerror fs solid " +

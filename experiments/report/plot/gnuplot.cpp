@@ -1,4 +1,4 @@
-// Runs gnuplot: a picture appears whole or not at all.
+// Runs gnuplot so that a picture appears completely or not at all.
 #include <algorithm>
 #include <fstream>
 
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether the picture has its end: gnuplot does not see that a disk is full.
+/// Whether the picture is complete. gnuplot does not notice a full disk.
 bool is_whole(const fs::path& picture) {
   constexpr std::size_t kEnd = 32;
   std::ifstream in(picture, std::ios::binary | std::ios::ate);

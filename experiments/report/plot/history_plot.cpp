@@ -1,4 +1,4 @@
-// A value over builds: a line for each case, a mark where it stepped.
+// A value over builds: a line for each case, a mark at each step.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace taut::report {
 
 namespace {
 
-/// Every so many builds are named below the axis.
+/// Ticks of the axis, which name at most kMost builds at equal intervals.
 std::string build_ticks(const History& history) {
   constexpr std::size_t kMost = 10;
   const std::size_t each = (history.builds.size() + kMost - 1) / kMost;
@@ -25,7 +25,7 @@ std::string build_ticks(const History& history) {
   return ticks;
 }
 
-/// A row for each case and build: which line, where it stands, whether it stepped there.
+/// Rows for each case and build: the line, its position, and whether it stepped there.
 std::string history_rows(const History& history, const std::string& value, double scale) {
   std::string csv = "case,line,build,at,value,stepped\n";
   for (std::size_t r = 0; r < history.rows.size(); ++r)

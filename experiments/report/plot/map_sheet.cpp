@@ -1,4 +1,4 @@
-// How cases end over two settings, and how often each solver is near the cheapest.
+// How cases end over two settings, and how often each solver is close to the cheapest.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -13,9 +13,9 @@ namespace taut::report {
 
 namespace {
 
-/// "set xtics (...)" and the range of cells that are one apart.
+/// Commands for ticks and range of an axis of cells that are one unit apart.
 std::string cell_ticks(const char* axis, const Quantity& q, const std::vector<double>& values) {
-  constexpr std::size_t kMost = 7;  // labels that do not touch in a narrow panel
+  constexpr std::size_t kMost = 7;  // more labels would touch in a narrow panel
   const std::size_t every = (values.size() + kMost - 1) / kMost;
   std::string list;
   for (std::size_t k = 0; k < values.size(); k += std::max<std::size_t>(1, every))
@@ -24,15 +24,15 @@ std::string cell_ticks(const char* axis, const Quantity& q, const std::vector<do
          "range [-0.5:" + exact(static_cast<double>(values.size()) - 0.5) + "]\n";
 }
 
-/// How far what completed is off; NaN: it did not, or nobody knows.
+/// Error of a case that completed; NaN if it did not or the error is unknown.
 double error_of(const Record& r) {
   const bool ended = r.status.kind == Status::Kind::ok || r.status.kind == Status::Kind::unsettled;
   return ended ? value_of(r, kErrorMetric) : std::nan("");
 }
 
-constexpr std::string_view kInk = "#1A1A19";  ///< on light shades
+constexpr std::string_view kInk = "#1A1A19";  ///< text on light shades
 
-/// Of two colours "#RRGGBB".
+/// Mixture of two colours "#RRGGBB".
 std::string mixed(std::string_view colour, double share, std::string_view background) {
   const auto part = [](std::string_view of, std::size_t k) {
     return std::stoi(std::string(of.substr(1 + 2 * k, 2)), nullptr, 16);
@@ -105,7 +105,7 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
 
 Sheet profile_sheet(const std::vector<PerformanceProfile>& profiles) {
   Sheet sheet;
-  double most = 2;  // of the finite factors
+  double most = 2;  // largest finite factor
   for (const PerformanceProfile& profile : profiles)
     for (const double r : profile.ratios)
       if (std::isfinite(r)) most = std::max(most, r);

@@ -42,26 +42,33 @@ void Sheet::explain(const std::string& look, const std::string& title) {
 
 namespace {
 
-/// The first value with this role.
+/// Name of the first value with this role.
 std::string_view value_with(Role role) {
   const std::vector<const ValueSpec*> all = values_with_role();
   const auto at = std::ranges::find(all, role, &ValueSpec::role);
   return at == all.end() ? "" : (*at)->name;
 }
 
-constexpr double kLetter = 9, kLine = 21;    ///< of the key's text, at a font of 13 [px]
-constexpr double kGnuplotsLetter = 11;       ///< by which gnuplot sets the columns of a key apart
-constexpr double kSample = 75;               ///< a stretch of the line before it
-constexpr double kLeft = 116, kBottom = 62;  ///< ticks and titles of the axes
-constexpr double kNarrowest = 190;           ///< a panel of a figure whose width is given
-constexpr double kPoints = 72.0 / 25.4;      ///< of a millimetre
-constexpr double kFont = 13, kPixel = 0.72;  ///< px, and a pixel in the PDF [pt]
+/// Width of a letter and height of a line in the key, at a font of 13 [px].
+constexpr double kLetter = 9, kLine = 21;
+/// Width of a letter by which gnuplot spaces the columns of a key [px].
+constexpr double kGnuplotsLetter = 11;
+/// Length of the line sample before an entry of the key [px].
+constexpr double kSample = 75;
+/// Room for ticks and titles of the axes [px].
+constexpr double kLeft = 116, kBottom = 62;
+/// Least width of a panel in a figure of given width [px].
+constexpr double kNarrowest = 190;
+/// Points per millimetre.
+constexpr double kPoints = 72.0 / 25.4;
+/// Font size [px], and size of a pixel in the PDF [pt].
+constexpr double kFont = 13, kPixel = 0.72;
 
-/// Where the panels and the key of a figure stand, in pixels at a font of 13. A width that is given
-/// decides how many panels stand side by side, and the key stands below them.
+/// Layout of a figure's panels and key, in pixels at a font of 13. If a width is given, it
+/// determines how many panels are side by side, and the key is below them.
 struct Layout {
   std::size_t panels, columns, rows, key_columns = 1, key_rows;
-  double pixel = kPixel;  ///< pt
+  double pixel = kPixel;  ///< pt per pixel
   double width, height, entry = 0, header;
   bool below;
 
@@ -115,7 +122,7 @@ struct Layout {
   double bottom() const { return (kBottom + foot()) / height; }
 };
 
-/// A panel beside others shows the axes' titles at the figure's edge alone.
+/// Commands for a panel. Of several panels, only those at the figure's edge have axis titles.
 std::string panel_commands(const Sheet& sheet, const Layout& layout, std::size_t at) {
   const Sheet::Panel& panel = sheet.panels[at];
   const bool first = at % layout.columns == 0, last = at + layout.columns >= layout.panels;
@@ -124,7 +131,7 @@ std::string panel_commands(const Sheet& sheet, const Layout& layout, std::size_t
          gnuplot_string(first ? sheet.y_label : "") + "\n" + panel.settings + panel.plot + "\n";
 }
 
-/// Beside the panels a column, below them rows.
+/// Place of the key: a column beside the panels, or rows below them.
 std::string key_place(const Layout& layout) {
   if (!layout.below)
     return "set origin " + exact(layout.right()) + ", 0\nset key at screen " +
@@ -209,7 +216,7 @@ const PlotKind& find_plot_kind(std::string_view name) {
 
 namespace {
 
-/// A number with its unit; "" is 0.
+/// A number with its unit; 0 if the text is empty.
 double size_of(const char* option, const std::string& text, const std::string& unit) {
   if (text.empty()) return 0;
   const auto value = text.ends_with(unit) ? whole<double>(text.substr(0, text.size() - unit.size()))
@@ -242,8 +249,8 @@ void check_value_name(const std::string& name, const Records& records) {
 
 namespace {
 
-/// The sheet of what can be drawn; why of the other panels nothing can goes to `without`. Throws
-/// InputError if nothing can.
+/// The sheet of everything that can be drawn. Adds to `without` why other panels cannot. Throws
+/// InputError if none can.
 Sheet sheet_of(const PlotSpec& spec, const std::vector<PlotPanel>& panels,
                std::vector<std::string>& without) {
   std::vector<Chart> charts;
@@ -286,7 +293,7 @@ PlotFiles make_plot(PlotSpec spec, const std::vector<PlotPanel>& panels,
   Records all;
   for (const PlotPanel& panel : panels)
     all.insert(all.end(), panel.records.begin(), panel.records.end());
-  // A curve runs along what is set, whatever it is called, and not along what was measured.
+  // Curves run along a setting, not along a measured value.
   const bool measured = spec.x == "projections" || std::ranges::any_of(all, [&](const Record* r) {
                           return r->values.contains(spec.x);
                         });

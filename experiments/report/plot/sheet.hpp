@@ -11,30 +11,33 @@
 
 namespace taut::report {
 
-/// A figure for gnuplot: the rows of its CSV, panels on the same axes, one key for all. "@CSV@"
-/// stands for the file's name. Titles and labels reach the script by gnuplot_string() alone.
+/// A figure for gnuplot: the rows of its CSV, panels on the same axes, and one key for all. "@CSV@"
+/// stands for the file's name. Titles and labels enter the script only through gnuplot_string().
 struct Sheet {
   struct Panel {
     std::string title, settings, plot;
   };
   std::string csv, settings, x_label, y_label;
   std::vector<Panel> panels;
-  std::vector<std::string> key, titles;  ///< of each look that the panels have: once
+  /// Entries of the key; a look that several panels have is listed once.
+  std::vector<std::string> key, titles;
 
-  /// Draws data into the last panel. A look without a title is not in the key.
+  /// Draws data into the last panel. A look without a title is left out of the key.
   void draw(const std::string& data, const std::string& look, const std::string& title);
+  /// Adds a look to the key.
   void explain(const std::string& look, const std::string& title);
 };
 
-/// "lc rgb" and "dt" of a solver: "(9,4)".
+/// "lc rgb" of a solver.
 std::string colour_of(std::string_view solver);
+/// "dt" of a variant of a solver: "(9,4)".
 std::string gnuplot_dash(std::string_view solver, int variant);
 
-/// A panel for each chart.
+/// A sheet with a panel for each chart.
 Sheet curves_sheet(const Figure&);
-/// A panel for each scene; of its series those of this value.
+/// A sheet with a panel for each scene, which shows its series of this value.
 Sheet series_sheet(const std::vector<PlotPanel>&, const std::string& value);
-/// A panel for each map. Precondition: not empty.
+/// A sheet with a panel for each map. Precondition: not empty.
 Sheet map_sheet(const std::vector<StatusMap>&);
 Sheet profile_sheet(const std::vector<PerformanceProfile>&);
 

@@ -18,7 +18,7 @@ CaseList::CaseList(const ReportInput& input) {
     if (fresh) cases_.push_back(&r);
     at->second.studies.push_back(&study);
   };
-  // Of a case that several know, the first is kept: studies have its cost, where it was timed.
+  // If several know a case, the first is kept: the studies' record has its cost, if it was timed.
   for (const StudyResult& study : input.studies)
     for (const Record& r : study.records) add(r, study.name);
   for (const MapResult& map : input.maps)

@@ -14,7 +14,8 @@ namespace {
 ComparedSolver choose(const std::string& solver, const std::vector<const Record*>& cases) {
   std::vector<std::vector<const Record*>> groups;
   std::map<std::map<std::string, std::string>, std::size_t> index;
-  std::map<std::pair<std::string, std::string>, std::size_t> having;  // groups with that setting
+  // Number of groups with that setting.
+  std::map<std::pair<std::string, std::string>, std::size_t> having;
   for (const Record* r : cases) {
     const auto choice = other_settings(*r);
     const auto [at, fresh] = index.try_emplace(choice, groups.size());
@@ -30,12 +31,13 @@ ComparedSolver choose(const std::string& solver, const std::vector<const Record*
   return chosen;
 }
 
-/// How far from 1 × 16, which every comparison in the literature is near to.
+/// Distance from 1 × 16, which is close to every comparison in the literature.
 double distance(const Work& work) {
   return std::abs(std::log(std::max(1, work.sweeps) / 16.0)) + std::log(std::max(1, work.substeps));
 }
 
-/// What a solver ran most often among the works that `admits`; of equals the one nearest to 1 × 16.
+/// The work that a solver ran most often among those that `admits` accepts; in a tie the one
+/// nearest to 1 × 16.
 template <class Admits>
 Work commonest_work(const ComparedSolver& solver, Admits admits) {
   std::map<Work, int> counts;
@@ -47,8 +49,9 @@ Work commonest_work(const ComparedSolver& solver, Admits admits) {
   return best == counts.end() ? Work{} : best->first;
 }
 
-/// Gives each solver compared the work at which it is quoted: the one that all who have sweeps ran,
-/// nearest to 1 × 16; else each its own, of the same sweeps if there are any.
+/// Chooses the work at which each compared solver is quoted: of the works that all solvers with
+/// sweeps ran, the one nearest to 1 × 16. If there is none, each solver has its own, with the same
+/// number of sweeps if possible.
 void choose_work(std::vector<ComparedSolver>& compared) {
   std::map<Work, int> counts;
   std::map<int, int> sweep_counts;
@@ -80,8 +83,8 @@ void choose_work(std::vector<ComparedSolver>& compared) {
     });
 }
 
-/// The task that most solvers ran at their work; of equals the time step nearest to 1/64
-/// s.
+/// The task that most solvers ran at their work; in a tie the one with the time step nearest to
+/// 1/64 s.
 QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& compared) {
   std::vector<QuotedScene> asked;
   for (std::size_t i = 0; i < compared.size(); ++i)

@@ -10,32 +10,32 @@
 
 namespace taut::report {
 
-/// One solver with the settings under which it is compared: of several choices the one with most
-/// cases, so that its name means one thing in every table.
+/// A solver with the settings under which it is compared. Of several choices of settings it is the
+/// one with most cases, so that the name means the same in every table.
 struct ComparedSolver {
   std::string name;
   std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
   std::vector<const Record*> cases;
-  Work work = {};  ///< at which single values are quoted: the same for all, or its own
+  Work work = {};  ///< work at which single values are quoted: common to all, or its own
 };
 
-/// The cases of which single values are quoted: the same task for all solvers, each at its work.
+/// The cases whose single values are quoted: the same task for all solvers, each at its own work.
 struct QuotedScene {
   Task task;
-  std::string title;  ///< the scene's name, with the settings that not all of its cases share
-  std::vector<const Record*> cases;  ///< of each solver compared; nullptr: was not run like this
+  std::string title;  ///< the scene's name, and the settings that not all of its cases share
+  std::vector<const Record*> cases;  ///< by compared solver; nullptr: not run like this
 };
 
-/// Who is compared, and at which work single values are quoted. Points into the input.
+/// The compared solvers, and the works at which single values are quoted. Points into the input.
 struct ComparedSolvers {
   std::vector<ComparedSolver> all;  ///< in order of appearance
   std::vector<QuotedScene> scenes;  ///< every scene that a study ran
   std::vector<std::string> studies;
 
   const QuotedScene* quoted(const std::string& scene) const;
-  /// "1 × 16 (substeps × sweeps)"; "": it is not the same for all.
+  /// "1 × 16 (substeps × sweeps)"; "" if not all solvers have the same.
   std::string common_work() const;
-  /// The scene's name with the settings that not all tasks on it share; times do not count.
+  /// The scene's name, and the settings that not all tasks on it share, except for times.
   std::string title(Task) const;
 
   std::set<Task> asked;  ///< for titles

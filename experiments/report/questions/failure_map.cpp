@@ -18,7 +18,7 @@ namespace {
 constexpr double kLate = 0.9, kStrained = 0.005, kGained = 0.02;
 constexpr std::string_view kStiffness = "links.stiffness=";
 
-/// "structural = 1e3" of a case's settings; "": they say nothing of it.
+/// "structural = 1e3" from a case's settings; "" if they do not set stiffness.
 std::string stiffness_of(const Record& r) {
   for (const std::string& setting : r.spec.overrides)
     if (setting.starts_with(kStiffness)) {
@@ -30,7 +30,7 @@ std::string stiffness_of(const Record& r) {
   return "";
 }
 
-/// "swing, structural = 1e3"
+/// Column of a case: "swing, structural = 1e3".
 std::string column_of(const Record& r) { return r.scene + ", " + stiffness_of(r); }
 
 std::string row_of(const Record& r) {
@@ -40,7 +40,8 @@ std::string row_of(const Record& r) {
 
 const char* verdict(const Record& r) {
   const auto value = [&](std::string_view name) { return r.value(std::string(name)); };
-  if (value("stretch.rms") > kStrained) return "strains";  // its share says nothing
+  // The share of the way means nothing then.
+  if (value("stretch.rms") > kStrained) return "strains";
   const WayGone gone = way_gone(r);
   if (gone.by != WayGone::By::nothing) {
     if (gone.share < kLeastMotion) return "freezes";
@@ -50,7 +51,7 @@ const char* verdict(const Record& r) {
   return "right";
 }
 
-/// "100 % of the way, strain 0.086 %, energy -0.012, 20 ms a simulated second"
+/// Note of a case: "100 % of the way, strain 0.086 %, energy -0.012, 20 ms a simulated second".
 std::string numbers(const Record& r) {
   std::vector<std::string> all;
   const auto add = [&](std::string_view name, const std::string& before, const std::string& after) {

@@ -8,11 +8,12 @@
 
 namespace taut::report {
 
-/// Its name, which `taut run STUDY --table` knows too.
+/// Name of the table, which `taut run STUDY --table` accepts too.
 inline constexpr const char* kFailureMap = "failure_map";
 
-/// Who is right, who freezes, strains or explodes, of cases whose links differ in stiffness: a row
-/// for each solver with its settings, a column for each scene and stiffness. A cell is a verdict,
+/// Verdicts on cases whose links differ in stiffness: who is right, freezes, strains or explodes.
+/// Each solver with its settings has a row, each scene and stiffness a column. A cell is the first
+/// verdict of this list that applies:
 ///
 ///     its status   where the case did not complete: exploded, extreme, cannot
 ///     strains      RMS stretch above 0.5 %
@@ -21,9 +22,9 @@ inline constexpr const char* kFailureMap = "failure_map";
 ///     gains energy energy.peak is above 2 % of m g L: of cloth that hardly strains, motion
 ///     right        none of these
 ///
-/// the first that holds, with the numbers behind it in its note. Without rows where no two cases of
-/// a scene differ in stiffness alone. Of the records that are among `timed`, what a simulated
-/// second costs (StudyBench::records). `list`: where its cells lead; null: nowhere.
+/// Its note has the numbers behind it. The table has no rows if no two cases of a scene differ only
+/// in stiffness. Records that are among `timed` also show the cost of a simulated second
+/// (StudyBench::records). `list` receives the cases to which cells lead; it may be null.
 Table failure_map(const Records&, const std::vector<Record>& timed, CaseList* list);
 
 }  // namespace taut::report

@@ -14,7 +14,7 @@ bool is_failure(const Status& status) {
   return !completed(status) && status.kind != Status::Kind::unsupported;
 }
 
-/// How the cases of a solver ended, and one that failed.
+/// How the cases of a solver ended, and the key of one that failed.
 struct Count {
   int cases = 0, failed = 0;
   std::map<std::string, int> kinds = {};
@@ -36,10 +36,11 @@ struct Count {
   }
 };
 
-/// What one solver ran of a scene.
+/// The cases of one solver on a scene.
 using Ran = std::map<std::pair<Task, Work>, const Record*>;
 
-/// Counts, by solver, the cases that every solver ran which ran anything of the scene.
+/// Counts for each solver only those cases that were run by every solver with any case on the
+/// scene.
 std::vector<Count> shared_counts(const std::vector<Ran>& solvers) {
   std::vector<Count> counts(solvers.size());
   for (std::size_t i = 0; i < solvers.size(); ++i)
@@ -79,7 +80,7 @@ std::string on_whole_page(const CaseList& list) {
 
 void add_failures(Answer& answer, const ComparedSolvers& compared,
                   const std::vector<Column>& solvers, CaseList& list) {
-  // How many fail of the cases that are not shared depends on what was asked of whom.
+  // The number of failures among cases that are not shared depends on what each solver was asked.
   Table table{"failures",
               "Cases that failed",
               columns_of(solvers, kErrorCount),

@@ -1,4 +1,4 @@
-// The question of the largest stable time step: one setting of a solver at several steps.
+// The question of the largest stable time step: the same setting of a solver at several time steps.
 #include <map>
 #include <set>
 
@@ -11,11 +11,12 @@ namespace taut::report {
 
 namespace {
 
-/// A scene needs at least this many time steps, over at least this range, to have a largest one.
+/// ^ Fewest time steps on a scene that make a largest one meaningful, and the least ratio between
+/// the largest and the smallest of them.
 constexpr std::size_t kLeastSteps = 3;
 constexpr double kLeastRange = 4;
 
-/// The works and time steps that a solver tried on a scene with the same settings.
+/// The works and time steps that a solver tried on a scene, with the same settings.
 using Tried = std::map<std::pair<Work, double>, const Record*>;
 
 std::set<double> steps_of(const Tried& tried) {
@@ -24,7 +25,7 @@ std::set<double> steps_of(const Tried& tried) {
   return steps;
 }
 
-/// What every solver tried that has steps enough.
+/// What all of these solvers tried.
 Tried shared_by(const std::vector<const Tried*>& solvers) {
   Tried shared = *solvers.front();
   std::erase_if(shared, [&](const auto& one) {
@@ -34,7 +35,7 @@ Tried shared_by(const std::vector<const Tried*>& solvers) {
   return shared;
 }
 
-/// "1, 4 and 16 sweeps", with their substeps where these are not 1.
+/// Text of the works: "1, 4 and 16 sweeps", with the substeps if they are not all 1.
 std::string works_text(const Tried& tried) {
   std::set<Work> works;
   bool one = true;
@@ -48,7 +49,7 @@ std::string works_text(const Tried& tried) {
   return joined(names) + (names == std::vector<std::string>{"1"} ? " sweep" : " sweeps");
 }
 
-/// The largest step up to which, itself included, every case completed.
+/// Largest step for which, and for all smaller ones, every case completed.
 Cell largest_stable(const Tried& own, const Tried& shared, const std::set<double>& steps,
                     CaseList& list) {
   Cell cell = Cell::lacking(Cell::State::none, "below " + quantity("dt").text(*steps.begin(), 3));
@@ -67,7 +68,8 @@ Cell largest_stable(const Tried& own, const Tried& shared, const std::set<double
   return cell.with("the largest tried");
 }
 
-/// `tried` by solver; no row where they have too few steps in common.
+/// Row of a task; `tried` is indexed by solver. Nothing if the solvers have too few steps in
+/// common.
 std::optional<std::vector<Cell>> row_of(const Task& task, const std::vector<Tried>& tried,
                                         std::size_t columns, const ComparedSolvers& compared,
                                         CaseList& list) {
@@ -102,7 +104,7 @@ void add_largest_steps(Answer& answer, const ComparedSolvers& compared,
     for (const Record* r : compared.all[i].cases) {
       if (work_of(*r).sweeps <= 0) continue;
       Task task = task_of(*r);
-      task.dt = 0;  // its steps share a row
+      task.dt = 0;  // all its time steps share a row
       auto& tried = scenes[std::move(task)];
       tried.resize(compared.all.size());
       tried[i].try_emplace({work_of(*r), r->dt}, r);

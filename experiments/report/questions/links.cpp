@@ -26,7 +26,7 @@ Arithmetic arithmetic_of(const Record& r, const std::string& vectors) {
     return at == r.params.end() ? std::string() : at->second;
   };
   Arithmetic all{.precision = param("precision")};
-  if (all.precision.empty()) return {};  // its links have no kernels of vectors
+  if (all.precision.empty()) return {};  // its links have no vector kernels
   const bool automatic = param("simd") == "auto";
   all.instructions = automatic ? vectors : param("simd");
   if (all.instructions.empty()) {

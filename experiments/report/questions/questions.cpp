@@ -16,12 +16,12 @@ namespace taut::report {
 namespace {
 
 constexpr const char* kSweepsDiffer = "sweeps differ; each cell names its own";
-/// A micrometre: a depth below it is rounding.
+/// Depths below a micrometre are rounding.
 constexpr double kNoDepth = 1e-6;
 
 bool is_depth(Role role) { return role == Role::vertex_depth || role == Role::face_depth; }
 
-/// How the last row sums up the scenes.
+/// How the last row combines the scenes.
 enum class Over { mean, largest, sum };
 Over over_of(Role role) {
   return is_depth(role) ? Over::largest : role == Role::passages ? Over::sum : Over::mean;
@@ -55,7 +55,7 @@ class Questions {
   }
 
  private:
-  /// The caption of all tables, one line.
+  /// The caption of all tables, in one line.
   std::string caption() const {
     std::set<double> steps;
     for (const QuotedScene& quoted : compared_.scenes)
@@ -72,8 +72,9 @@ class Questions {
            shown(kShare, kLeastMotion, 1) + " of its way, where that is known.";
   }
 
-  /// The cases at the same substeps and sweeps, scene by scene. They cost unequally, so no cell is
-  /// best; an error that falls with sweeps has no value for solvers that do not sweep.
+  /// Adds a table of a value of the cases with the same substeps and sweeps, scene by scene. These
+  /// cases differ in cost, so no cell is marked as best. An error that falls with sweeps has no
+  /// value for solvers without sweeps.
   void add_value(const ValueSpec& spec) {
     const std::string metric(spec.name), work = compared_.common_work();
     const Quantity& q = list_.use(metric);
@@ -109,7 +110,7 @@ class Questions {
     answer_.add(std::move(table));
   }
 
-  /// When depths are measured, and which solvers correct only part of one.
+  /// When depths are measured, and which solvers correct only a part of them.
   std::string contact_text() const {
     std::string text =
         "; measured at the end of a step: solvers that project contact last end on the surface, "
@@ -128,7 +129,7 @@ class Questions {
     return text;
   }
 
-  /// The note of an error of strain says whether the cloth hardly moves.
+  /// The cell of a value. For an error of strain, its note says if the cloth hardly moves.
   Cell value_cell(const Record* r, const std::string& metric, bool of_strain) {
     const double value = r && completed(r->status) ? value_of(*r, metric) : std::nan("");
     Cell cell = std::isfinite(value) ? Cell(value) : why_none(r);
@@ -141,14 +142,15 @@ class Questions {
     return cell;
   }
 
-  /// `floor` of a mean: smaller values count as it; scenes in which all are smaller do not count.
+  /// The last row. `floor` applies to means: smaller values count as `floor`, and scenes in which
+  /// all values are smaller are left out.
   static std::vector<Cell> sum_up(const Table& table, Over over, double floor) {
     const Common common = common_of(table, floor);
     const auto value = [&](std::size_t r, std::size_t c) {
       const double own = table.rows[r][c].number();
       return floor > 0 ? std::max(own, floor) : own;
     };
-    bool positive = true;  // only then is there a geometric mean
+    bool positive = true;  // otherwise there is no geometric mean
     for (const std::size_t r : common.rows)
       for (const std::size_t c : common.columns) positive = positive && value(r, c) > 0;
     const char* what = over == Over::largest ? "largest of"

@@ -22,10 +22,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A case of a few hundred vertices holds 15 MB.
+// Estimate of memory. Measured: a case of a few hundred vertices takes 15 MB.
 constexpr std::size_t kProgramBytes = std::size_t{64} << 20, kElementBytes = 2048;
 
-/// Wall time that a case may take (isolate.hpp) [s].
+/// Longest wall time of a case (isolate.hpp) [s].
 double longest_case(const Limits& limits) { return 5 * limits.seconds; }
 
 double longest_shard(const std::vector<Case>& cases, int shards) {
@@ -36,7 +36,7 @@ double longest_shard(const std::vector<Case>& cases, int shards) {
   return *std::ranges::max_element(seconds);
 }
 
-/// As few shards as each end within so many hours.
+/// The smallest number of shards that each end within `hours`.
 int shards_for(Plan& plan, const std::vector<Case>& cases, double hours) {
   if (!(3600 * hours - longest_case(plan.limits) - 60 > 0))
     throw InputError("--hours " + shortest(hours) + ": a single case may take " +
@@ -70,8 +70,8 @@ void copy_mesh(const fs::path& scene, const std::vector<std::string>& overrides,
   write_file(into / name, read_text(scene.parent_path() / name, kMostMeshBytes));
 }
 
-/// Scene files of the user's own, with their meshes, to where the folder's copy of the study finds
-/// them: a folder is whole in itself.
+/// Copies the user's own scene files and their meshes to where the folder's copy of the study finds
+/// them, so that the folder is complete in itself.
 void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
   std::set<std::string> seen;
   for (const Case& one : cases) {
@@ -87,7 +87,7 @@ void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
   }
 }
 
-/// Who began a shard last, and when.
+/// Host and time of the last start of a shard.
 std::pair<std::string, std::string> last_start(const Store& store) {
   Database* database = store.reading();
   if (!database) return {};
@@ -127,7 +127,7 @@ Plan plan(const Study& study, const std::vector<Case>& cases, const Limits& limi
 
 Plan write_folder(const fs::path& folder, const FolderRequest& request) {
   const Study& study = request.study;
-  fs::path there = folder.parent_path();  // what exists already of the folder's path
+  fs::path there = folder.parent_path();  // the part of the folder's path that already exists
   while (!there.empty() && !fs::exists(there)) there = there.parent_path();
   const std::vector<Case> cases = cases_of(study);
   try {
@@ -174,7 +174,7 @@ Answer status_of(const fs::path& folder) {
     std::size_t there = 0;
     for (const Store::Entry& entry : store.entries()) {
       const auto id = ids.find(entry.key);
-      if (id == ids.end()) continue;  // the merge says so
+      if (id == ids.end()) continue;  // the merge reports it
       ++there;
       if (!entry.is_result)
         if (const auto record = store.find(entry.key))

@@ -51,7 +51,7 @@ for shard in "${shards[@]}"; do rm -f "shards/$shard/results.db.writer"; done  #
 exec parallel "${options[@]}" bash ./job.sh --shard {} ::: "${shards[@]}"
 )SH";
 
-/// The text with each mark, "@RUN@", replaced by its value; a value is not searched for marks.
+/// Replaces each mark ("@RUN@") in the text by its value. Values are not searched for marks.
 std::string filled(std::string_view text, const std::map<std::string_view, std::string>& values) {
   std::string all;
   while (!text.empty()) {
@@ -71,7 +71,7 @@ int shard_minutes(const Plan& plan) {
 
 std::string job_script(const Plan& plan, Scheduler on) {
   const bool slurm = on == Scheduler::slurm;
-  // Beside the case: the program that runs the shard, its records and its scenes.
+  // Memory beside the case: the program that runs the shard, its records and its scenes.
   const std::size_t bytes = plan.case_memory + (std::size_t{192} << 20);
   std::ostringstream text;
   text << "#!/bin/bash\n";

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A record among those of all stores: failures give way to results.
+/// A record found in the stores. A result takes precedence over a failure.
 struct Found {
   std::string result;  ///< result_digest
   bool is_result = false;
@@ -39,7 +39,7 @@ Merge::Merge(const std::vector<fs::path>& folders) {
     if (!Store::is_at(folder)) throw InputError(folder.string() + ": has no 'results.db'");
     source.stores.emplace_back(folder);
     source.cases = source.stores.front().planned();
-    if (fs::is_directory(folder / "shards"))  // of `taut cluster submit`
+    if (fs::is_directory(folder / "shards"))  // a folder of `taut cluster submit`
       for (const auto& shard : fs::directory_iterator(folder / "shards"))
         source.stores.emplace_back(shard.path());
     std::ranges::sort(source.stores, {}, &Store::root);

@@ -9,115 +9,121 @@
 
 namespace taut {
 
-/// Where to look for the largest stable value of one setting.
+/// Range in which to search for the largest stable value of a setting.
 struct SearchRange {
   double from = 0, to = 0;
   bool whole = false;       ///< whole numbers only
   double tolerance = 0.01;  ///< width of the bracket, relative to its upper end
-  int coarse = 9;  ///< how many values are tried first, ends included, evenly spaced (geometrically
-                   ///< if from > 0): between two of them the frontier is taken to be one
+  /// Number of values tried first, including both ends; evenly spaced, or geometrically if from >
+  /// 0. Between two neighbours of them the search assumes at most one frontier.
+  int coarse = 9;
 };
 
-/// How one value turned out.
+/// Outcome of the run with one value.
 struct Outcome {
   Status status;
-  std::string symptom = {};  ///< what is wrong by another measure than its status; "": nothing
+  std::string symptom = {};  ///< a fault that the status does not show; "": none
 };
 
 struct Probed : Outcome {
   double value = 0;
-  /// However far it stretches: a large strain alone is no instability.
+  /// A large strain alone is no instability, however far the cloth stretches.
   bool stable() const {
     return symptom.empty() &&
            (status.kind == Status::Kind::ok ||
             (status.kind == Status::Kind::extreme && status.reason == reason::kStretch));
   }
-  /// A crash is an answer; lack of time or memory and a broken protocol are not.
+  /// Whether the outcome is known. A crash is; lack of time or memory and a broken protocol are
+  /// not.
   bool known() const { return status.is_result() || status.kind == Status::Kind::crash; }
 };
 
-/// The largest stable value below which nothing was found that is not stable, and what lies above.
+/// The largest stable value below which no unstable one was found, and what was found above it.
 struct Frontier {
   enum class Kind {
-    bracketed,     ///< between `stable` and `unstable`
-    all_stable,    ///< up to the end of the range
-    none_stable,   ///< from its start on
-    not_answered,  ///< the solver cannot do the scene and that is no symptom, it never had the time
-                   ///< or memory, or the search was interrupted
+    bracketed,    ///< between `stable` and `unstable`
+    all_stable,   ///< stable up to the end of the range
+    none_stable,  ///< unstable from its start
+    /// The solver cannot run the scene (and that is not a symptom), time or memory was always
+    /// lacking, or the search was interrupted.
+    not_answered,
   };
   Kind kind = Kind::not_answered;
-  double stable = 0, unstable = 0;   ///< the bracket; meaningless where `kind` says so
-  std::vector<double> stable_above;  ///< stable values above `unstable`: not monotone
-  std::size_t above = 0;             ///< values tried above the bracket
-  std::vector<Probed> probes;        ///< all, ascending
+  double stable = 0, unstable = 0;  ///< the bracket, as far as `kind` gives it a meaning
+  /// Stable values above `unstable`, which show that stability is not monotone.
+  std::vector<double> stable_above;
+  std::size_t above = 0;       ///< number of values tried above the bracket
+  std::vector<Probed> probes;  ///< all probes, in ascending order of value
   const Probed* at(double value) const;
 };
 
 /// "bracketed", "all stable", "none stable", "not answered".
 std::string_view to_string(Frontier::Kind);
 
-/// Gives the outcome for each value; fewer if it was interrupted.
+/// Runs these values and returns their outcomes; fewer if interrupted.
 using Trial = std::function<std::vector<Outcome>(const std::vector<double>&)>;
 
-/// Tries the coarse values, halves the first interval whose ends differ until it is narrow, then
-/// looks between `unstable` and the next value tried for stable values that monotony would rule
-/// out. Values without an answer are passed over.
+/// Tries the coarse values and halves the first interval whose ends differ until it is narrow. Then
+/// looks for stable values between `unstable` and the next value tried, which would show that
+/// stability is not monotone. Ignores values whose outcome is not known.
 Frontier find_frontier(const SearchRange&, const Trial&);
 
-/// Adds an override of a scene ("cloth.grid=[9, 9]") in the place of one of the same key.
+/// Adds an override of a scene ("cloth.grid=[9, 9]"), in place of an existing one with the same
+/// key.
 void set_override(std::vector<std::string>& overrides, const std::string& assignment);
 
-/// Gives a parameter of a solver's text ("jakobsen:iterations=8") this value, whether it has one
-/// there or not. Precondition: it has no quotes.
+/// Sets a parameter in a solver text ("jakobsen:iterations=8"), whether it is already there or not.
+/// Precondition: the text contains no quotes.
 void set_parameter(std::string& solver, const std::string& name, const std::string& value);
 
-/// Which way a setting becomes harder. Downwards, the search goes up in 1/setting.
+/// Direction in which a setting becomes harder. Downwards, the search ascends in 1/setting.
 enum class Direction { up, down, down_in_whole_numbers };
 
-/// How far one setting of a case can go.
+/// The question how far one setting of a case can go.
 struct FrontierQuestion {
   CaseSpec base;
-  /// "dt", a parameter of the solver, or a scene key ("wind.strength"); several that take the same
-  /// value as "structural|shear".
+  /// "dt", a parameter of the solver, or a scene key ("wind.strength"). Several that take the same
+  /// value are joined: "structural|shear".
   std::string of = "dt";
-  SearchRange range;  ///< of the setting, or downwards of 1/setting
+  SearchRange range;  ///< range of the setting, or if downwards of 1/setting
   Direction direction = Direction::up;
 
-  /// The setting where the search is at `value`.
+  /// The setting for the search's `value`.
   double setting(double value) const;
-  /// The case with the setting at this value. Throws InputError what makes no sense.
+  /// The case with that setting. Throws InputError if it makes no sense.
   CaseSpec at(double value) const;
 };
 
-/// The ends where they are given; else for "dt" 1e-3 to 0.5 s and for a parameter what it may be,
-/// if that has bounds that mean something. Throws InputError if there is no such parameter, if it
-/// is no number, or if the range has to be given.
+/// The range of a search. Ends that are not given default to 1e-3 and 0.5 s for "dt", and for a
+/// parameter to its own bounds if they are meaningful. Throws InputError if there is no such
+/// parameter, if it is not a number, or if the range has to be given.
 SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<double> from,
                      std::optional<double> to);
 
 struct CaseFrontier {
   Frontier frontier;
-  std::vector<Record> records;  ///< of the probes, ascending in value
-  std::size_t ran = 0;          ///< were not stored yet
+  std::vector<Record> records;  ///< records of the probes, in ascending order of value
+  std::size_t ran = 0;          ///< number of cases that were not stored yet
   bool interrupted = false;
 };
 
-/// What is wrong with a case by more than its status; "": nothing.
+/// Returns what is wrong with a case beyond its status; "" if nothing.
 using Judge = std::function<std::string(const Case&, const Record&)>;
 
-/// Every probe is a case of its own process, through the store.
+/// Finds the frontier of a setting. Every probe is a case in a process of its own, and is stored.
 CaseFrontier find_frontier(const FrontierQuestion&, Store&, const CampaignOptions&,
                            const Judge& = {});
 
-/// Where linear theory has the frontier (linear_stability.hpp).
+/// Frontier according to linear theory (linear_stability.hpp).
 struct Prediction {
   Frontier::Kind kind = Frontier::Kind::bracketed;
-  double value = 0;   ///< if bracketed
-  double growth = 0;  ///< of the fastest mode per step, just above the frontier or, without one, at
-                      ///< the end of the range; 0: not known
+  double value = 0;  ///< the frontier, if bracketed
+  /// Growth per step of the fastest mode, just above the frontier or, without one, at the end of
+  /// the range; 0: not known.
+  double growth = 0;
   std::string law;
 };
-/// Empty if there is no theory. Precondition: as of find_frontier.
+/// Nothing if there is no theory. Precondition: as for find_frontier().
 std::optional<Prediction> predicted_frontier(const FrontierQuestion&);
 
 }  // namespace taut

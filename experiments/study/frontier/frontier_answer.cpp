@@ -16,7 +16,7 @@ Unit unit_of(const FrontierQuestion& question) {
   return kNumber;
 }
 
-/// How theory and the bracket agree.
+/// How well theory and bracket agree.
 std::string agreement(const Prediction& theory, const Frontier& found) {
   if (theory.kind != found.kind)
     return std::string("theory says ") + std::string(to_string(theory.kind)) + " here";
@@ -40,7 +40,7 @@ void add_theory(Answer& answer, const std::optional<Prediction>& theory, const F
     answer.add({"growth", "growth per step, theory", kNumber, 5}, theory->growth);
 }
 
-/// "stretch.rms 31 %, more than 10 %": what ends what is acceptable, at a value that was tried.
+/// What ends the acceptable range at a value that was tried: "stretch.rms 31 %, more than 10 %".
 std::string ends_with(const Frontier& found) {
   const bool none = found.kind == Frontier::Kind::none_stable;
   const Probed* probe =
@@ -49,7 +49,7 @@ std::string ends_with(const Frontier& found) {
   return probe->symptom.empty() ? describe(probe->status) : probe->symptom;
 }
 
-/// The last acceptable value beside the last stable one.
+/// Adds the last acceptable value, beside the last stable one.
 void add_acceptable(Answer& answer, const Frontier& found, const Unit& unit) {
   const Column column("acceptable", "acceptable up to", unit, 7);
   if (found.kind == Frontier::Kind::none_stable)

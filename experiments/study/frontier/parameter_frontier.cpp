@@ -13,7 +13,7 @@ namespace taut {
 
 namespace {
 
-/// To its end.
+/// Whether the case ran to its end.
 bool ran(const Record& record) {
   const Status::Kind kind = record.status.kind;
   return kind == Status::Kind::ok || kind == Status::Kind::unsettled ||
@@ -48,7 +48,7 @@ void fill(const Frontier& frontier, const FrontierQuestion& question, ParameterF
   found.beyond = question.at(frontier.unstable);
 }
 
-/// The search along one parameter; nothing: interrupted.
+/// Searches along one parameter; returns nothing if interrupted.
 std::optional<ParameterFrontier> search(const FrontierSetting& setting, const std::string& solver,
                                         Store& store, const CampaignOptions& options) {
   ParameterFrontier found;

@@ -9,9 +9,9 @@ namespace taut {
 namespace {
 
 constexpr double kStep = 1.0 / 240;  ///< s
-constexpr double kDensity = 0.2;     ///< kg/m^2, of the standard scene
+constexpr double kDensity = 0.2;     ///< kg/m^2, density of the standard scene
 constexpr double kG = 9.81;          ///< m/s^2
-constexpr double kPlate = 0.02;      ///< m, thickness of the plate
+constexpr double kPlate = 0.02;      ///< m, thickness of the rising plate
 constexpr double kTolerance = 0.02;  ///< relative width of a bracket
 
 std::vector<std::string> standard(const std::vector<std::string>& more) {
@@ -20,7 +20,7 @@ std::vector<std::string> standard(const std::vector<std::string>& more) {
   return all;
 }
 
-/// What is asked of one solver.
+/// Builds the settings for one solver.
 class FrontierSettings {
  public:
   explicit FrontierSettings(const std::string& solver) : choice_(parse_solver(solver)) {}
@@ -54,7 +54,7 @@ class FrontierSettings {
     return found == specs.end() ? nullptr : &*found;
   }
 
-  /// s
+  /// Length of a substep [s].
   double substep() const { return kStep / choice_.substeps(); }
 
   FrontierSetting& add(const std::string& name, const std::string& unit, const std::string& of,
@@ -73,7 +73,7 @@ class FrontierSettings {
 
   static void linear(FrontierSetting& one) { one.theory = predicted_frontier(one.question); }
 
-  /// On a finer sheet in long, whole steps, where they matter.
+  /// Adds the number of sweeps. It matters on a finer sheet in long steps without substeps.
   void add_sweeps() {
     const std::string sweeps(choice_.entry->accuracy.sweeps);
     if (sweeps.empty()) return lacking("sweeps", "it has none");
@@ -94,7 +94,7 @@ class FrontierSettings {
     lacking("stiffness", "its links are rigid");
   }
 
-  /// A free sheet falls on a plate that rises.
+  /// Adds the speed of a plate that rises towards a free, falling sheet.
   void add_speed() {
     FrontierSetting& one =
         add("speed of a collider", "m/s", "collider.0.velocity.1", 0.1, 1000, Direction::up,
@@ -112,7 +112,7 @@ class FrontierSettings {
         add("distance from the origin", "m", "cloth.origin.0|cloth.origin.1|cloth.origin.2", 1, 1e5,
             Direction::up, {"cloth.origin=[1, 1, 1]"});
     if (!parameter("precision") || !choice_.params.is("precision", "float")) return;
-    // The unit in the last place of a binary32 x is 2^(floor(log2 x) - 23).
+    // The unit in the last place of a binary32 number x is 2^(floor(log2 x) - 23).
     const double unit = 2 * kG * substep() * substep();
     one.theory = {Frontier::Kind::bracketed, std::exp2(std::floor(std::log2(unit)) + 1 + 23), 0,
                   "float: g h^2 is below half a unit in the last place"};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStretched = 1, kFrozen = 0.1, kGained = 0.05, kLost = 0.5, kMirrored = 0.1;
 constexpr double kJitter = 981;     ///< m/s^2, 100 g
-constexpr double kMoreJitter = 10;  ///< times that of the start
+constexpr double kMoreJitter = 10;  ///< factor relative to the start of the range
 
 bool passive(const Scene& scene) {
   return !scene.wind && scene.colliders.empty() && scene.pin_motions.empty() &&
@@ -19,13 +19,13 @@ bool passive(const Scene& scene) {
          std::ranges::all_of(scene.start.v, [](const Vec3& v) { return v.isZero(0); });
 }
 
-/// m g L, the unit of the energy metrics [J].
+/// Unit of the energy metrics, m g L [J].
 double energy_unit(const Scene& scene) {
   const double mass = std::accumulate(scene.mesh.mass.begin(), scene.mesh.mass.end(), 0.0);
   return mass * scene.gravity.norm() * extent(scene);
 }
 
-/// The vertex beyond the middle of its row.
+/// Mirror image of a vertex within its row.
 std::size_t mirrored(const Grid& grid, int vertex) {
   return to_index(grid.index(grid.nu - 1 - vertex % grid.nu, vertex / grid.nu));
 }

@@ -18,7 +18,8 @@ namespace taut {
 
 namespace {
 
-/// Nothing if the scene is no sheet and a side is asked for.
+/// The scene with sheets of `side` x `side` vertices if side > 0; nothing if it is not a sheet
+/// then.
 std::optional<Scene> scene_of(const std::string& name, int side) {
   const auto file = find_scene(name);
   Scene scene = load_scene(file);
@@ -52,7 +53,7 @@ Scene without_effects(Scene scene) {
   return scene;
 }
 
-/// Every particle still looks for its colliders, in vain.
+/// The scene with its colliders far away: every particle still looks for them, in vain.
 Scene touching_nothing(Scene scene) {
   constexpr double kAway = 1000;  // m
   for (Collider& c : scene.colliders) {
@@ -68,7 +69,7 @@ Scene touching_nothing(Scene scene) {
   return scene;
 }
 
-/// Many sheets that know nothing of each other, on two threads: each of them makes every step.
+/// Many independent sheets on two threads; a step is one step of each.
 class Copies final : public Solver {
  public:
   Copies(const Scene& scene, const SolverChoice& choice, int count) {
@@ -90,7 +91,7 @@ class Copies final : public Solver {
   ThreadPool threads_{2};
 };
 
-/// One scene, with its effects and without them.
+/// One scene, timed with its effects and without them.
 class TimedScene {
  public:
   TimedScene(const std::string& scene, const std::string& why) : wall_(false) {

@@ -1,12 +1,12 @@
 #!/usr/bin/env node
-// Jolt Physics' soft body (npm jolt-physics, MIT) as a solver: vertices, edges, rest lengths and inverse masses of
-// the scene, compliance 0, float32. experiments/external/README.md says how to register it.
+// The soft body of Jolt Physics (npm jolt-physics, MIT) as a solver in float32. It uses the scene's vertices, edges,
+// rest lengths and inverse masses, with compliance 0. experiments/external/README.md says how to register it.
 //
-// Colliders at rest are static bodies of their shape (a plane is a large box, a body of triangles a MeshShape, which
-// has no inside); all have one friction.
+// Colliders at rest are static bodies of the same shape (but a plane is a large box, and a body of triangles a
+// MeshShape, which has no inside). All have the same friction coefficient.
 //
-// Jolt's "iterations" are substeps of one sweep each, without multipliers. Its Optimize() is obligatory and reorders
-// the edges; pins have to be set before it.
+// Jolt's "iterations" are substeps of one sweep each, without multipliers. Optimize() is obligatory and reorders the
+// edges; pins have to be set before it is called.
 'use strict';
 const fs = require('fs');
 const path = require('path');
@@ -42,7 +42,7 @@ function start(Jolt) {
     return made.Get();
   }
 
-  /// A static body of a collider, not yet added.
+  /// A static body for a collider, not yet added to the system.
   function still({type, normal, offset, center, radius, half_extents: half, rotation, vertices, triangles, friction}) {
     let shape, at, turned = Jolt.Quat.prototype.sIdentity();
     if (type === 'ball') {
@@ -52,7 +52,7 @@ function start(Jolt) {
       shape = type === 'box' ? new Jolt.BoxShape(vector(half), 0, null) : surface(vertices, triangles);
       at = center;
       turned = new Jolt.Quat(rotation[1], rotation[2], rotation[3], rotation[0]);
-    } else {  // its upper side is the plane
+    } else {  // a box whose upper side is the plane
       const kDeep = 50;
       shape = new Jolt.BoxShape(new Jolt.Vec3(kDeep, kDeep, kDeep), 0, null);
       at = normal.map((n) => n * (offset - kDeep));
@@ -95,7 +95,7 @@ function start(Jolt) {
         Jolt.destroy(edge);
       }
       const touches = scene.colliders.length > 0;
-      if (touches) shared.mVertexRadius = scene.thickness;  // until 0.36; since 0.37 it is the creation's
+      if (touches) shared.mVertexRadius = scene.thickness;  // up to Jolt 0.36; since 0.37 it belongs to the creation settings
       shared.Optimize();
       const origin = new Jolt.RVec3(0, 0, 0), upright = Jolt.Quat.prototype.sIdentity();
       const creation = new Jolt.SoftBodyCreationSettings(shared, origin, upright, 0);
@@ -123,14 +123,14 @@ function start(Jolt) {
       this.substeps = params.substeps;
     }
 
-    /// Where vertex 0 lies; memory may have grown since the last call.
+    /// Index of vertex 0 in HEAPF32. Not cached, since the memory may have grown since the last call.
     at() { return Jolt.getPointer(this.motion.GetVertex(0)) / 4; }
 
     load(x, v) {
       for (let i = 0, at = this.at(); i < this.n; ++i, at += kStride)
         for (let k = 0; k < 3; ++k) {
           Jolt.HEAPF32[at + kPosition + k] = x[3 * i + k];
-          Jolt.HEAPF32[at + k] = x[3 * i + k];  // the position before
+          Jolt.HEAPF32[at + k] = x[3 * i + k];  // the previous position
           Jolt.HEAPF32[at + kVelocity + k] = v[3 * i + k];
         }
     }

@@ -1,4 +1,4 @@
-// taut-solver/1 for node 12 and later, no packages.
+// The protocol taut-solver/1 for node 12 and later, without packages.
 //
 //     class Mine {
 //       constructor(scene, params) {}  // scene: the scene file; params.iterations
@@ -6,7 +6,7 @@
 //       step(t, dt) {}                 // advance from t to t + dt [s]
 //       store() { return [x, v]; }     // 3n numbers each
 //     }
-//     Mine.about = {name: 'mine', version: '1.0',  // a new version for every change that moves results
+//     Mine.about = {name: 'mine', version: '1.0',  // change the version with every change that alters results
 //       params: {iterations: {type: 'integer', min: 1, max: 1000, default: 8, doc: 'Sweeps'}}};
 //     require('./taut_solver').serve(Mine);
 //
@@ -21,7 +21,7 @@ function serve(Solver) {
   console.log = console.info = console.error;
   let live = null, waiting = Buffer.alloc(0), bytes = Buffer.alloc(0);
   const piece = Buffer.alloc(1 << 16);
-  const more = () => {  // false: the input has ended
+  const more = () => {  // false at the end of the input
     const got = fs.readSync(0, piece, 0, piece.length, null);
     waiting = Buffer.concat([waiting, piece.subarray(0, got)]);
     return got > 0;

@@ -1,6 +1,6 @@
-// NvCloth's CPU solver (NVIDIA, github.com/NVIDIAGameWorks/NvCloth) as a solver in float32: the
-// scene's links, rest lengths and inverse masses with stiffness 1, its gravity, damping, pins,
-// colliders at rest and self-collision. How to build it: experiments/external/README.md.
+// NvCloth's CPU solver (NVIDIA, github.com/NVIDIAGameWorks/NvCloth) as a solver in float32. It uses
+// the scene's links, rest lengths and inverse masses with stiffness 1, and its gravity, damping,
+// pins, colliders at rest and self-collision. How to build it: experiments/external/README.md.
 #include <NvCloth/Callbacks.h>
 #include <NvCloth/Cloth.h>
 #include <NvCloth/Fabric.h>
@@ -54,7 +54,8 @@ nv::cloth::Factory& factory() {
   return *one;
 }
 
-/// Sets of links that share no vertex: each link in the first set of its family that has room.
+/// Sets of links of one family that share no vertex. Each link goes into the first set of its
+/// family that has room.
 std::vector<std::vector<std::uint32_t>> sets_of(const std::vector<Json>& links) {
   struct Set {
     std::string family;
@@ -131,11 +132,11 @@ struct NvCloth {
     cloth->setPhaseConfig(range(configs));
     cloth->setGravity(vector4(scene["gravity"], 0).getXYZ());
     cloth->setSolverFrequency(float(1 / h));
-    // A correction keeps 1 - (1 - stiffness)^(h f) of itself, damping likewise: f = 1/h makes both
-    // what they say for a substep. NvCloth's own 10 Hz would keep a part only of a stiffness just
-    // below 1.
+    // NvCloth leaves a share 1 - (1 - stiffness)^(h f) of a correction, and treats damping
+    // likewise. With f = 1/h both values hold for one substep. NvCloth's default of 10 Hz would
+    // weaken every stiffness below 1.
     cloth->setStiffnessFrequency(float(1 / h));
-    cloth->setAcceleationFilterWidth(1);  // gravity in full from the first step on
+    cloth->setAcceleationFilterWidth(1);  // full gravity from the first step on
     cloth->setDamping(physx::PxVec3(float(1 - std::exp(-scene["damping"].number * h))));
     set_colliders(scene["colliders"].items, scene["thickness"].number);
     if (scene["self_collision"].something()) {
@@ -153,7 +154,8 @@ struct NvCloth {
     fabric->decRefCount();
   }
 
-  /// Planes alone, or six of them for a box, are convex solids; friction is one for the cloth.
+  /// A plane, or six planes for a box, is a convex solid. The cloth has a single friction
+  /// coefficient.
   void set_colliders(const std::vector<Json>& colliders, double thickness) {
     std::vector<PxVec4> balls, planes;
     std::vector<std::uint32_t> solids;
@@ -222,7 +224,7 @@ struct NvCloth {
   std::vector<double> w;  // 1/kg
   std::size_t links;
   int substeps;
-  double h;  // s, a substep
+  double h;  // s, length of a substep
   nv::cloth::Fabric* fabric = nullptr;
   std::unique_ptr<nv::cloth::Cloth> cloth;
   std::unique_ptr<nv::cloth::Solver> solver;
