@@ -9,15 +9,16 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/scene_keys.hpp"
+#include "core/model/scene_setting.hpp"
 #include "core/model/vec3.hpp"
 
 namespace taut {
 
 /// Where a value was written.
 struct SourceLocation {
-  int line = 0;       ///< 1-based; 0: unknown
-  int column = 0;     ///< 1-based; 0: unknown
-  int override = -1;  ///< index into Document::overrides; -1: the file itself
+  int line = 0;      ///< 1-based; 0: unknown
+  int column = 0;    ///< 1-based; 0: unknown
+  int setting = -1;  ///< index into Document::settings; -1: the file itself
 };
 
 /// A key of a table.
@@ -42,31 +43,30 @@ struct Value {
   bool is_string() const { return kind == Kind::string; }
   bool is_number() const { return kind == Kind::integer || kind == Kind::real; }
   const Value* find(const std::string& key) const;  ///< nullptr: a table without it, or no table
-  /// The last override that a part of it comes from; -1: all is from the file.
-  int latest_override() const;
+  /// The last setting that a part of it comes from; -1: all is from the file.
+  int latest_setting() const;
 };
 
 /// "a table", "a whole number", ...
 std::string describe(const Value&);
 
-/// A TOML file whose values were replaced by the overrides.
+/// A TOML file whose values were replaced by the settings.
 struct Document {
   std::string file;  ///< as the user named it
-  std::vector<std::string> overrides;
+  SceneSettings settings;
   Value root;
 
   Diagnostic diagnostic(const SourceLocation&, const std::string& message) const;
 };
 
-/// Reads a TOML file. An override is a TOML assignment with a dotted key ("time.dt=\"1/120\""); it
+/// Reads a TOML file. A setting is a TOML assignment with a dotted key (time.dt="1/120"); it
 /// replaces the value or adds it; a number selects an element of an array
 /// ("collider.0.radius=0.4"). Throws InputError with every malformed part: the file's first syntax
-/// error (duplicate keys are one) and each malformed override.
-Document read_document(const std::filesystem::path&, const std::vector<std::string>& overrides);
+/// error (duplicate keys are one) and each malformed setting.
+Document read_document(const std::filesystem::path&, const SceneSettings&);
 
 /// The same for text that is already in memory.
-Document parse_document(const std::string& file, const std::string& text,
-                        const std::vector<std::string>& overrides);
+Document parse_document(const std::string& file, const std::string& text, const SceneSettings&);
 
 /// The document as TOML, without comments: it reads back as the same values. Throws InputError for
 /// a date or time, which no document of ours has.

@@ -14,9 +14,9 @@ namespace taut {
 
 /// What is asked of a search: the best setting of a scene for an error or a budget.
 struct AdviceWanted {
-  std::string scene;                  ///< name or path
-  std::vector<std::string> settings;  ///< of the scene, "key=value"
-  std::vector<std::string> solvers;   ///< what their texts fix is not searched
+  std::string scene;  ///< name or path
+  SceneSettings settings;
+  std::vector<std::string> solvers;  ///< what their texts fix is not searched
   Target target;
   std::string metric = kErrorMetric;
   std::vector<Limit> limits = {};  ///< of values beside the error

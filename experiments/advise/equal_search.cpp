@@ -37,10 +37,10 @@ bool is_plain(const std::string& setting, const std::string& solver) {
 
 class SolverSearch {
  public:
-  SolverSearch(const std::string& scene, const std::vector<std::string>& settings,
-               const std::string& solver, const std::string& metric, Store& store)
+  SolverSearch(const std::string& scene, const SceneSettings& settings, const std::string& solver,
+               const std::string& metric, Store& store)
       : scene_(scene), settings_(settings), solver_(solver), metric_(metric), store_(store) {
-    const std::vector<std::string> own = parse_study_scene(scene).settings;
+    const SceneSettings own = parse_study_scene(scene).settings;
     settings_.insert(settings_.end(), own.begin(), own.end());
     const Case one = make(solver);
     duration_ = one.scene->duration();
@@ -142,7 +142,7 @@ class SolverSearch {
   }
 
   std::string scene_;
-  std::vector<std::string> settings_;
+  SceneSettings settings_;
   std::string solver_, metric_, unsupported_;
   Store& store_;
   CaseMaker maker_;

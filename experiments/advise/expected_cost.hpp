@@ -12,8 +12,8 @@ namespace taut {
 /// machine; of a solver that was never timed, the items that its step visits, each as dear as those
 /// of the timed solvers in the mean. Who cannot be asked is last. Nothing is run.
 std::vector<std::string> by_expected_cost(std::vector<std::string> solvers,
-                                          const std::string& scene,
-                                          const std::vector<std::string>& settings, const Store&);
+                                          const std::string& scene, const SceneSettings&,
+                                          const Store&);
 
 /// What the best of a search is called that was not finished: "cheapest so far; 3 solvers not
 /// tried, 2 not searched to the end".

@@ -133,8 +133,8 @@ void write_baseline(const std::filesystem::path& folder, const Baseline&);
 Tolerances read_tolerances(const std::filesystem::path& folder);
 
 /// Which frontiers belong to a study's baseline: frontiers.toml of its folder, tables [[frontier]]
-/// with scene, solver, of, from, to, tolerance and set (scene overrides). No file: none. Throws
-/// InputError with file and line.
+/// with scene, solver, of, from, to, tolerance and set (settings of the scene). No file: none.
+/// Throws InputError with file and line.
 std::vector<FrontierQuestion> read_frontiers(const std::filesystem::path& folder);
 
 /// A frontier that was found, as a row: its status is the kind of frontier, its values are the ends

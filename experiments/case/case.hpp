@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "core/model/scene.hpp"
 #include "core/model/solver.hpp"
@@ -30,7 +31,7 @@ std::string this_build();
 /// Makes cases; a scene that many of them share is read once.
 class CaseMaker {
  public:
-  /// Throws InputError: unknown or malformed scene, unknown solver, bad parameter or override.
+  /// Throws InputError: unknown or malformed scene, unknown solver, bad parameter or setting.
   Case make(const CaseSpec&);
 
  private:
@@ -40,10 +41,10 @@ class CaseMaker {
     std::vector<std::string> remarks;
   };
   const Loaded& scene(const CaseSpec&);
-  std::map<std::string, Loaded> scenes_;
+  std::map<std::pair<std::string, SceneSettings>, Loaded> scenes_;
 };
 
-/// A case of a scene that was read already: of `spec` come its name and overrides.
+/// A case of a scene that was read already: of `spec` come its name and settings.
 Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene>, SolverChoice);
 
 /// One case on its own.

@@ -36,7 +36,7 @@ CLI::Option* add_results(CLI::App&, std::string& folder);
 CLI::Option* add_preset(CLI::App&, std::string& preset);
 
 /// Settings of a scene, as --set, once for each.
-CLI::Option* add_settings(CLI::App&, std::vector<std::string>& settings);
+CLI::Option* add_settings(CLI::App&, SceneSettings&);
 
 /// SCENE, one scene by its name or its file.
 CLI::Option* add_scene(CLI::App&, std::string& scene);
@@ -107,7 +107,7 @@ class SceneChanges {
  public:
   void bind(CLI::App&);
   /// As settings of the scene. Throws InputError if two of them are of the same key.
-  std::vector<std::string> settings() const;
+  SceneSettings settings() const;
   bool has_duration() const { return !duration_.empty(); }
 
  private:

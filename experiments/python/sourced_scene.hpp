@@ -17,14 +17,14 @@ struct SourcedScene {
   std::string source;               ///< as given: a name, a path; of a text its name
   std::filesystem::path file;       ///< of a text: how messages call it
   std::optional<std::string> text;  ///< else it is in the file
-  std::vector<std::string> overrides;
+  SceneSettings settings;
   std::shared_ptr<const Scene> scene;
 
-  Scene read(const std::vector<std::string>& with) const;
-  /// The same with these overrides, too; one of a key that it has takes its place. Throws
+  Scene read(const SceneSettings& with) const;
+  /// The same with these settings, too; one of a key that it has takes its place. Throws
   /// InputError.
-  SourcedScene replaced(const std::vector<std::string>& more) const;
-  CaseSpec spec() const { return {source, overrides, ""}; }
+  SourcedScene replaced(const SceneSettings& more) const;
+  CaseSpec spec() const { return {source, settings, ""}; }
 };
 
 /// Of a shipped name, a path, or TOML text that messages call `name`. Throws InputError.

@@ -38,6 +38,6 @@ std::vector<Vec3> vectors_of(const Doubles&);
 py::array owned(std::vector<double>&&, std::vector<py::ssize_t> shape);
 
 /// {"cloth.grid": [16, 16]} as load_scene() has it. Throws InputError that names the key.
-std::vector<std::string> overrides_of(const py::dict& settings);
+SceneSettings settings_of(const py::dict& settings);
 
 }  // namespace taut::python

@@ -46,7 +46,7 @@ Value without_empty(Value root) {
 Draft::Draft(const CaseSpec& spec)
     : spec_(spec),
       file_(find_scene(spec.scene)),
-      scene_(read_document(file_, spec.overrides)),
+      scene_(read_document(file_, spec.settings)),
       solver_(parse_solver(spec.solver).entry->name) {
   unfold_fabric();
   scene_changed_ = false;
@@ -113,7 +113,7 @@ CaseSpec Draft::write(const fs::path& folder, const std::string& name,
             (changed == changed_.end() ? std::string(params.value(one.name)) : changed->second);
   }
   const std::string solver = parse_solver(solver_ + text).canonical();
-  if (!scene_changed_ && comment.empty()) return {spec_.scene, spec_.overrides, solver};
+  if (!scene_changed_ && comment.empty()) return {spec_.scene, spec_.settings, solver};
   Value root = without_empty(scene_.root);
   if (const Value* mesh = find("cloth", "mesh"); mesh && mesh->is_string()) {
     const fs::path there = fs::absolute(file_.parent_path() / mesh->string);

@@ -13,8 +13,8 @@ namespace taut {
 
 /// What `taut converge` is asked.
 struct StepQuestion {
-  std::string scene;                  ///< name or path
-  std::vector<std::string> settings;  ///< of the scene
+  std::string scene;  ///< name or path
+  SceneSettings settings;
   std::vector<std::string> solvers;
   /// Solver whose run gives the state. Of one whose links hardly deviate the exact step is near;
   /// jakobsen's state is far off its links.

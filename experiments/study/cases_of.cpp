@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
@@ -97,10 +98,9 @@ CaseSpec spec_of(const Study& study, const std::string& scene, const std::string
                  const Settings& of_scene, const Settings& of_solver) {
   const StudyScene own = parse_study_scene(scene);
   CaseSpec spec{own.name, study.settings, solver};
-  spec.overrides.insert(spec.overrides.end(), own.settings.begin(), own.settings.end());
+  spec.settings.insert(spec.settings.end(), own.settings.begin(), own.settings.end());
   for (const StudyAxis& axis : study.axes)
-    if (of_scene.contains(axis.name))
-      spec.overrides.push_back(axis.name + "=" + of_scene.at(axis.name));
+    if (of_scene.contains(axis.name)) spec.settings.emplace_back(axis.name, of_scene.at(axis.name));
   for (const auto& [name, value] : of_solver)
     spec.solver = with(spec.solver, StudyAxis{name, {}}.parameter() + "=" + value);
   return spec;
@@ -140,8 +140,7 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
 
 Study at_time_steps(Study study, const std::vector<std::string>& steps) {
   if (steps.empty()) return study;
-  const auto is_step = [](const std::string& setting) { return setting.starts_with("time.dt="); };
-  std::erase_if(study.settings, is_step);
+  study.settings = without(std::move(study.settings), "time.dt");
   std::erase_if(study.axes, [](const StudyAxis& axis) { return axis.name == "time.dt"; });
   StudyAxis axis{.name = "time.dt", .values = {}};
   for (const std::string& step : steps) axis.values.push_back('"' + step + '"');

@@ -50,17 +50,17 @@ struct Study {
   std::filesystem::path file;
   std::string preset;                ///< which was applied; "": none
   std::vector<std::string> presets;  ///< names of those it has
-  std::vector<std::string> scenes;   ///< "name:key=value,...": name or path, overrides of it alone
+  std::vector<std::string> scenes;   ///< "name:key=value,...": name or path, settings of it alone
   std::vector<std::string> solvers;  ///< "name:key=value,..."
   /// The file of settings that a search chose for the solvers, scene by scene; "": none.
   std::filesystem::path searched;
   /// What stands there, by the scene as in `scenes`; empty: there is no such file yet.
   std::map<std::string, std::vector<std::string>> chosen;
-  std::vector<std::string> settings;  ///< scene overrides of every case
+  SceneSettings settings;  ///< of the scene, in every case
   std::vector<StudyAxis> axes;
   std::vector<Exclusion> exclusions;
   std::vector<Plot> plots;
-  /// Where the file says what stands in `settings` and in the axes of scenes, by the override, and
+  /// Where the file says what stands in `settings` and in the axes of scenes, by the setting, and
   /// what stands in `scenes`, by its text.
   std::map<std::string, SourceLocation> places, scene_places;
 };
@@ -94,7 +94,7 @@ std::string searched_toml(const std::string& heading, const std::vector<Searched
 /// Throws InputError with all that is wrong with the file.
 std::vector<SearchedSetting> read_searched(const std::filesystem::path&);
 
-/// What is wrong with one of Study::scenes, at the place where the study says it: an override has
+/// What is wrong with one of Study::scenes, at the place where the study says it: a setting has
 /// no line of its own.
 Diagnostic placed(const Study&, const std::string& scene, const Diagnostic& of_scene);
 
@@ -109,7 +109,7 @@ std::string study_name(const std::string& name_or_path);
 /// One of Study::scenes, in its parts.
 struct StudyScene {
   std::string name;  ///< or path
-  std::vector<std::string> settings;
+  SceneSettings settings;
 };
 /// Throws InputError if what follows the colon is no list of key=value, each key once.
 StudyScene parse_study_scene(const std::string& text);

@@ -25,7 +25,7 @@ Film studied_film(const report::ComparedSolvers& compared, const report::QuotedS
       continue;
     }
     film.request.scene = one->spec.scene;
-    film.request.overrides = one->spec.overrides;
+    film.request.settings = one->spec.settings;
     film.add(one->spec.solver, compared.all[i].label, one->key);
   }
   return film;
@@ -47,7 +47,7 @@ Film other_film(const report::ComparedSolvers& compared, const OtherScene& other
   film.speed = watchable_speed(scene);
   film.request.scene = other.name;
   if (scene.duration() > kFilmSeconds)
-    film.request.overrides.push_back("time.duration=" + std::to_string(kFilmSeconds));
+    film.request.settings.emplace_back("time.duration", std::to_string(kFilmSeconds));
   for (const report::ComparedSolver& solver : compared.all) {
     const auto quoted = std::ranges::find_if(
         solver.cases, [&](const Record* r) { return report::work_of(*r) == solver.work; });

@@ -122,12 +122,10 @@ double number(const std::string& text) {
   return parsed.ec == std::errc() && parsed.ptr == end ? value : kNaN;
 }
 
-/// The last number that the case gives a scene key; NaN if none.
-double overridden(const Record& record, const std::string& key) {
-  double value = kNaN;
-  for (const std::string& text : record.spec.overrides)
-    if (text.starts_with(key + "=")) value = number(text.substr(key.size() + 1));
-  return value;
+/// The number that the case gives a scene key; NaN: none.
+double set_number(const Record& record, const std::string& key) {
+  const SceneSetting* setting = find_setting(record.spec.settings, key);
+  return setting ? number(setting->value()) : kNaN;
 }
 
 /// "stretch.max" -> "largest stretch"
@@ -168,7 +166,7 @@ double value_of(const Record& record, std::string_view name) {
   if (const auto value = record.values.find(key); value != record.values.end())
     return value->second;
   const auto param = record.params.find(own_parameter(record.solver, key));
-  return param == record.params.end() ? overridden(record, key) : number(param->second);
+  return param == record.params.end() ? set_number(record, key) : number(param->second);
 }
 
 std::string Quantity::label() const {

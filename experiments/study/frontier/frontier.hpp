@@ -64,9 +64,6 @@ using Trial = std::function<std::vector<Outcome>(const std::vector<double>&)>;
 /// out. Values without an answer are passed over.
 Frontier find_frontier(const SearchRange&, const Trial&);
 
-/// Adds an override of a scene ("cloth.grid=[9, 9]") in the place of one of the same key.
-void set_override(std::vector<std::string>& overrides, const std::string& assignment);
-
 /// Gives a parameter of a solver's text ("jakobsen:iterations=8") this value, whether it has one
 /// there or not. Precondition: it has no quotes.
 void set_parameter(std::string& solver, const std::string& name, const std::string& value);

@@ -158,12 +158,6 @@ void set_parameter(std::string& solver, const std::string& name, const std::stri
   solver = with(solver, name + "=" + value);
 }
 
-void set_override(std::vector<std::string>& overrides, const std::string& assignment) {
-  const std::string key = assignment.substr(0, assignment.find('=') + 1);
-  std::erase_if(overrides, [&](const std::string& one) { return one.starts_with(key); });
-  overrides.push_back(assignment);
-}
-
 double FrontierQuestion::setting(double value) const {
   if (direction == Direction::up) return value;
   if (direction == Direction::down_in_whole_numbers) return std::round(1 / value);
@@ -176,9 +170,9 @@ CaseSpec FrontierQuestion::at(double value) const {
   const std::string text = shortest(setting(value));
   for (const std::string& name : parts_of(of))
     if (name == "dt")
-      set_override(spec.overrides, "time.dt=\"" + text + "\"");
+      spec.settings = replaced(std::move(spec.settings), {{"time.dt", '"' + text + '"'}});
     else if (of_scene(name))
-      set_override(spec.overrides, name + "=" + text);
+      spec.settings = replaced(std::move(spec.settings), {{name, text}});
     else
       set_parameter(spec.solver, name, text);
   return spec;

@@ -14,10 +14,8 @@ constexpr double kG = 9.81;          ///< m/s^2
 constexpr double kPlate = 0.02;      ///< m, thickness of the plate
 constexpr double kTolerance = 0.02;  ///< relative width of a bracket
 
-std::vector<std::string> standard(const std::vector<std::string>& more) {
-  std::vector<std::string> all{"cloth.grid=[9, 9]", "time.dt=\"1/240\"", "time.duration=2"};
-  for (const std::string& one : more) set_override(all, one);
-  return all;
+SceneSettings standard(const SceneSettings& more) {
+  return replaced({"cloth.grid=[9, 9]", "time.dt=\"1/240\"", "time.duration=2"}, more);
 }
 
 /// What is asked of one solver.
@@ -59,7 +57,7 @@ class FrontierSettings {
 
   FrontierSetting& add(const std::string& name, const std::string& unit, const std::string& of,
                        double from, double to, Direction direction = Direction::up,
-                       const std::vector<std::string>& more = {}) {
+                       const SceneSettings& more = {}) {
     FrontierSetting one{name, unit, {{"swing", standard(more), choice_.brief()}, of, {}}, "", {}};
     one.question.direction = direction;
     one.question.range = {.from = from, .to = to, .tolerance = kTolerance};

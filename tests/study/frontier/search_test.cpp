@@ -112,13 +112,12 @@ TEST(Frontier, AParameterIsSetWhereItStands) {
 
 TEST(Frontier, QuestionsBecomeCases) {
   const CaseSpec base{"chain", {}, "jakobsen:iterations=2"};
-  EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).overrides.back()), "time.dt=\"0.01\"");
+  EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).settings.back()), "time.dt=\"0.01\"");
   EXPECT_EQ((FrontierQuestion{base, "omega", {}}.at(1.5).solver),
             "jakobsen:iterations=2,omega=1.5");
-  EXPECT_EQ((FrontierQuestion{base, "wind.strength", {}}.at(3).overrides.back()),
-            "wind.strength=3");
-  EXPECT_EQ((FrontierQuestion{base, "cloth.size.0|cloth.size.1", {}}.at(3).overrides),
-            (std::vector<std::string>{"cloth.size.0=3", "cloth.size.1=3"}));
+  EXPECT_EQ((FrontierQuestion{base, "wind.strength", {}}.at(3).settings.back()), "wind.strength=3");
+  EXPECT_EQ((FrontierQuestion{base, "cloth.size.0|cloth.size.1", {}}.at(3).settings),
+            (SceneSettings{"cloth.size.0=3", "cloth.size.1=3"}));
   EXPECT_EQ((FrontierQuestion{base, "iterations", {}, Direction::down_in_whole_numbers}
                  .at(1 / 7.2)
                  .solver),
@@ -128,7 +127,7 @@ TEST(Frontier, QuestionsBecomeCases) {
       7)
       << "the nearest";
   EXPECT_EQ(
-      (FrontierQuestion{base, "wind.strength", {}, Direction::down}.at(1 / 8.0).overrides.back()),
+      (FrontierQuestion{base, "wind.strength", {}, Direction::down}.at(1 / 8.0).settings.back()),
       "wind.strength=8");
   EXPECT_EQ(range_of(base, "omega", 0.5, {}).from, 0.5);
   EXPECT_EQ(range_of(base, "omega", {}, {}).to, 2);
@@ -218,9 +217,6 @@ TEST(Frontier, ARangeIsTheParametersOwnOrHasToBeGiven) {
   EXPECT_EQ(range("omeg"),
             "jakobsen has no parameter 'omeg'; did you mean 'omega'? (a scene key "
             "has a dot, as \"wind.strength\")");
-  std::vector<std::string> overrides{"a.b=1", "a.bc=2", "x.y=3"};
-  set_override(overrides, "a.b=4");
-  EXPECT_EQ(overrides, (std::vector<std::string>{"a.bc=2", "x.y=3", "a.b=4"}));
 }
 
 // Springs are stable below 2/w, over-relaxation below 4/3 on one link (see below).
