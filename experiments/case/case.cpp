@@ -22,12 +22,12 @@ std::string in_id(const SceneSetting& one) {
 
 Case completed(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice,
                const std::string& scene_digest) {
-  Case one{spec, std::move(scene), std::move(choice), {}, {}, {}};
+  Case one{spec, std::move(scene), std::move(choice), {}, {}, {}, {}};
   one.spec.solver = one.choice.canonical();
   one.key = case_key(*one.scene, scene_digest, one.choice);
-  one.id = one.scene->name;
-  for (const SceneSetting& setting : spec.settings) one.id += ' ' + in_id(setting);
-  one.id += ' ' + one.choice.called();
+  for (const SceneSetting& setting : spec.settings) one.setting += in_id(setting) + ' ';
+  one.setting += one.choice.called();
+  one.id = one.scene->name + ' ' + one.setting;
   one.build = one.choice.entry->build.empty() ? this_build() : one.choice.entry->build;
   return one;
 }

@@ -18,7 +18,8 @@ struct Case {
   std::shared_ptr<const Scene> scene;
   SolverChoice choice;
   std::string key;                        ///< case_key
-  std::string id;                         ///< for people: "hang dt=1/64 jakobsen:iterations=8"
+  std::string setting;                    ///< for people: "dt=1/64 jakobsen:iterations=8"
+  std::string id;                         ///< the scene and the setting
   std::string build;                      ///< which runs it: that of its solver, or this_build()
   std::vector<std::string> remarks = {};  ///< what was skipped of the scene's files
 };

@@ -59,7 +59,8 @@ struct CaseSpec {
 struct Record {
   std::string
       key;  ///< SHA-256 over content, solver, implementation, parameters and metrics version; hex
-  std::string id;  ///< for people, unique in a study: "hang dt=1/64 jakobsen:iterations=8"
+  std::string id;       ///< for people, unique in a study: "hang dt=1/64 jakobsen:iterations=8"
+  std::string setting;  ///< the same without the scene
   CaseSpec spec;
   std::string scene;                          ///< its name
   std::string solver;                         ///< the entry's name

@@ -6,7 +6,7 @@
 namespace taut {
 
 /// What PRAGMA user_version of a results file says; files of another one are not read.
-inline constexpr int kSchemaVersion = 7;
+inline constexpr int kSchemaVersion = 8;
 
 /// The statements that make the tables of a results file.
 std::string tables();

@@ -71,6 +71,7 @@ TEST(CaseText, ThatDidNotRunHasAllButResults) {
   const Record r = unfinished(one, {Status::Kind::timeout, "60 s", 7, -1});
   EXPECT_EQ(r.key, one.key);
   EXPECT_EQ(r.id, one.id);
+  EXPECT_EQ(r.scene + " " + r.setting, r.id);
   EXPECT_EQ(r.spec.settings, one.spec.settings);
   EXPECT_EQ(r.vertices, 12);
   EXPECT_EQ(r.links, 17 + 12);
@@ -134,6 +135,7 @@ Record small_record() {
   r.key.assign(63, '0');
   r.key.push_back('f');
   r.id = "an id";
+  r.setting = "a setting";
   r.spec = {"file", {"a=1", "b=2"}, "text"};
   r.scene = "hang";
   r.solver = "xpbd";
@@ -167,7 +169,7 @@ TEST(RecordLine, HasEveryColumnOnce) {
 TEST(RecordLine, IsThisOneLine) {
   const std::string text =
       R"({"schema":2,"key":")" + std::string(63, '0') +
-      R"(f","id":"an id","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
+      R"(f","id":"an id","setting":"a setting","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
       R"("scene":"hang","solver":"xpbd","params":{"p":"q"},"substeps":2,"sweeps":8,)"
       R"("work_parameters":["p"],"dt":0.25,"steps":6,"vertices":4,"links":5,)"
       R"("status":{"kind":"exploded","reason":"energy","step":17,"vertex":3},)"
