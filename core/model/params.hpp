@@ -78,6 +78,8 @@ class Params {
     return choices[i].second;
   }
   bool has(std::string_view name) const { return find(name) < specs_.size(); }
+  /// Whether the text gave it; what it did not give has its default.
+  bool given(std::string_view name) const { return has(name) && given_[find(name)]; }
   /// Whose parameters they are.
   const std::string& owner() const { return owner_; }
 
@@ -85,6 +87,8 @@ class Params {
   /// without those that `but` names, "cmd|build".
   std::string canonical(std::string_view but = "") const { return text(false, but); }
   std::string brief(std::string_view but = "") const { return text(true, but); }
+  /// What was given, with this value of one of them.
+  std::string given_with(std::string_view name, const std::string& value) const;
   /// The value in canonical form; a text without quotes.
   std::string_view value(std::string_view name) const;
   std::span<const ParamSpec> specs() const { return specs_; }
@@ -96,6 +100,7 @@ class Params {
   std::string owner_;
   std::span<const ParamSpec> specs_;
   std::vector<std::string> values_;  ///< canonical text
+  std::vector<bool> given_;
 };
 
 }  // namespace taut

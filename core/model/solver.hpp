@@ -256,6 +256,8 @@ struct SolverChoice {
   std::string canonical() const;
   /// The same, but only the parameters that differ from their defaults: for people.
   std::string brief() const;
+  /// The same with this value of one of its parameters. Throws InputError.
+  SolverChoice with(std::string_view name, const std::string& value) const;
   /// Both without the parameters of the entry's `place`: the address and the name of a result.
   std::string addressed() const { return with_params(false, entry->place); }
   std::string called() const { return with_params(true, entry->place); }

@@ -19,11 +19,9 @@ constexpr double kShareOfOneRun = 0.5;  ///< of the time of an error, to which s
 /// "jakobsen:omega=1,levels=1,tethers=off": what its text fixes is not searched.
 std::string without_accelerators(const std::string& solver) {
   const SolverChoice choice = parse_solver(solver);
-  const auto colon = solver.find(':');
-  const auto given = param_items(colon == solver.npos ? "" : solver.substr(colon + 1));
   std::string text = solver;
   for (const std::string& name : parts_of(choice.entry->accuracy.accelerators))
-    if (std::ranges::find(given, name, &ParamItem::key) == given.end())
+    if (!choice.params.given(name))
       text = with(text, name + "=" + std::string(choice.params.value(name)));
   return text;
 }

@@ -36,18 +36,14 @@ std::vector<StudyAxis> scene_axes(const Study& study) {
 /// of this solver stands in the place of one of all.
 std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
-  const auto colon = text.find(':');
-  const std::vector<ParamItem> given =
-      param_items(colon == text.npos ? "" : std::string_view(text).substr(colon + 1));
   std::vector<StudyAxis> chosen;
   for (const StudyAxis& axis : study.axes) {
     const std::string name = axis.parameter();
     const bool has = axis.is_of(choice.entry->name) &&
                      std::ranges::count(choice.entry->params, name, &ParamSpec::name) > 0;
-    const bool fixed = std::ranges::find(given, name, &ParamItem::key) != given.end();
     const std::string own = std::string(choice.entry->name) + ":" + axis.name;
     const bool replaced = std::ranges::find(study.axes, own, &StudyAxis::name) != study.axes.end();
-    if (has && !fixed && !replaced) chosen.push_back(axis);
+    if (has && !choice.params.given(name) && !replaced) chosen.push_back(axis);
   }
   return chosen;
 }

@@ -31,14 +31,9 @@ struct Columns {
 class OpenParameters {
  public:
   explicit OpenParameters(const std::string& solver)
-      : base_(solver), entry_(*parse_solver(solver).entry) {}
+      : base_(parse_solver(solver)), entry_(*base_.entry) {}
 
-  bool open(std::string_view name) const {
-    const auto fixed = [&](char mark) {
-      return base_.find(mark + std::string(name) + "=") != std::string::npos;
-    };
-    return !name.empty() && !fixed(':') && !fixed(',');
-  }
+  bool open(std::string_view name) const { return !name.empty() && !base_.params.given(name); }
 
   /// Those of the parameters that are open, at that value.
   Values values_of(std::string_view parameters, const std::string& value) const {
@@ -89,16 +84,15 @@ class OpenParameters {
   /// The same, those that the solver's text does not have anyway.
   std::vector<Values> other_alternatives() const {
     std::vector<Values> all = alternatives();
-    const Params& params = parse_solver(base_).params;
     std::erase_if(all, [&](const Values& values) {
       return std::ranges::all_of(
-          values, [&](const auto& one) { return params.value(one.first) == one.second; });
+          values, [&](const auto& one) { return base_.params.value(one.first) == one.second; });
     });
     return all;
   }
 
  private:
-  std::string base_;
+  SolverChoice base_;
   const SolverEntry& entry_;
 };
 

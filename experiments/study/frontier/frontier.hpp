@@ -64,10 +64,6 @@ using Trial = std::function<std::vector<Outcome>(const std::vector<double>&)>;
 /// out. Values without an answer are passed over.
 Frontier find_frontier(const SearchRange&, const Trial&);
 
-/// Gives a parameter of a solver's text ("jakobsen:iterations=8") this value, whether it has one
-/// there or not. Precondition: it has no quotes.
-void set_parameter(std::string& solver, const std::string& name, const std::string& value);
-
 /// Which way a setting becomes harder. Downwards, the search goes up in 1/setting.
 enum class Direction { up, down, down_in_whole_numbers };
 

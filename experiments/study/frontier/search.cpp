@@ -145,19 +145,6 @@ Frontier find_frontier(const SearchRange& range, const Trial& trial) {
   return BorderSearch(range, trial).run();
 }
 
-void set_parameter(std::string& solver, const std::string& name, const std::string& value) {
-  bool quoted = false;
-  for (std::size_t i = 0; i < solver.size(); ++i) {
-    if (solver[i] == '\'' || solver[i] == '"') quoted = !quoted;
-    if (quoted || (solver[i] != ':' && solver[i] != ',')) continue;
-    if (solver.compare(i + 1, name.size() + 1, name + "=") != 0) continue;
-    const std::size_t from = i + name.size() + 2;
-    solver.replace(from, std::min(solver.find(',', from), solver.size()) - from, value);
-    return;
-  }
-  solver = with(solver, name + "=" + value);
-}
-
 double FrontierQuestion::setting(double value) const {
   if (direction == Direction::up) return value;
   if (direction == Direction::down_in_whole_numbers) return std::round(1 / value);
@@ -174,7 +161,7 @@ CaseSpec FrontierQuestion::at(double value) const {
     else if (of_scene(name))
       spec.settings = replaced(std::move(spec.settings), {{name, text}});
     else
-      set_parameter(spec.solver, name, text);
+      spec.solver = parse_solver(spec.solver).with(name, text).brief();
   return spec;
 }
 

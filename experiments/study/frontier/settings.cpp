@@ -78,7 +78,7 @@ class FrontierSettings {
     FrontierSetting& one = add("sweeps", "", sweeps, 1.0 / 64, 1, Direction::down_in_whole_numbers,
                                {"cloth.grid=[17, 17]", "time.dt=\"1/30\""});
     const std::string substeps(choice_.entry->accuracy.substeps);
-    if (!substeps.empty()) set_parameter(one.question.base.solver, substeps, "1");
+    if (!substeps.empty()) one.question.base.solver = choice_.with(substeps, "1").brief();
   }
 
   void add_stiffness() {

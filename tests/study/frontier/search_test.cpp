@@ -98,18 +98,6 @@ TEST(Frontier, ASymptomEndsWhatIsGoodThoughTheRunDoesNot) {
   EXPECT_EQ(found.at(found.unstable)->symptom, "tunnels");
 }
 
-TEST(Frontier, AParameterIsSetWhereItStands) {
-  const auto set = [](std::string solver) {
-    set_parameter(solver, "omega", "2");
-    return solver;
-  };
-  EXPECT_EQ(set("jakobsen"), "jakobsen:omega=2");
-  EXPECT_EQ(set("jakobsen:omega=1.5"), "jakobsen:omega=2");
-  EXPECT_EQ(set("jakobsen:iterations=2,omega=1,substeps=3"),
-            "jakobsen:iterations=2,omega=2,substeps=3");
-  EXPECT_EQ(set("external:cmd='a,omega=1'"), "external:cmd='a,omega=1',omega=2");
-}
-
 TEST(Frontier, QuestionsBecomeCases) {
   const CaseSpec base{"chain", {}, "jakobsen:iterations=2"};
   EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).settings.back()), "time.dt=\"0.01\"");
