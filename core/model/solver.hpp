@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <span>
@@ -98,12 +99,28 @@ inline constexpr std::string_view kLinksSetting = "links";
 /// The setting of that name; nullptr: there is none.
 const ResolvedSetting* find_setting(const ResolvedSettings&, std::string_view name);
 
+/// Names of parameters, or values, as typed: {"structural", "shear"}.
+class Words {
+ public:
+  constexpr Words() = default;
+  constexpr Words(std::initializer_list<std::string_view> words) {
+    for (const std::string_view word : words) words_[size_++] = word;
+  }
+  constexpr const std::string_view* begin() const { return words_.data(); }
+  constexpr const std::string_view* end() const { return words_.data() + size_; }
+  constexpr bool empty() const { return size_ == 0; }
+
+ private:
+  std::array<std::string_view, 8> words_{};  // a longer list does not compile
+  std::size_t size_ = 0;
+};
+
 /// The parameters that decide how accurate a result is and what it costs, and what a search for a
-/// setting may try of them (experiments/timing/search.hpp). Names and values as typed.
+/// setting may try of them (experiments/timing/search.hpp).
 struct AccuracyParameters {
-  /// Parameters that take one of the values together: "structural|shear", "50|200|800".
+  /// Parameters that take one of the values together: {"structural", "shear"}, {"50", "200"}.
   struct Ladder {
-    std::string_view parameters, values;
+    Words parameters, values;
   };
   std::string_view substeps;    ///< steps of dt / substeps; "": the solver has none
   std::string_view sweeps;      ///< more of them need fewer substeps; "": the solver has none
@@ -114,18 +131,17 @@ struct AccuracyParameters {
   Ladder stiffness;
   std::span<const Ladder> alternatives;  ///< tried one at a time, at the best of the others
   /// All that may vary along a curve of error over cost, in the order in which labels name it.
-  std::string_view labelled = "substeps|iterations";
+  Words labelled{"substeps", "iterations"};
   /// Accelerators, off at their defaults, that others may lack: costs are compared without them.
-  std::string_view accelerators;
+  Words accelerators;
 };
 
 /// A choice that a scene may not need (experiments/require).
 struct OptionalEffect {
   std::string_view name;  ///< "contact of faces"
   std::string_view parameter;
-  std::string_view values = "";  ///< "on|edges|off": values, dearest first; empty for an integer,
-                                 ///< which is halved down to 1
-  bool of_contact = false;       ///< means something with colliders only
+  Words values = {};        ///< dearest first; empty for an integer, which is halved down to 1
+  bool of_contact = false;  ///< means something with colliders only
 };
 
 /// What a solver does to small displacements of links at their rest length, without gravity, wind

@@ -141,8 +141,8 @@ inline constexpr ParamSpec kThreads = ParamSpec::integer(
 
 /// What a scene may not need of the common parameters (SolverEntry::optional_effects).
 inline constexpr OptionalEffect kOptionalEffects[] = {
-    {"contact of faces", "faces", "on|edges|off", true},
-    {"continuous detection", "contact", "continuous|discrete", true}};
+    {"contact of faces", "faces", {"on", "edges", "off"}, true},
+    {"continuous detection", "contact", {"continuous", "discrete"}, true}};
 
 /// A solver's own parameters, then those that every solver of the loop has.
 template <std::size_t n>

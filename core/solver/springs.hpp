@@ -35,8 +35,8 @@ inline constexpr std::array kStiffness{
     ParamSpec::real("bend", "N/m", "100", 0, 1e12, "spring constant of bend links; 0: no spring")};
 
 /// What a search may try of them, of solvers whose iterations cost the more of them the stiffer.
-inline constexpr AccuracyParameters::Ladder kStiffnesses{"structural|shear",
-                                                         "1000|3000|10000|30000|1e+05"};
+inline constexpr AccuracyParameters::Ladder kStiffnesses{
+    {"structural", "shear"}, {"1000", "3000", "10000", "30000", "1e+05"}};
 
 /// Spring constants [N/m] by family: the scene's, infinite where it leaves links rigid, or the
 /// solver's parameters.

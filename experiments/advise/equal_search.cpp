@@ -20,17 +20,17 @@ constexpr double kShareOfOneRun = 0.5;  ///< of the time of an error, to which s
 std::string without_accelerators(const std::string& solver) {
   const SolverChoice choice = parse_solver(solver);
   std::string text = solver;
-  for (const std::string& name : parts_of(choice.entry->accuracy.accelerators))
+  for (const std::string_view name : choice.entry->accuracy.accelerators)
     if (!choice.params.given(name))
-      text = with(text, name + "=" + std::string(choice.params.value(name)));
+      text = with(text, std::string(name).append("=").append(choice.params.value(name)));
   return text;
 }
 
 bool is_plain(const std::string& setting, const std::string& solver) {
   const SolverChoice one = parse_solver(setting), base = parse_solver(solver);
-  return std::ranges::all_of(
-      parts_of(one.entry->accuracy.accelerators),
-      [&](const std::string& name) { return one.params.value(name) == base.params.value(name); });
+  return std::ranges::all_of(one.entry->accuracy.accelerators, [&](const std::string_view name) {
+    return one.params.value(name) == base.params.value(name);
+  });
 }
 
 class SolverSearch {

@@ -36,10 +36,10 @@ class OpenParameters {
   bool open(std::string_view name) const { return !name.empty() && !base_.params.given(name); }
 
   /// Those of the parameters that are open, at that value.
-  Values values_of(std::string_view parameters, const std::string& value) const {
+  Values values_of(const Words& parameters, std::string_view value) const {
     Values values;
-    for (const std::string& name : parts_of(parameters))
-      if (open(name)) values[name] = value;
+    for (const std::string_view name : parameters)
+      if (open(name)) values[std::string(name)] = value;
     return values;
   }
 
@@ -53,10 +53,12 @@ class OpenParameters {
       for (int v = 1; v <= kMostSweeps; v *= 2) columns.values.push_back(std::to_string(v));
       return columns;
     }
-    Columns columns{parts_of(entry_.accuracy.stiffness.parameters), {}, false};
-    std::erase_if(columns.parameters, [&](const std::string& name) { return !open(name); });
+    Columns columns;
+    for (const std::string_view name : entry_.accuracy.stiffness.parameters)
+      if (open(name)) columns.parameters.emplace_back(name);
     if (columns.parameters.empty()) return {{}, {""}, false};
-    columns.values = parts_of(entry_.accuracy.stiffness.values);
+    for (const std::string_view value : entry_.accuracy.stiffness.values)
+      columns.values.emplace_back(value);
     return columns;
   }
 
@@ -64,7 +66,7 @@ class OpenParameters {
   std::vector<Values> stiffnesses() const {
     std::vector<Values> all;
     if (open(entry_.accuracy.sweeps))
-      for (const std::string& value : parts_of(entry_.accuracy.stiffness.values))
+      for (const std::string_view value : entry_.accuracy.stiffness.values)
         if (const Values values = values_of(entry_.accuracy.stiffness.parameters, value);
             !values.empty())
           all.push_back(values);
@@ -74,9 +76,10 @@ class OpenParameters {
   /// Single changes worth trying beside substeps and columns.
   std::vector<Values> alternatives() const {
     std::vector<Values> all;
-    for (const auto& [name, values] : entry_.accuracy.alternatives)
-      for (const std::string& value : parts_of(values))
-        if (open(name)) all.push_back({{std::string(name), value}});
+    for (const auto& [names, values] : entry_.accuracy.alternatives)
+      for (const std::string_view value : values)
+        if (Values change = values_of(names, value); !change.empty())
+          all.push_back(std::move(change));
     for (const Values& values : stiffnesses()) all.push_back(values);
     return all;
   }

@@ -82,7 +82,7 @@ class FrontierSettings {
   }
 
   void add_stiffness() {
-    const std::string springs(choice_.entry->accuracy.stiffness.parameters);
+    const std::string springs = join(choice_.entry->accuracy.stiffness.parameters, "|");
     if (!springs.empty()) return linear(add("stiffness", "N/m", springs, 50, 1e8));
     for (const char* share : {"stiffness", "omega"})
       if (const ParamSpec* spec = parameter(share)) {
