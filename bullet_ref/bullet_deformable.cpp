@@ -260,8 +260,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return lines;
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
-                                                        {"newton", "2|4"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"precision"}, {"float", "double"}},
+                                                        {{"newton"}, {"2", "4"}}};
 
 }  // namespace
 }  // namespace taut::solver::bullet_deformable
@@ -279,7 +279,8 @@ TAUT_SOLVER(bullet_deformable) = {
       return {.none = "Bullet's step is another"};
     },
     .program = taut::bullet_ref::program,
-    .accuracy = {.substeps = "substeps",
-                 .stiffness = {"stiffness", "1000|4000|16000|64000|256000|1024000"},
-                 .alternatives = taut::solver::bullet_deformable::kAlternatives,
-                 .labelled = "substeps|newton|stiffness|precision"}};
+    .accuracy = {
+        .substeps = "substeps",
+        .stiffness = {{"stiffness"}, {"1000", "4000", "16000", "64000", "256000", "1024000"}},
+        .alternatives = taut::solver::bullet_deformable::kAlternatives,
+        .labelled = {"substeps", "newton", "stiffness", "precision"}}};

@@ -259,14 +259,15 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
 }
 
 /// Alternatives like Jakobsen's omega and order, and ways of keeping cloth outside.
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
-                                                        {"reorder", "off|on"},
-                                                        {"faces", "on|off"},
-                                                        {"stiffness", "1.2|1.4|1.6"},
-                                                        {"order", "contacts-first|links-first"},
-                                                        {"hardness", "0.1|0.4|1"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {
+    {{"precision"}, {"float", "double"}},
+    {{"reorder"}, {"off", "on"}},
+    {{"faces"}, {"on", "off"}},
+    {{"stiffness"}, {"1.2", "1.4", "1.6"}},
+    {{"order"}, {"contacts-first", "links-first"}},
+    {{"hardness"}, {"0.1", "0.4", "1"}}};
 
-constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", "on|off", true}};
+constexpr OptionalEffect kOptionalEffects[] = {{"normals", "faces", {"on", "off"}, true}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   if (scene.damping != 0 || params.is("reorder", "on"))
@@ -295,7 +296,8 @@ TAUT_SOLVER(bullet) = {
                  .sweeps = "iterations",
                  .link_order = "reorder",
                  .alternatives = taut::solver::bullet_soft_body::kAlternatives,
-                 .labelled = "substeps|iterations|stiffness|order|hardness|precision",
-                 .accelerators = "stiffness"},
+                 .labelled = {"substeps", "iterations", "stiffness", "order", "hardness",
+                              "precision"},
+                 .accelerators = {"stiffness"}},
     .optional_effects = taut::solver::bullet_soft_body::kOptionalEffects,
     .linear_model = taut::solver::bullet_soft_body::linear_model};

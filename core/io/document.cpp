@@ -20,8 +20,8 @@ namespace taut {
 
 namespace {
 
-SourceLocation place_of(const toml::source_region& region, int override) {
-  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), override};
+SourceLocation place_of(const toml::source_region& region, int setting) {
+  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), setting};
 }
 
 /// Most parts of a dotted key. The TOML library recurses for each part and has no limit of its own.
@@ -72,20 +72,20 @@ toml::table parse_bounded(std::string_view text) {
   return toml::parse(text);
 }
 
-Value convert(const toml::node& node, int override, int level = 0) {
+Value convert(const toml::node& node, int setting, int level = 0) {
   if (level > kMostLevels)
     throw toml::parse_error("nested more than 64 levels deep", node.source());
   Value value;
-  value.place = place_of(node.source(), override);
+  value.place = place_of(node.source(), setting);
   if (const toml::table* table = node.as_table()) {
     for (const auto& [key, child] : *table) {
-      value.keys.push_back({std::string(key.str()), place_of(key.source(), override)});
-      value.items.push_back(convert(child, override, level + 1));
+      value.keys.push_back({std::string(key.str()), place_of(key.source(), setting)});
+      value.items.push_back(convert(child, setting, level + 1));
     }
   } else if (const toml::array* array = node.as_array()) {
     value.kind = Value::Kind::array;
     for (const toml::node& child : *array)
-      value.items.push_back(convert(child, override, level + 1));
+      value.items.push_back(convert(child, setting, level + 1));
   } else if (node.is_string()) {
     value.kind = Value::Kind::string;
     value.string = node.value_or(std::string());
@@ -107,9 +107,9 @@ Value* element(Value& array, const std::string& key) {
   return index && *index < array.items.size() ? &array.items[*index] : nullptr;
 }
 
-/// Applies the values of an override. Tables written with dotted keys merge; everything else is
+/// Applies the values of a setting. Tables written with dotted keys merge; everything else is
 /// replaced.
-void assign(Value& target, const toml::table& from, int override,
+void assign(Value& target, const toml::table& from, int setting,
             std::vector<std::string>& problems) {
   for (const auto& [key, child] : from) {
     const std::string name(key.str());
@@ -125,24 +125,24 @@ void assign(Value& target, const toml::table& from, int override,
       if (!target.is_table()) target = Value{};  // reported later: the schema wants another type
       slot = const_cast<Value*>(target.find(name));
       if (!slot) {
-        target.keys.push_back({name, place_of(key.source(), override)});
+        target.keys.push_back({name, place_of(key.source(), setting)});
         target.items.push_back({});
         slot = &target.items.back();
-        slot->place = place_of(key.source(), override);
+        slot->place = place_of(key.source(), setting);
       }
     }
     const toml::table* table = child.as_table();
     if (table && !table->is_inline())
-      assign(*slot, *table, override, problems);
+      assign(*slot, *table, setting, problems);
     else
-      *slot = convert(child, override);
+      *slot = convert(child, setting);
   }
 }
 
 /// The syntax error as a diagnostic. Its line is kept inside the text even if the end is missing.
 Diagnostic syntax_error(const toml::parse_error& error, const Document& document,
-                        const std::string& text, int override) {
-  SourceLocation place = place_of(error.source(), override);
+                        const std::string& text, int setting) {
+  SourceLocation place = place_of(error.source(), setting);
   const auto breaks = std::count(text.begin(), text.end(), '\n');
   const int lines = static_cast<int>(breaks) + (text.empty() || text.back() != '\n' ? 1 : 0);
   place.line = std::clamp(place.line, 1, std::max(1, lines));
@@ -196,8 +196,8 @@ toml::table table_of(const Value& value) {
 }
 
 /// Hint at the end of a message about a value that does not parse: what the value should be.
-std::string as_written(const std::string& assignment) {
-  const std::string path = assignment.substr(0, assignment.find_first_of(" ="));
+std::string as_written(const SceneSetting& setting) {
+  const std::string& path = setting.key();
   const SceneKey* key = find_scene_key(path);
   if (!key) return "; a text stands in quotes: key=\"text\"";
   return "; " + path + " is of type " + std::string(key->type) + ", as in " + path + "=" +
@@ -212,9 +212,9 @@ const Value* Value::find(const std::string& key) const {
   return nullptr;
 }
 
-int Value::latest_override() const {
-  int latest = place.override;
-  for (const Value& item : items) latest = std::max(latest, item.latest_override());
+int Value::latest_setting() const {
+  int latest = place.setting;
+  for (const Value& item : items) latest = std::max(latest, item.latest_setting());
   return latest;
 }
 
@@ -230,40 +230,39 @@ std::string describe(const Value& value) {
 }
 
 Diagnostic Document::diagnostic(const SourceLocation& place, const std::string& message) const {
-  if (place.override < 0) return {file, place.line, place.column, message};
-  const std::string& text = overrides[static_cast<std::size_t>(place.override)];
+  if (place.setting < 0) return {file, place.line, place.column, message};
+  const std::string& text = settings[static_cast<std::size_t>(place.setting)].text();
   return {text, 0, place.column, message};
 }
 
 Document parse_document(const std::string& file, const std::string& text,
-                        const std::vector<std::string>& overrides) {
-  Document document{file, overrides, {}};
+                        const SceneSettings& settings) {
+  Document document{file, settings, {}};
   std::vector<Diagnostic> found;
   try {
     document.root = convert(parse_bounded(text), -1);
   } catch (const toml::parse_error& error) {
     found.push_back(syntax_error(error, document, text, -1));
   }
-  for (int i = 0; i < static_cast<int>(overrides.size()); ++i) {
-    const std::string& assignment = overrides[static_cast<std::size_t>(i)];
+  for (int i = 0; i < static_cast<int>(settings.size()); ++i) {
+    const SceneSetting& setting = settings[static_cast<std::size_t>(i)];
     try {
       std::vector<std::string> problems;
-      assign(document.root, parse_bounded(assignment), i, problems);
+      assign(document.root, parse_bounded(setting.text()), i, problems);
       for (const std::string& problem : problems)
         found.push_back(document.diagnostic({1, 1, i}, problem));
     } catch (const toml::parse_error& error) {
-      found.push_back(syntax_error(error, document, assignment, i));
-      if (found.back().message.starts_with("Error while parsing"))  // the library's wording
-        found.back().message += as_written(assignment);
+      found.push_back(syntax_error(error, document, setting.text(), i));
+      if (found.back().message.starts_with("Error while parsing"))  // the library's words
+        found.back().message += as_written(setting);
     }
   }
   if (!found.empty()) throw InputError(found);
   return document;
 }
 
-Document read_document(const std::filesystem::path& path,
-                       const std::vector<std::string>& overrides) {
-  return parse_document(path.string(), read_text(path, kMostSceneBytes), overrides);
+Document read_document(const std::filesystem::path& path, const SceneSettings& settings) {
+  return parse_document(path.string(), read_text(path, kMostSceneBytes), settings);
 }
 
 std::string to_toml(const Value& root) {
@@ -274,7 +273,7 @@ std::string to_toml(const Value& root) {
 
 void Diagnostics::throw_if_any() {
   if (found_.empty()) return;
-  // Overrides have no line and come last, in the order of the command line.
+  // Settings have no line and come last, in the order of the command line.
   std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tuple(a.line == 0, a.file, a.line, a.column) <
            std::tuple(b.line == 0, b.file, b.line, b.column);

@@ -9,15 +9,16 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/scene_keys.hpp"
+#include "core/model/scene_setting.hpp"
 #include "core/model/vec3.hpp"
 
 namespace taut {
 
 /// Where a value is written.
 struct SourceLocation {
-  int line = 0;       ///< 1-based; 0: unknown
-  int column = 0;     ///< 1-based; 0: unknown
-  int override = -1;  ///< index into Document::overrides; -1: the file itself
+  int line = 0;      ///< 1-based; 0: unknown
+  int column = 0;    ///< 1-based; 0: unknown
+  int setting = -1;  ///< index into Document::settings; -1: the file itself
 };
 
 /// A key of a table.
@@ -43,31 +44,30 @@ struct Value {
   bool is_number() const { return kind == Kind::integer || kind == Kind::real; }
   /// Nullptr if this is not a table or does not have the key.
   const Value* find(const std::string& key) const;
-  /// Index of the last override that set a part of the value; -1: all of it is from the file.
-  int latest_override() const;
+  /// Index of the last setting that set a part of the value; -1: all of it is from the file.
+  int latest_setting() const;
 };
 
 /// "a table", "a whole number", ...
 std::string describe(const Value&);
 
-/// A TOML file with its overrides applied.
+/// A TOML file with settings applied.
 struct Document {
   std::string file;  ///< as the user named it
-  std::vector<std::string> overrides;
+  SceneSettings settings;
   Value root;
 
   Diagnostic diagnostic(const SourceLocation&, const std::string& message) const;
 };
 
-/// Reads a TOML file. An override is a TOML assignment with a dotted key ("time.dt=\"1/120\""),
-/// which replaces or adds a value; a number selects an element of an array
-/// ("collider.0.radius=0.4"). Throws InputError with every malformed part: the file's first syntax
-/// error (including duplicate keys) and each malformed override.
-Document read_document(const std::filesystem::path&, const std::vector<std::string>& overrides);
+/// Reads a TOML file. A setting is a TOML assignment with a dotted key (time.dt="1/120"), which
+/// replaces or adds a value; a number selects an element of an array ("collider.0.radius=0.4").
+/// Throws InputError with every malformed part: the file's first syntax error (including duplicate
+/// keys) and each malformed setting.
+Document read_document(const std::filesystem::path&, const SceneSettings&);
 
 /// read_document() for text in memory.
-Document parse_document(const std::string& file, const std::string& text,
-                        const std::vector<std::string>& overrides);
+Document parse_document(const std::string& file, const std::string& text, const SceneSettings&);
 
 /// Writes the document as TOML, without comments; it reads back as the same values. Throws
 /// InputError for a date or time, which no document of taut has.

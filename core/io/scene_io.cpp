@@ -256,7 +256,7 @@ void judge_fabric(Section& root) {
     for (const char* key : keys) {
       const Value* table = root.table(name);
       const Value* value = table ? table->find(key) : nullptr;
-      if (!value || (fabric->place.override >= 0 && value->latest_override() < 0)) continue;
+      if (!value || (fabric->place.setting >= 0 && value->latest_setting() < 0)) continue;
       root.diagnostics().report(value->place, std::string("'") + key + "' in [" + name +
                                                   "] conflicts with fabric = \"" + fabric->string +
                                                   "\", which sets it: remove one");
@@ -370,14 +370,14 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+Scene load_scene(const std::filesystem::path& path, const SceneSettings& settings,
                  std::vector<std::string>* remarks) {
-  return scene_of(read_document(path, overrides), path, remarks);
+  return scene_of(read_document(path, settings), path, remarks);
 }
 
 Scene parse_scene(const std::filesystem::path& file, const std::string& text,
-                  const std::vector<std::string>& overrides) {
-  return scene_of(parse_document(file.string(), text, overrides), file);
+                  const SceneSettings& settings) {
+  return scene_of(parse_document(file.string(), text, settings), file);
 }
 
 }  // namespace taut

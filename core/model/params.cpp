@@ -126,7 +126,7 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
     values_.push_back(canonical_value(spec, spec.default_value, problem));
     assert(problem.empty() && "a default outside its own range");
   }
-  std::vector<bool> seen(specs.size());
+  given_.resize(specs.size());
   for (const auto& [key, given, at, wrong] : param_items(text)) {
     const auto report = [&, column = static_cast<int>(at) + 1](const std::string& message) {
       problems.push_back({std::string(text), 0, column, std::string(owner) + ": " + message});
@@ -136,10 +136,10 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
       report(wrong);
     } else if (i == specs.size()) {
       report("unknown parameter " + in_quotes(key) + suggestion(key, names));
-    } else if (seen[i]) {
+    } else if (given_[i]) {
       report("parameter " + in_quotes(key) + " is given twice");
     } else {
-      seen[i] = true;
+      given_[i] = true;
       std::string problem;
       const std::string value = canonical_value(specs[i], given, problem);
       if (problem.empty())
@@ -150,7 +150,17 @@ Params::Params(std::string_view owner, std::span<const ParamSpec> specs, std::st
   }
   if (!problems.empty()) throw InputError(problems);
   for (std::size_t i = 0; i < specs.size(); ++i)
-    if (!seen[i]) values_[i] = default_of(specs[i]);
+    if (!given_[i]) values_[i] = default_of(specs[i]);
+}
+
+std::string Params::given_with(std::string_view name, const std::string& value) const {
+  if (!has(name)) return std::string(name) + "=" + value;  // whose reader says what there is
+  std::string all;
+  for (std::size_t i = 0; i < specs_.size(); ++i)
+    if (const bool is_it = specs_[i].name == name; is_it || given_[i])
+      all += (all.empty() ? "" : ",") + std::string(specs_[i].name) + "=" +
+             quoted_if_needed(specs_[i], is_it ? value : values_[i]);
+  return all;
 }
 
 std::string Params::default_of(const ParamSpec& spec) const {

@@ -78,6 +78,8 @@ class Params {
     return choices[i].second;
   }
   bool has(std::string_view name) const { return find(name) < specs_.size(); }
+  /// Whether the text gave the parameter a value. Otherwise it has its default.
+  bool given(std::string_view name) const { return has(name) && given_[find(name)]; }
   /// Name of the solver whose parameters they are.
   const std::string& owner() const { return owner_; }
 
@@ -85,6 +87,8 @@ class Params {
   /// has all of them, brief() those that differ from their defaults.
   std::string canonical(std::string_view but = "") const { return text(false, but); }
   std::string brief(std::string_view but = "") const { return text(true, but); }
+  /// The text of the given parameters, with this value for one of them.
+  std::string given_with(std::string_view name, const std::string& value) const;
   /// The value in canonical form, without quotes.
   std::string_view value(std::string_view name) const;
   std::span<const ParamSpec> specs() const { return specs_; }
@@ -97,6 +101,7 @@ class Params {
   std::string owner_;
   std::span<const ParamSpec> specs_;
   std::vector<std::string> values_;  ///< canonical text
+  std::vector<bool> given_;
 };
 
 }  // namespace taut

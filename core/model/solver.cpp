@@ -154,12 +154,16 @@ std::string with(std::string_view solver, std::string_view more) {
   return text.append(more);
 }
 
+SolverChoice SolverChoice::with(std::string_view name, const std::string& value) const {
+  return parse_solver(taut::with(entry->name, params.given_with(name, value)));
+}
+
 std::string SolverChoice::canonical() const { return with_params(false, ""); }
 
 std::string SolverChoice::brief() const { return with_params(true, ""); }
 
 std::string SolverChoice::with_params(bool only_changed, std::string_view but) const {
-  return with(entry->name, only_changed ? params.brief(but) : params.canonical(but));
+  return taut::with(entry->name, only_changed ? params.brief(but) : params.canonical(but));
 }
 
 }  // namespace taut

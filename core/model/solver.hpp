@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <span>
@@ -101,12 +102,28 @@ inline constexpr std::string_view kLinksSetting = "links";
 /// The setting with that name; nullptr if there is none.
 const ResolvedSetting* find_setting(const ResolvedSettings&, std::string_view name);
 
+/// Names of parameters, or values, as typed: {"structural", "shear"}.
+class Words {
+ public:
+  constexpr Words() = default;
+  constexpr Words(std::initializer_list<std::string_view> words) {
+    for (const std::string_view word : words) words_[size_++] = word;
+  }
+  constexpr const std::string_view* begin() const { return words_.data(); }
+  constexpr const std::string_view* end() const { return words_.data() + size_; }
+  constexpr bool empty() const { return size_ == 0; }
+
+ private:
+  std::array<std::string_view, 8> words_{};  // a longer list does not compile
+  std::size_t size_ = 0;
+};
+
 /// Parameters that decide how accurate a result is and what it costs, and the values that a search
-/// for a setting may try (experiments/timing/search.hpp). Names and values as typed.
+/// for a setting may try (experiments/timing/search.hpp).
 struct AccuracyParameters {
-  /// Values that a group of parameters takes together: "structural|shear", "50|200|800".
+  /// Values that a group of parameters takes together: {"structural", "shear"}, {"50", "200"}.
   struct Ladder {
-    std::string_view parameters, values;
+    Words parameters, values;
   };
   std::string_view substeps;    ///< steps of dt / substeps; "": the solver has none
   std::string_view sweeps;      ///< more sweeps need fewer substeps; "": the solver has none
@@ -119,18 +136,17 @@ struct AccuracyParameters {
   std::span<const Ladder> alternatives;  ///< tried one at a time, with the others at their best
   /// All parameters that may vary along a curve of error over cost, in the order in which labels
   /// name them.
-  std::string_view labelled = "substeps|iterations";
+  Words labelled{"substeps", "iterations"};
   /// Accelerators that other solvers may lack. They are off by default, and costs are compared
   /// without them.
-  std::string_view accelerators;
+  Words accelerators;
 };
 
 /// A parameter that a scene may not need (experiments/require).
 struct OptionalEffect {
   std::string_view name;  ///< "contact of faces"
   std::string_view parameter;
-  /// "on|edges|off": values, dearest first; empty for an integer, which is halved down to 1.
-  std::string_view values = "";
+  Words values = {};        ///< dearest first; empty for an integer, which is halved down to 1
   bool of_contact = false;  ///< only matters with colliders
 };
 
@@ -264,6 +280,8 @@ struct SolverChoice {
   std::string canonical() const;
   /// Like canonical(), but with only the parameters that differ from their defaults: for people.
   std::string brief() const;
+  /// The choice with this value of one of its parameters. Throws InputError.
+  SolverChoice with(std::string_view name, const std::string& value) const;
   /// canonical() and brief() without the parameters of the entry's `place`: the address and the
   /// name of a result.
   std::string addressed() const { return with_params(false, entry->place); }

@@ -148,8 +148,9 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {
-    {"penalty", "30|100|300"}, {"multipliers", "reset|keep"}, {"precision", "double|float"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"penalty"}, {"30", "100", "300"}},
+                                                        {{"multipliers"}, {"reset", "keep"}},
+                                                        {{"precision"}, {"double", "float"}}};
 
 }  // namespace
 }  // namespace taut::solver::admm
@@ -168,5 +169,5 @@ TAUT_SOLVER(admm) = {
                  .sweeps = "iterations",
                  .all_at_once = true,
                  .alternatives = taut::solver::admm::kAlternatives,
-                 .labelled = "substeps|iterations|penalty|multipliers|precision"},
+                 .labelled = {"substeps", "iterations", "penalty", "multipliers", "precision"}},
     .optional_effects = taut::loop::kOptionalEffects};

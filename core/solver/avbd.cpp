@@ -137,25 +137,26 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"beta", "10|100|1000"},
-                                                        {"k-min", "1|10|100"},
-                                                        {"order", "coloured|mesh"},
-                                                        {"precision", "double|float"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"beta"}, {"10", "100", "1000"}},
+                                                        {{"k-min"}, {"1", "10", "100"}},
+                                                        {{"order"}, {"coloured", "mesh"}},
+                                                        {{"precision"}, {"double", "float"}}};
 
 }  // namespace
 }  // namespace taut::solver::avbd
 
-TAUT_SOLVER(avbd) = {.name = "avbd",
-                     .title = "AVBD",
-                     .summary = "Augmented Vertex Block Descent of rigid links",
-                     .source = "Giles, Diaz, Yuksel 2025",
-                     .params = taut::solver::avbd::kParams,
-                     .make = taut::solver::avbd::make,
-                     .unsupported = taut::solver::avbd::unsupported,
-                     .resolved_settings = taut::solver::avbd::resolved_settings,
-                     .declared_step = taut::implicit_euler,
-                     .accuracy = {.substeps = "substeps",
-                                  .sweeps = "iterations",
-                                  .alternatives = taut::solver::avbd::kAlternatives,
-                                  .labelled = "substeps|iterations|beta|k-min|order|precision"},
-                     .optional_effects = taut::loop::kOptionalEffects};
+TAUT_SOLVER(avbd) = {
+    .name = "avbd",
+    .title = "AVBD",
+    .summary = "Augmented Vertex Block Descent of rigid links",
+    .source = "Giles, Diaz, Yuksel 2025",
+    .params = taut::solver::avbd::kParams,
+    .make = taut::solver::avbd::make,
+    .unsupported = taut::solver::avbd::unsupported,
+    .resolved_settings = taut::solver::avbd::resolved_settings,
+    .declared_step = taut::implicit_euler,
+    .accuracy = {.substeps = "substeps",
+                 .sweeps = "iterations",
+                 .alternatives = taut::solver::avbd::kAlternatives,
+                 .labelled = {"substeps", "iterations", "beta", "k-min", "order", "precision"}},
+    .optional_effects = taut::loop::kOptionalEffects};

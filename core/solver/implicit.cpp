@@ -349,7 +349,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
 }
 
 constexpr AccuracyParameters::Ladder kAlternatives[] = {
-    {"multipliers", "keep"}, {"start", "inertia"}, {"line-search", "off"}};
+    {{"multipliers"}, {"keep"}}, {{"start"}, {"inertia"}}, {{"line-search"}, {"off"}}};
 
 }  // namespace
 }  // namespace taut::solver::implicit
@@ -369,5 +369,6 @@ TAUT_SOLVER(implicit) = {
                  .all_at_once = true,
                  .stiffness = taut::kStiffnesses,
                  .alternatives = taut::solver::implicit::kAlternatives,
-                 .labelled = "substeps|iterations|structural|multipliers|start|line-search"},
+                 .labelled = {"substeps", "iterations", "structural", "multipliers", "start",
+                              "line-search"}},
     .optional_effects = taut::loop::kOptionalEffects};

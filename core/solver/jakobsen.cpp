@@ -117,15 +117,15 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params, own);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
-                                                        {"order", "coloured|mesh"},
-                                                        {"omega", "1.3|1.6"},
-                                                        {"levels", "2|3"},
-                                                        {"tethers", "on"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"precision"}, {"float", "double"}},
+                                                        {{"order"}, {"coloured", "mesh"}},
+                                                        {{"omega"}, {"1.3", "1.6"}},
+                                                        {{"levels"}, {"2", "3"}},
+                                                        {{"tethers"}, {"on"}}};
 
 constexpr OptionalEffect kOptionalEffects[] = {loop::kOptionalEffects[0],
                                                loop::kOptionalEffects[1],
-                                               {"tethers", "tethers", "on|off"},
+                                               {"tethers", "tethers", {"on", "off"}},
                                                {"levels", "levels"}};
 
 LinearModel linear_model(const Scene&, const Params& params) {
@@ -153,7 +153,8 @@ TAUT_SOLVER(jakobsen) = {
                  .sweeps = "iterations",
                  .link_order = "order",
                  .alternatives = taut::solver::jakobsen::kAlternatives,
-                 .labelled = "substeps|iterations|omega|order|tethers|levels|precision",
-                 .accelerators = "tethers|levels|omega|threads"},
+                 .labelled = {"substeps", "iterations", "omega", "order", "tethers", "levels",
+                              "precision"},
+                 .accelerators = {"tethers", "levels", "omega", "threads"}},
     .optional_effects = taut::solver::jakobsen::kOptionalEffects,
     .linear_model = taut::solver::jakobsen::linear_model};

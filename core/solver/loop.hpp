@@ -141,8 +141,8 @@ inline constexpr ParamSpec kThreads = ParamSpec::integer(
 
 /// Parameters of effects that a scene may not need (SolverEntry::optional_effects).
 inline constexpr OptionalEffect kOptionalEffects[] = {
-    {"contact of faces", "faces", "on|edges|off", true},
-    {"continuous detection", "contact", "continuous|discrete", true}};
+    {"contact of faces", "faces", {"on", "edges", "off"}, true},
+    {"continuous detection", "contact", {"continuous", "discrete"}, true}};
 
 /// A solver's own parameters, followed by those that every solver of the loop has.
 template <std::size_t n>

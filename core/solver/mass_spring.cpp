@@ -164,7 +164,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
       "as forces");
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "double|float"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"precision"}, {"double", "float"}}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   return LinearSprings{.stiffness = stiffnesses(scene, params),
@@ -189,8 +189,9 @@ TAUT_SOLVER(mass_spring) = {
       return {.none = "it is explicit"};
     },
     .accuracy = {.substeps = "substeps",
-                 .stiffness = {"structural|shear", "50|200|800|3200|12800|51200"},
+                 .stiffness = {{"structural", "shear"},
+                               {"50", "200", "800", "3200", "12800", "51200"}},
                  .alternatives = taut::solver::mass_spring::kAlternatives,
-                 .labelled = "substeps|precision"},
+                 .labelled = {"substeps", "precision"}},
     .optional_effects = taut::loop::kOptionalEffects,
     .linear_model = taut::solver::mass_spring::linear_model};

@@ -403,10 +403,10 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "double|float"},
-                                                        {"anderson", "5"},
-                                                        {"chebyshev", "0.8|0.95"},
-                                                        {"method", "lbfgs|ncg"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"precision"}, {"double", "float"}},
+                                                        {{"anderson"}, {"5"}},
+                                                        {{"chebyshev"}, {"0.8", "0.95"}},
+                                                        {{"method"}, {"lbfgs", "ncg"}}};
 
 }  // namespace
 }  // namespace taut::solver::pd
@@ -426,6 +426,7 @@ TAUT_SOLVER(pd) = {
                  .all_at_once = true,
                  .stiffness = taut::kStiffnesses,
                  .alternatives = taut::solver::pd::kAlternatives,
-                 .labelled = "substeps|iterations|structural|anderson|chebyshev|method|precision",
-                 .accelerators = "anderson|chebyshev|method"},
+                 .labelled = {"substeps", "iterations", "structural", "anderson", "chebyshev",
+                              "method", "precision"},
+                 .accelerators = {"anderson", "chebyshev", "method"}},
     .optional_effects = taut::loop::kOptionalEffects};

@@ -36,8 +36,8 @@ inline constexpr std::array kStiffness{
 
 /// Stiffnesses that a search may try, for solvers that need more iterations the stiffer the
 /// springs.
-inline constexpr AccuracyParameters::Ladder kStiffnesses{"structural|shear",
-                                                         "1000|3000|10000|30000|1e+05"};
+inline constexpr AccuracyParameters::Ladder kStiffnesses{
+    {"structural", "shear"}, {"1000", "3000", "10000", "30000", "1e+05"}};
 
 /// Spring constants [N/m] by family: the scene's, infinite where it leaves links rigid, or else the
 /// solver's parameters.

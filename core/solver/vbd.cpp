@@ -93,28 +93,28 @@ DeclaredStep declared_step(const Scene& scene, const Params& params) {
   return step;
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"chebyshev", "0.5|0.8|0.9"},
-                                                        {"start", "adaptive|inertia"},
-                                                        {"order", "coloured|mesh"},
-                                                        {"precision", "double|float"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"chebyshev"}, {"0.5", "0.8", "0.9"}},
+                                                        {{"start"}, {"adaptive", "inertia"}},
+                                                        {{"order"}, {"coloured", "mesh"}},
+                                                        {{"precision"}, {"double", "float"}}};
 
 }  // namespace
 }  // namespace taut::solver::vbd
 
-TAUT_SOLVER(vbd) = {
-    .name = "vbd",
-    .title = "VBD",
-    .summary = "Vertex Block Descent on the energy of implicit Euler",
-    .source = "Chen, Liu, Yang, Yuksel 2024; Wang 2015",
-    .params = taut::solver::vbd::kParams,
-    .make = taut::solver::vbd::make,
-    .unsupported = taut::unsupported_of_springs,
-    .resolved_settings = taut::solver::vbd::resolved_settings,
-    .declared_step = taut::solver::vbd::declared_step,
-    .accuracy = {.substeps = "substeps",
-                 .sweeps = "iterations",
-                 .stiffness = taut::kStiffnesses,
-                 .alternatives = taut::solver::vbd::kAlternatives,
-                 .labelled = "substeps|iterations|structural|chebyshev|start|order|precision",
-                 .accelerators = "chebyshev|threads"},
-    .optional_effects = taut::loop::kOptionalEffects};
+TAUT_SOLVER(vbd) = {.name = "vbd",
+                    .title = "VBD",
+                    .summary = "Vertex Block Descent on the energy of implicit Euler",
+                    .source = "Chen, Liu, Yang, Yuksel 2024; Wang 2015",
+                    .params = taut::solver::vbd::kParams,
+                    .make = taut::solver::vbd::make,
+                    .unsupported = taut::unsupported_of_springs,
+                    .resolved_settings = taut::solver::vbd::resolved_settings,
+                    .declared_step = taut::solver::vbd::declared_step,
+                    .accuracy = {.substeps = "substeps",
+                                 .sweeps = "iterations",
+                                 .stiffness = taut::kStiffnesses,
+                                 .alternatives = taut::solver::vbd::kAlternatives,
+                                 .labelled = {"substeps", "iterations", "structural", "chebyshev",
+                                              "start", "order", "precision"},
+                                 .accelerators = {"chebyshev", "threads"}},
+                    .optional_effects = taut::loop::kOptionalEffects};

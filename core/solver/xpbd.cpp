@@ -121,11 +121,11 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   return loop::resolved_settings(scene, params, own, "refused", loop::kSolvedFriction);
 }
 
-constexpr AccuracyParameters::Ladder kAlternatives[] = {{"precision", "float|double"},
-                                                        {"order", "coloured|mesh"},
-                                                        {"tethers", "on"},
-                                                        {"method", "global"},
-                                                        {"primal", "on"}};
+constexpr AccuracyParameters::Ladder kAlternatives[] = {{{"precision"}, {"float", "double"}},
+                                                        {{"order"}, {"coloured", "mesh"}},
+                                                        {{"tethers"}, {"on"}},
+                                                        {{"method"}, {"global"}},
+                                                        {{"primal"}, {"on"}}};
 
 LinearModel linear_model(const Scene& scene, const Params& params) {
   if (params.is("method", "global")) return {};
@@ -153,7 +153,8 @@ TAUT_SOLVER(xpbd) = {
                  .sweeps = "iterations",
                  .link_order = "order",
                  .alternatives = taut::solver::xpbd::kAlternatives,
-                 .labelled = "substeps|iterations|method|primal|order|tethers|precision",
-                 .accelerators = "tethers|threads"},
+                 .labelled = {"substeps", "iterations", "method", "primal", "order", "tethers",
+                              "precision"},
+                 .accelerators = {"tethers", "threads"}},
     .optional_effects = taut::loop::kOptionalEffects,
     .linear_model = taut::solver::xpbd::linear_model};

@@ -16,7 +16,7 @@ constexpr std::size_t kMostRefused = 4;  ///< printed unless all are requested
 
 std::string command(const AdviceWanted& wanted, const Advice& advice) {
   std::string text = "taut bench " + shell_word(wanted.scene);
-  for (const std::string& value : wanted.settings) text += " --set " + shell_word(value);
+  for (const SceneSetting& one : wanted.settings) text += " --set " + shell_word(one.text());
   const auto solver = [&](std::size_t i) {
     text +=
         " --solver " + shell_word(parse_solver(advice.bench.cases[i].record.spec.solver).brief());

@@ -14,9 +14,9 @@ namespace taut {
 
 /// What a search is to find: the best setting on a scene for an error or a budget.
 struct AdviceWanted {
-  std::string scene;                  ///< name or path
-  std::vector<std::string> settings;  ///< settings of the scene, "key=value"
-  std::vector<std::string> solvers;   ///< parameters fixed in their texts are not searched
+  std::string scene;  ///< name or path
+  SceneSettings settings;
+  std::vector<std::string> solvers;  ///< parameters fixed in their texts are not searched
   Target target;
   std::string metric = kErrorMetric;
   std::vector<Limit> limits = {};  ///< limits on values beside the error

@@ -21,28 +21,26 @@ constexpr double kShareOfOneRun = 0.5;
 /// are.
 std::string without_accelerators(const std::string& solver) {
   const SolverChoice choice = parse_solver(solver);
-  const auto colon = solver.find(':');
-  const auto given = param_items(colon == solver.npos ? "" : solver.substr(colon + 1));
   std::string text = solver;
-  for (const std::string& name : parts_of(choice.entry->accuracy.accelerators))
-    if (std::ranges::find(given, name, &ParamItem::key) == given.end())
-      text = with(text, name + "=" + std::string(choice.params.value(name)));
+  for (const std::string_view name : choice.entry->accuracy.accelerators)
+    if (!choice.params.given(name))
+      text = with(text, std::string(name).append("=").append(choice.params.value(name)));
   return text;
 }
 
 bool is_plain(const std::string& setting, const std::string& solver) {
   const SolverChoice one = parse_solver(setting), base = parse_solver(solver);
-  return std::ranges::all_of(
-      parts_of(one.entry->accuracy.accelerators),
-      [&](const std::string& name) { return one.params.value(name) == base.params.value(name); });
+  return std::ranges::all_of(one.entry->accuracy.accelerators, [&](const std::string_view name) {
+    return one.params.value(name) == base.params.value(name);
+  });
 }
 
 class SolverSearch {
  public:
-  SolverSearch(const std::string& scene, const std::vector<std::string>& settings,
-               const std::string& solver, const std::string& metric, Store& store)
+  SolverSearch(const std::string& scene, const SceneSettings& settings, const std::string& solver,
+               const std::string& metric, Store& store)
       : scene_(scene), settings_(settings), solver_(solver), metric_(metric), store_(store) {
-    const std::vector<std::string> own = parse_study_scene(scene).settings;
+    const SceneSettings own = parse_study_scene(scene).settings;
     settings_.insert(settings_.end(), own.begin(), own.end());
     const Case one = make(solver);
     duration_ = one.scene->duration();
@@ -144,7 +142,7 @@ class SolverSearch {
   }
 
   std::string scene_;
-  std::vector<std::string> settings_;
+  SceneSettings settings_;
   std::string solver_, metric_, unsupported_;
   Store& store_;
   CaseMaker maker_;

@@ -43,8 +43,7 @@ double items_of(const Case& one) {
 }  // namespace
 
 std::vector<std::string> by_expected_cost(std::vector<std::string> solvers,
-                                          const std::string& scene,
-                                          const std::vector<std::string>& settings,
+                                          const std::string& scene, const SceneSettings& settings,
                                           const Store& store) {
   std::map<std::string, double> items, expected;
   std::map<std::string, std::string> name_of;

@@ -13,8 +13,8 @@ namespace taut {
 /// times the median cost per item of the timed solvers. Solvers that cannot be estimated come last.
 /// Nothing is run.
 std::vector<std::string> by_expected_cost(std::vector<std::string> solvers,
-                                          const std::string& scene,
-                                          const std::vector<std::string>& settings, const Store&);
+                                          const std::string& scene, const SceneSettings&,
+                                          const Store&);
 
 /// Name of the best of an unfinished search: "cheapest so far; 3 solvers not tried, 2 not searched
 /// to the end".

@@ -225,7 +225,7 @@ Baseline updated(const Baseline& before, const Baseline& now, const Tolerances& 
 static std::string command_of(const std::string& verb, const CaseSpec& spec) {
   std::string command =
       "taut " + verb + " " + shell_word(spec.scene) + " " + shell_word(spec.solver);
-  for (const std::string& text : spec.overrides) command += " --set " + shell_word(text);
+  for (const SceneSetting& one : spec.settings) command += " --set " + shell_word(one.text());
   return command;
 }
 

@@ -133,8 +133,8 @@ void write_baseline(const std::filesystem::path& folder, const Baseline&);
 Tolerances read_tolerances(const std::filesystem::path& folder);
 
 /// Reads the frontiers of a study's baseline from frontiers.toml in its folder: tables [[frontier]]
-/// with scene, solver, of, from, to, tolerance and set (scene overrides). Without the file, returns
-/// none. Throws InputError with file and line.
+/// with scene, solver, of, from, to, tolerance and set (settings of the scene). Without the file,
+/// returns none. Throws InputError with file and line.
 std::vector<FrontierQuestion> read_frontiers(const std::filesystem::path& folder);
 
 /// The row of a frontier: its status is the kind of the frontier, and its values are the ends of

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::tuple kSpec{Field{"scene", &CaseSpec::scene},
-                           Field{"overrides", &CaseSpec::overrides},
+                           Field{"overrides", &CaseSpec::settings},
                            Field{"solver", &CaseSpec::solver}};
 
 std::string line_of(const BaselineRow& row) {

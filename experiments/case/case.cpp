@@ -12,22 +12,22 @@ namespace taut {
 
 namespace {
 
-/// "time.dt=\"1/64\"" -> "dt=1/64": the two keys that everybody knows need no table.
-std::string brief(std::string text) {
+/// time.dt="1/64" -> "dt=1/64": the two keys that everybody knows need no table.
+std::string in_id(const SceneSetting& one) {
+  const bool known = one.key() == "time.dt" || one.key() == "time.duration";
+  std::string text = (known ? one.key().substr(5) : one.key()) + "=" + one.value();
   std::erase_if(text, [](char c) { return c == '"' || c == ' '; });
-  for (const std::string key : {"time.dt=", "time.duration="})
-    if (text.starts_with(key)) return text.substr(5);
   return text;
 }
 
 Case completed(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice,
                const std::string& scene_digest) {
-  Case one{spec, std::move(scene), std::move(choice), {}, {}, {}};
+  Case one{spec, std::move(scene), std::move(choice), {}, {}, {}, {}};
   one.spec.solver = one.choice.canonical();
   one.key = case_key(*one.scene, scene_digest, one.choice);
-  one.id = one.scene->name;
-  for (const std::string& text : spec.overrides) one.id += ' ' + brief(text);
-  one.id += ' ' + one.choice.called();
+  for (const SceneSetting& setting : spec.settings) one.setting += in_id(setting) + ' ';
+  one.setting += one.choice.called();
+  one.id = one.scene->name + ' ' + one.setting;
   one.build = one.choice.entry->build.empty() ? this_build() : one.choice.entry->build;
   return one;
 }
@@ -42,12 +42,10 @@ std::string this_build() {
 }
 
 const CaseMaker::Loaded& CaseMaker::scene(const CaseSpec& spec) {
-  std::string address = spec.scene;
-  for (const std::string& text : spec.overrides) address += '\n' + text;
-  Loaded& loaded = scenes_[address];
+  Loaded& loaded = scenes_[{spec.scene, spec.settings}];
   if (!loaded.scene) {
     loaded.scene = std::make_shared<const Scene>(
-        load_scene(find_scene(spec.scene), spec.overrides, &loaded.remarks));
+        load_scene(find_scene(spec.scene), spec.settings, &loaded.remarks));
     loaded.digest = digest(*loaded.scene);
   }
   return loaded;

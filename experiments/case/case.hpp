@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "core/model/scene.hpp"
 #include "core/model/solver.hpp"
@@ -17,7 +18,8 @@ struct Case {
   std::shared_ptr<const Scene> scene;
   SolverChoice choice;
   std::string key;                        ///< case_key
-  std::string id;                         ///< for people: "hang dt=1/64 jakobsen:iterations=8"
+  std::string setting;                    ///< for people: "dt=1/64 jakobsen:iterations=8"
+  std::string id;                         ///< the scene and the setting
   std::string build;                      ///< which runs it: that of its solver, or this_build()
   std::vector<std::string> remarks = {};  ///< what was skipped of the scene's files
 };
@@ -30,7 +32,7 @@ std::string this_build();
 /// Makes cases; a scene that many of them share is read once.
 class CaseMaker {
  public:
-  /// Throws InputError: unknown or malformed scene, unknown solver, bad parameter or override.
+  /// Throws InputError: unknown or malformed scene, unknown solver, bad parameter or setting.
   Case make(const CaseSpec&);
 
  private:
@@ -40,10 +42,10 @@ class CaseMaker {
     std::vector<std::string> remarks;
   };
   const Loaded& scene(const CaseSpec&);
-  std::map<std::string, Loaded> scenes_;
+  std::map<std::pair<std::string, SceneSettings>, Loaded> scenes_;
 };
 
-/// A case of a scene that was read already: of `spec` come its name and overrides.
+/// A case of a scene that was read already: of `spec` come its name and settings.
 Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene>, SolverChoice);
 
 /// One case on its own.

@@ -306,20 +306,19 @@ SolverEntry player(std::function<ComputedFrames(const Params&)> open) {
           .declared_step = implicit_euler_of_a_frame};
 }
 
-std::vector<std::string> fitted(const LoadScene& load, std::vector<std::string> overrides,
-                                const ComputedFrames& frames) {
-  Scene scene = load(overrides);
+SceneSettings fitted(const LoadScene& load, SceneSettings settings, const ComputedFrames& frames) {
+  Scene scene = load(settings);
   const ComputedMotion motion(scene, frames);
   if (std::abs(motion.frame_dt() - scene.dt) > 1e-6 * scene.dt) {
-    overrides.push_back("time.dt=" + shortest(motion.frame_dt()));
-    scene = load(overrides);
+    settings.emplace_back("time.dt", shortest(motion.frame_dt()));
+    scene = load(settings);
   }
   if (motion.header().frames < 2)
     throw InputError(frames.name +
                      ": has one frame; a motion has two at least, the start and what follows");
   if (const int steps = motion.header().frames - 1; steps < scene.steps)
-    overrides.push_back("time.duration=" + shortest(steps * motion.frame_dt()));
-  return overrides;
+    settings.emplace_back("time.duration", shortest(steps * motion.frame_dt()));
+  return settings;
 }
 
 CaseRun score(const Scene& scene, const ComputedFrames& frames, const RunOptions& options) {

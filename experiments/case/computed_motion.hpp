@@ -61,13 +61,12 @@ class ComputedMotion {
 /// The solver `positions`: plays what `open` gives as if it computed it now, without cost.
 SolverEntry player(std::function<ComputedFrames(const Params&)> open);
 
-/// Reads a scene with these overrides (core/io/scene_io.hpp).
-using LoadScene = std::function<Scene(const std::vector<std::string>& overrides)>;
+/// Reads a scene with these settings (core/io/scene_io.hpp).
+using LoadScene = std::function<Scene(const SceneSettings&)>;
 
-/// The overrides with which the scene has the frames' time step and, if they end earlier, their
+/// The settings with which the scene has the frames' time step and, if they end earlier, their
 /// duration. Throws InputError: it cannot be read so, or there is one frame alone.
-std::vector<std::string> fitted(const LoadScene&, std::vector<std::string> overrides,
-                                const ComputedFrames&);
+SceneSettings fitted(const LoadScene&, SceneSettings, const ComputedFrames&);
 
 /// Runs the frames through every metric and the verdict on a run, as run_case does with a solver's;
 /// velocities are differences between frames. A coordinate that is not finite is a result

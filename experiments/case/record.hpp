@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/model/scene_setting.hpp"
 #include "core/model/solver.hpp"
 
 namespace taut {
@@ -49,8 +50,7 @@ Status::Kind status_kind(std::string_view);  ///< throws InputError
 /// (SolverChoice::canonical()).
 struct CaseSpec {
   std::string scene;  ///< name of a shipped scene, or a path
-  std::vector<std::string>
-      overrides;       ///< "cloth.grid=[16, 16]", applied before the scene is judged
+  SceneSettings settings;
   std::string solver;  ///< "jakobsen:iterations=8,..."
 };
 
@@ -59,7 +59,8 @@ struct CaseSpec {
 struct Record {
   std::string
       key;  ///< SHA-256 over content, solver, implementation, parameters and metrics version; hex
-  std::string id;  ///< for people, unique in a study: "hang dt=1/64 jakobsen:iterations=8"
+  std::string id;       ///< for people, unique in a study: "hang dt=1/64 jakobsen:iterations=8"
+  std::string setting;  ///< the same without the scene
   CaseSpec spec;
   std::string scene;                          ///< its name
   std::string solver;                         ///< the entry's name

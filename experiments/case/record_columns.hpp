@@ -24,8 +24,8 @@ struct RecordColumn {
       std::variant<std::string Record::*, double Record::*, int Record::*, std::size_t Record::*,
                    std::vector<std::string> Record::*, Texts Record::*, Numbers Record::*,
                    std::vector<PassCost> Record::*, ResolvedSettings Record::*,
-                   std::string CaseSpec::*, std::vector<std::string> CaseSpec::*,
-                   Status::Kind Status::*, std::string Status::*, int Status::*>;
+                   std::string CaseSpec::*, SceneSettings CaseSpec::*, Status::Kind Status::*,
+                   std::string Status::*, int Status::*>;
 
   std::string_view json;    ///< its key; "status.kind": "kind" in the object "status"
   std::string_view column;  ///< in the table `cases`; "": the field has its own table

@@ -54,6 +54,8 @@ void read_into(const JsonReader& j, std::vector<PassCost>& all) {
   for (const JsonReader& one : j.items()) all.push_back(read_as(one, kPassCost));
 }
 
+void read_into(const JsonReader& j, SceneSettings& all) { all = scene_settings(j.texts()); }
+
 void read_into(const JsonReader& j, ResolvedSettings& all) {
   for (const JsonReader& one : j.items()) {
     all.emplace_back(one.at("name").text(), one.at("text").text());

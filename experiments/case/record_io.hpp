@@ -29,6 +29,10 @@ void to_json(Json& json, const PassCost& p) {
           {"projections", p.projections}};
 }
 template <class Json>
+void to_json(Json& json, const SceneSetting& setting) {
+  json = setting.text();
+}
+template <class Json>
 void to_json(Json& json, const ResolvedSetting& s) {
   json = {{"name", s.name}, {"text", s.text}};
   if (!s.token.empty()) json["token"] = s.token;
@@ -41,6 +45,7 @@ void to_json(Json& json, const Status::Kind& kind) {
 // These throw InputError.
 void read_into(const JsonReader&, Status::Kind&);
 void read_into(const JsonReader&, std::vector<PassCost>&);
+void read_into(const JsonReader&, SceneSettings&);
 void read_into(const JsonReader&, ResolvedSettings&);
 
 /// One JSON object; doubles in shortest exact form, NaN as null. indent < 0: one line.

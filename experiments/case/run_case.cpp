@@ -169,6 +169,7 @@ void name_it(Record& record, const Case& one) {
   record.spec = one.spec;
   record.key = one.key;
   record.id = one.id;
+  record.setting = one.setting;
 }
 
 }  // namespace

@@ -7,21 +7,20 @@
 namespace taut {
 
 Task task_of(const Record& r) {
-  Task task{r.scene, r.spec.overrides, r.dt};
-  std::erase_if(task.overrides, [](const auto& text) { return text.starts_with("time.dt="); });
-  std::ranges::sort(task.overrides);
+  Task task{r.scene, without(r.spec.settings, "time.dt"), r.dt};
+  std::ranges::sort(task.settings);
   return task;
 }
 
 std::string title_among(const Task& task, const std::set<Task>& among) {
-  std::vector<std::string> own;
-  for (const std::string& setting : task.overrides)
+  SceneSettings own;
+  for (const SceneSetting& setting : task.settings)
     if (std::ranges::any_of(among, [&](const Task& other) {
           return other.scene == task.scene &&
-                 std::ranges::find(other.overrides, setting) == other.overrides.end();
+                 std::ranges::find(other.settings, setting) == other.settings.end();
         }))
       own.push_back(setting);
-  return task.scene + (own.empty() ? "" : " (" + join(own, ", ") + ")");
+  return task.scene + (own.empty() ? "" : " (" + join(own, ", ", &SceneSetting::text) + ")");
 }
 
 }  // namespace taut

@@ -3,7 +3,6 @@
 #include <compare>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "experiments/case/record.hpp"
 
@@ -12,8 +11,8 @@ namespace taut {
 /// A case without its solver: the scene, its settings and the time step.
 struct Task {
   std::string scene;
-  std::vector<std::string> overrides;  ///< without that of the time step, sorted
-  double dt = 0;                       ///< s
+  SceneSettings settings;  ///< without that of the time step, sorted
+  double dt = 0;           ///< s
   auto operator<=>(const Task&) const = default;
 };
 Task task_of(const Record&);

@@ -70,21 +70,18 @@ CLI::Option* add_preset(CLI::App& app, std::string& preset) {
 }
 
 /// Throws InputError that names both settings if two of a scene have the same key.
-static void refuse_same_key(const std::vector<std::string>& settings) {
+static void refuse_same_key(const SceneSettings& settings) {
   std::map<std::string, std::string> by_key;
-  for (const std::string& setting : settings) {
-    std::string key = setting.substr(0, setting.find('='));
-    std::erase(key, ' ');
-    if (const auto [at, is_new] = by_key.emplace(key, setting); !is_new)
-      throw InputError("'" + at->second + "' and '" + setting + "' both set " + key +
+  for (const SceneSetting& one : settings)
+    if (const auto [at, is_new] = by_key.emplace(one.key(), one.text()); !is_new)
+      throw InputError("'" + at->second + "' and '" + one.text() + "' both set " + one.key() +
                        ": leave out one of them");
-  }
 }
 
-CLI::Option* add_settings(CLI::App& app, std::vector<std::string>& settings) {
+CLI::Option* add_settings(CLI::App& app, SceneSettings& settings) {
   app.add_option_function<std::string>(
       "--fabric",
-      [&settings](const std::string& name) { settings.push_back("fabric=\"" + name + "\""); },
+      [&settings](const std::string& name) { settings.emplace_back("fabric", '"' + name + '"'); },
       "Mass and bending stiffness of a measured fabric in place of the scene's (taut list "
       "fabrics)");
   return app
@@ -277,10 +274,10 @@ void SceneChanges::bind(CLI::App& app) {
   add_settings(app, settings_);
 }
 
-std::vector<std::string> SceneChanges::settings() const {
-  std::vector<std::string> all = settings_;
-  if (!dt_.empty()) all.push_back("time.dt=\"" + dt_ + "\"");
-  if (!duration_.empty()) all.push_back("time.duration=\"" + duration_ + "\"");
+SceneSettings SceneChanges::settings() const {
+  SceneSettings all = settings_;
+  if (!dt_.empty()) all.emplace_back("time.dt", '"' + dt_ + '"');
+  if (!duration_.empty()) all.emplace_back("time.duration", '"' + duration_ + '"');
   refuse_same_key(all);
   return all;
 }

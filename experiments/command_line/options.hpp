@@ -37,7 +37,7 @@ CLI::Option* add_results(CLI::App&, std::string& folder);
 CLI::Option* add_preset(CLI::App&, std::string& preset);
 
 /// --set: settings of a scene, once for each.
-CLI::Option* add_settings(CLI::App&, std::vector<std::string>& settings);
+CLI::Option* add_settings(CLI::App&, SceneSettings&);
 
 /// SCENE: a scene, by name or file.
 CLI::Option* add_scene(CLI::App&, std::string& scene);
@@ -109,7 +109,7 @@ class SceneChanges {
  public:
   void bind(CLI::App&);
   /// The changes as settings of the scene. Throws InputError if two have the same key.
-  std::vector<std::string> settings() const;
+  SceneSettings settings() const;
   bool has_duration() const { return !duration_.empty(); }
 
  private:

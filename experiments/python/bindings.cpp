@@ -139,7 +139,7 @@ void define_module(py::module_& m) {
       [](const py::object& source, const py::object& settings, const std::string& name) {
         const py::dict given = settings.is_none() ? py::dict() : py::dict(settings);
         return py::isinstance<SourcedScene>(source)
-                   ? py::cast<const SourcedScene&>(source).replaced(overrides_of(given))
+                   ? py::cast<const SourcedScene&>(source).replaced(settings_of(given))
                    : scene_from(source, given, name);
       },
       py::arg("source"), py::arg("settings") = py::none(), py::kw_only(), py::arg("name") = "scene",

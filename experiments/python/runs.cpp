@@ -165,7 +165,7 @@ RunResult score(const py::object& scene, const py::object& positions, const py::
   }
   if (!is_file && !allow_nan) check_finite(*frames.positions);
   const auto load = [&](const std::vector<std::string>& with) { return given.read(with); };
-  const Scene timed = load(fitted(load, given.overrides, frames));
+  const Scene timed = load(fitted(load, given.settings, frames));
   return watched(timed, every,
                  [&](const RunOptions& options) { return taut::score(timed, frames, options); });
 }

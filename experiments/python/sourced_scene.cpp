@@ -13,21 +13,17 @@
 
 namespace taut::python {
 
-Scene SourcedScene::read(const std::vector<std::string>& with) const {
+Scene SourcedScene::read(const SceneSettings& with) const {
   return text ? parse_scene(file, *text, with) : load_scene(file, with);
 }
 
-SourcedScene SourcedScene::replaced(const std::vector<std::string>& more) const {
+SourcedScene SourcedScene::replaced(const SceneSettings& more) const {
   if (file.empty())
     throw InputError("this scene is a solver's: make other ones of the scene that you gave");
   SourcedScene other = *this;
-  for (const std::string& one : more) {
-    const std::string key = one.substr(0, one.find('=') + 1);
-    std::erase_if(other.overrides, [&](const std::string& old) { return old.starts_with(key); });
-    other.overrides.push_back(one);
-  }
+  other.settings = taut::replaced(std::move(other.settings), more);
   const py::gil_scoped_release others_run;
-  other.scene = std::make_shared<const Scene>(read(other.overrides));
+  other.scene = std::make_shared<const Scene>(read(other.settings));
   return other;
 }
 
@@ -46,7 +42,7 @@ SourcedScene scene_from(py::handle source, const py::dict& settings, const std::
         find_scene(is_path && scene.source.find('/') == std::string::npos ? "./" + scene.source
                                                                           : scene.source);
   }
-  return scene.replaced(overrides_of(settings));
+  return scene.replaced(settings_of(settings));
 }
 
 SourcedScene timed_scene(py::handle given, const py::object& dt, const py::object& duration) {
@@ -55,7 +51,7 @@ SourcedScene timed_scene(py::handle given, const py::object& dt, const py::objec
   if (!duration.is_none()) times["time.duration"] = duration;
   if (!py::isinstance<SourcedScene>(given)) return scene_from(given, times, "scene");
   const auto& scene = py::cast<const SourcedScene&>(given);
-  return times.empty() ? scene : scene.replaced(overrides_of(times));
+  return times.empty() ? scene : scene.replaced(settings_of(times));
 }
 
 namespace {
@@ -126,7 +122,7 @@ void define_scene(py::module_& m) {
       .def(
           "replace",
           [](const SourcedScene& s, const py::dict& settings) {
-            return s.replaced(overrides_of(settings));
+            return s.replaced(settings_of(settings));
           },
           py::arg("settings"), doc::kReplace)
       .def(

@@ -17,14 +17,14 @@ struct SourcedScene {
   std::string source;               ///< as given: a name or a path; for a text, its name
   std::filesystem::path file;       ///< for a text, what messages call it
   std::optional<std::string> text;  ///< if empty, the text is in the file
-  std::vector<std::string> overrides;
+  SceneSettings settings;
   std::shared_ptr<const Scene> scene;
 
-  Scene read(const std::vector<std::string>& with) const;
-  /// The scene with additional overrides. An override with the same key is replaced. Throws
+  Scene read(const SceneSettings& with) const;
+  /// The scene with additional settings. A setting with the same key is replaced. Throws
   /// InputError.
-  SourcedScene replaced(const std::vector<std::string>& more) const;
-  CaseSpec spec() const { return {source, overrides, ""}; }
+  SourcedScene replaced(const SceneSettings& more) const;
+  CaseSpec spec() const { return {source, settings, ""}; }
 };
 
 /// Reads a scene from a shipped name, a path, or TOML text that messages call `name`. Throws

@@ -96,13 +96,13 @@ std::vector<Vec3> vectors_of(const Doubles& array) {
   return {first, first + array.shape(0)};
 }
 
-std::vector<std::string> overrides_of(const py::dict& settings) {
-  std::vector<std::string> overrides;
+SceneSettings settings_of(const py::dict& settings) {
+  SceneSettings all;
   for (const auto& [name, value] : settings) {
     const auto key = py::cast<std::string>(py::str(name));
-    overrides.push_back(key + "=" + toml_of(value, key));
+    all.emplace_back(key, toml_of(value, key));
   }
-  return overrides;
+  return all;
 }
 
 }  // namespace taut::python

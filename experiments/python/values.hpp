@@ -38,8 +38,8 @@ std::vector<Vec3> vectors_of(const Doubles&);
 /// An array of this shape that takes over the numbers without a copy.
 py::array owned(std::vector<double>&&, std::vector<py::ssize_t> shape);
 
-/// Converts {"cloth.grid": [16, 16]} to overrides for load_scene(). Throws InputError that names
-/// the key.
-std::vector<std::string> overrides_of(const py::dict& settings);
+/// Converts {"cloth.grid": [16, 16]} to settings for load_scene(). Throws InputError that names the
+/// key.
+SceneSettings settings_of(const py::dict& settings);
 
 }  // namespace taut::python

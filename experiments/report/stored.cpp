@@ -120,7 +120,7 @@ void keep_current(StudyBench& bench) {
 namespace {
 
 std::string name_of(const CaseSpec& spec) {
-  return spec.scene + "\n" + spec.solver + "\n" + join(spec.overrides, "\n");
+  return spec.scene + "\n" + spec.solver + "\n" + join(spec.settings, "\n", &SceneSetting::text);
 }
 
 /// All records. If several builds ran a case, the record stored last.
@@ -154,7 +154,7 @@ std::map<std::string, T*> by_question(std::vector<T>& all, const Names& known, R
   for (T& one : all) {
     const Record& r = std::invoke(record_of, one);
     std::string name = r.scene + "\n" + r.solver;
-    for (const std::string& text : r.spec.overrides) name += "\n" + text;
+    for (const SceneSetting& one : r.spec.settings) name += "\n" + one.text();
     const auto names = known.find(r.solver);
     for (const auto& [param, value] : r.params)
       if (names != known.end() && names->second.contains(param)) name += "\n" + param + "=" + value;

@@ -44,10 +44,7 @@ Value without_empty(Value root) {
 }  // namespace
 
 Draft::Draft(const CaseSpec& spec)
-    : spec_(spec),
-      file_(find_scene(spec.scene)),
-      scene_(read_document(file_, spec.overrides)),
-      solver_(parse_solver(spec.solver).entry->name) {
+    : spec_(spec), file_(find_scene(spec.scene)), scene_(read_document(file_, spec.settings)) {
   unfold_fabric();
   scene_changed_ = false;
 }
@@ -105,15 +102,10 @@ void Draft::set_parameter(const std::string& name, const std::string& value) {
 
 CaseSpec Draft::write(const fs::path& folder, const std::string& name,
                       const std::string& comment) const {
-  const Params params = parse_solver(spec_.solver).params;
-  std::string text;
-  for (const ParamSpec& one : params.specs()) {
-    const auto changed = changed_.find(std::string(one.name));
-    text += (text.empty() ? ":" : ",") + std::string(one.name) + "=" +
-            (changed == changed_.end() ? std::string(params.value(one.name)) : changed->second);
-  }
-  const std::string solver = parse_solver(solver_ + text).canonical();
-  if (!scene_changed_ && comment.empty()) return {spec_.scene, spec_.overrides, solver};
+  SolverChoice choice = parse_solver(spec_.solver);
+  for (const auto& [name, value] : changed_) choice = choice.with(name, value);
+  const std::string solver = choice.canonical();
+  if (!scene_changed_ && comment.empty()) return {spec_.scene, spec_.settings, solver};
   Value root = without_empty(scene_.root);
   if (const Value* mesh = find("cloth", "mesh"); mesh && mesh->is_string()) {
     const fs::path there = fs::absolute(file_.parent_path() / mesh->string);

@@ -44,7 +44,6 @@ class Draft {
   CaseSpec spec_;
   std::filesystem::path file_;  ///< file of the scene
   Document scene_;
-  std::string solver_;  ///< the entry's name
   std::map<std::string, std::string> changed_;
   bool scene_changed_ = false;
 };

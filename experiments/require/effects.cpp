@@ -82,7 +82,8 @@ void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effe
   if (spec == one.choice.entry->params.end()) return;
   const std::string from(one.choice.params.value(parameter));
   std::vector<Reduction> reductions;
-  const auto reduce_to = [&](const std::string& value) {
+  const auto reduce_to = [&](std::string_view text) {
+    const std::string value(text);
     reductions.push_back({from + " -> " + value, [parameter, value](Draft& draft) {
                             draft.set_parameter(parameter, value);
                           }});
@@ -92,9 +93,8 @@ void add_parameter(const Case& one, Effects& effects, const OptionalEffect& effe
       n = (n + 1) / 2;
       reduce_to(std::to_string(n));
     }
-  const std::vector<std::string> values = parts_of(effect.values);
-  const auto own = std::ranges::find(values, from);
-  if (own != values.end()) std::for_each(own + 1, values.end(), reduce_to);
+  const auto own = std::ranges::find(effect.values, from);
+  if (own != effect.values.end()) std::for_each(own + 1, effect.values.end(), reduce_to);
   add(effects, std::string(effect.name), std::move(reductions));
 }
 

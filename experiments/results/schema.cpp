@@ -151,7 +151,7 @@ CREATE TABLE samples (
   PRIMARY KEY (timing_id, sample)) WITHOUT ROWID;
 
 CREATE VIEW results AS
-SELECT study, scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
+SELECT study, scene, solver, setting, dt,
   substeps, sweeps AS iterations,
   metrics.name AS metric, numbers.value, metrics.unit, status, cases.key, parameters, settings,
   (SELECT build FROM ran JOIN builds USING (study, build) WHERE ran.key = cases.key
@@ -160,7 +160,7 @@ FROM metrics CROSS JOIN cases LEFT JOIN numbers USING (case_id, metric_id)
   LEFT JOIN planned ON planned.key = cases.key;
 
 CREATE VIEW history AS
-SELECT study, build, made, subject, scene, solver, substr(ran.id, length(scene) + 2) AS setting,
+SELECT study, build, made, subject, scene, solver, setting,
   dt, substeps, sweeps AS iterations, metrics.name AS metric, numbers.value, metrics.unit, status,
   (SELECT count(*) FROM ran AS other WHERE other.key = ran.key AND other.study = ran.study)
     AS builds, ran.key
@@ -168,7 +168,7 @@ FROM ran JOIN builds USING (study, build) JOIN cases ON cases.key = ran.key
   LEFT JOIN numbers USING (case_id) LEFT JOIN metrics USING (metric_id);
 
 CREATE VIEW curves AS
-SELECT scene, solver, substr(cases.id, length(scene) + 2) AS setting, dt,
+SELECT scene, solver, setting, dt,
   substeps, sweeps AS iterations,
   CAST(json_extract(columns, '$.step[' || point.key || ']') AS INTEGER) AS step,
   json_extract(columns, '$.t[' || point.key || ']') AS t, line.key AS metric,
@@ -188,7 +188,7 @@ medians AS (
     avg(cpu) FILTER (WHERE by_cpu IN ((taken + 1) / 2, (taken + 2) / 2)) AS cpu,
     avg(wall) FILTER (WHERE by_wall IN ((taken + 1) / 2, (taken + 2) / 2)) AS wall
   FROM ranked GROUP BY timing_id)
-SELECT study, cases.scene, solver, substr(cases.id, length(cases.scene) + 2) AS setting, dt,
+SELECT study, cases.scene, solver, setting, dt,
   substeps, sweeps AS iterations,
   cpu, cpu / dt AS cpu_per_second, wall, peak_bytes AS memory, coalesce(taken, 0) AS samples,
   failure, remark, status, host, build, cases.key

@@ -193,6 +193,7 @@ std::optional<Record> Store::find(const Case& one) const {
   if (record) {
     record->spec = one.spec;
     record->id = one.id;
+    record->setting = one.setting;
     record->scene = one.scene->name;
   }
   return record;

@@ -25,14 +25,16 @@ constexpr double kTimes[] = {0.25, 0.5, 0.75, 1};  ///< s, times of the states w
 
 struct ProbedScene {
   std::string name;
-  std::vector<std::string> settings;
+  SceneSettings settings;
   double at = 0.5;  ///< s, time of the state
 
-  std::string title() const { return settings.empty() ? name : name + ", " + join(settings, ", "); }
+  std::string title() const {
+    return settings.empty() ? name : name + ", " + join(settings, ", ", &SceneSetting::text);
+  }
 };
 
 std::vector<ProbedScene> scenes_of(ProbePart part) {
-  const std::vector<std::string> small{"cloth.grid=[17,17]"};
+  const SceneSettings small{"cloth.grid=[17,17]"};
   switch (part) {
     case ProbePart::free:
       return {{"cantilever", {}}, {"chain", {}}, {"drape", {}}, {"drape", {"cloth.span=0.7"}},
@@ -172,7 +174,7 @@ Table table_of(ProbePart part, const std::vector<std::string>& asked, Answer& an
     std::vector<Tally> of(solvers.size());
     const Scene plain = load_scene(find_scene(one.name), one.settings);
     for (std::size_t k = 0; k < std::size(kStiffnesses); ++k) {
-      std::vector<std::string> settings = one.settings;
+      SceneSettings settings = one.settings;
       if (part != ProbePart::rigid) settings.push_back(stiffness_setting(plain, kStiffnesses[k]));
       const Scene scene = load_scene(find_scene(one.name), settings);
       const double at = part == ProbePart::rigid ? kTimes[k] : one.at;

@@ -120,8 +120,9 @@ Answer one_step(const StepQuestion& question) {
         "converge: self-collision is not part of the exact step; take a scene without");
   const double at = std::round(question.at / scene.dt) * scene.dt;
   const State state = state_at(scene, parse_solver(question.from), at);
-  return one_step_answer({scene.name, join(question.settings, ", "), question.from, at, scene.dt},
-                         converge(scene, state, at, question.solvers, question.most));
+  return one_step_answer(
+      {scene.name, join(question.settings, ", ", &SceneSetting::text), question.from, at, scene.dt},
+      converge(scene, state, at, question.solvers, question.most));
 }
 
 Answer one_step_answer(const StepState& state, const std::vector<Convergence>& all) {

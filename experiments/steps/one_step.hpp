@@ -13,8 +13,8 @@ namespace taut {
 
 /// Question of `taut converge`.
 struct StepQuestion {
-  std::string scene;                  ///< name or path
-  std::vector<std::string> settings;  ///< settings of the scene
+  std::string scene;  ///< name or path
+  SceneSettings settings;
   std::vector<std::string> solvers;
   /// Solver whose run gives the state. The exact step is near the state of a solver whose links
   /// hardly deviate; jakobsen's state is far from satisfying its links.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
@@ -36,18 +37,14 @@ std::vector<StudyAxis> scene_axes(const Study& study) {
 /// axis of this solver alone replaces the general axis of the same parameter.
 std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
-  const auto colon = text.find(':');
-  const std::vector<ParamItem> given =
-      param_items(colon == text.npos ? "" : std::string_view(text).substr(colon + 1));
   std::vector<StudyAxis> chosen;
   for (const StudyAxis& axis : study.axes) {
     const std::string name = axis.parameter();
     const bool has = axis.is_of(choice.entry->name) &&
                      std::ranges::count(choice.entry->params, name, &ParamSpec::name) > 0;
-    const bool fixed = std::ranges::find(given, name, &ParamItem::key) != given.end();
     const std::string own = std::string(choice.entry->name) + ":" + axis.name;
     const bool replaced = std::ranges::find(study.axes, own, &StudyAxis::name) != study.axes.end();
-    if (has && !fixed && !replaced) chosen.push_back(axis);
+    if (has && !choice.params.given(name) && !replaced) chosen.push_back(axis);
   }
   return chosen;
 }
@@ -99,10 +96,9 @@ CaseSpec spec_of(const Study& study, const std::string& scene, const std::string
                  const Settings& of_scene, const Settings& of_solver) {
   const StudyScene own = parse_study_scene(scene);
   CaseSpec spec{own.name, study.settings, solver};
-  spec.overrides.insert(spec.overrides.end(), own.settings.begin(), own.settings.end());
+  spec.settings.insert(spec.settings.end(), own.settings.begin(), own.settings.end());
   for (const StudyAxis& axis : study.axes)
-    if (of_scene.contains(axis.name))
-      spec.overrides.push_back(axis.name + "=" + of_scene.at(axis.name));
+    if (of_scene.contains(axis.name)) spec.settings.emplace_back(axis.name, of_scene.at(axis.name));
   for (const auto& [name, value] : of_solver)
     spec.solver = with(spec.solver, StudyAxis{name, {}}.parameter() + "=" + value);
   return spec;
@@ -142,8 +138,7 @@ void each_case(const Study& study, const std::function<void(Case&&)>& visit) {
 
 Study at_time_steps(Study study, const std::vector<std::string>& steps) {
   if (steps.empty()) return study;
-  const auto is_step = [](const std::string& setting) { return setting.starts_with("time.dt="); };
-  std::erase_if(study.settings, is_step);
+  study.settings = without(std::move(study.settings), "time.dt");
   std::erase_if(study.axes, [](const StudyAxis& axis) { return axis.name == "time.dt"; });
   StudyAxis axis{.name = "time.dt", .values = {}};
   for (const std::string& step : steps) axis.values.push_back('"' + step + '"');

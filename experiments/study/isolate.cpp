@@ -37,7 +37,8 @@ std::vector<std::string> command(const Case& one, const fs::path& folder, int fr
   const std::string program(program_of ? program_of(one.choice.params) : "");
   std::vector<std::string> words{sibling_program(program), "case",   one.spec.scene,
                                  one.spec.solver,          "--into", fs::absolute(folder)};
-  for (const std::string& text : one.spec.overrides) words.insert(words.end(), {"--set", text});
+  for (const SceneSetting& setting : one.spec.settings)
+    words.insert(words.end(), {"--set", setting.text()});
   if (frames > 0) words.insert(words.end(), {"--frames", std::to_string(frames)});
   return words;
 }

@@ -99,8 +99,10 @@ class StudyReader {
       if (row.chosen()) study_.chosen[row.scene].push_back(row.solver);
   }
   void read_set(Section& section) {
-    if (strings(section, "set", study_.settings, [](const std::string&) {}))
-      for (const Value& item : section.find("set")->items) study_.places[item.string] = item.place;
+    std::vector<std::string> texts;
+    if (!strings(section, "set", texts, [](const std::string&) {})) return;
+    study_.settings = scene_settings(texts);
+    for (const Value& item : section.find("set")->items) study_.places[item.string] = item.place;
   }
   void read_axes(Section& section) {
     if (const Value* axes = section.table("axes")) read_axes(*axes);
@@ -127,10 +129,9 @@ class StudyReader {
         if (const auto [at, fresh] = text_of.try_emplace(scene.name, text);
             !fresh && at->second != text)
           report("scene '" + scene.name + "' stands twice: vary a setting by an axis");
-        for (const std::string& setting : scene.settings)
-          for (const StudyAxis& axis : study_.axes)
-            if (setting.starts_with(axis.name + "="))
-              report("'" + axis.name + "' of scene '" + scene.name + "' is an axis of the study");
+        for (const StudyAxis& axis : study_.axes)
+          if (find_setting(scene.settings, axis.name))
+            report("'" + axis.name + "' of scene '" + scene.name + "' is an axis of the study");
       } catch (const InputError&) {  // already reported where it was read
       }
   }
@@ -244,7 +245,7 @@ class StudyReader {
       check_values(axis, value);
     else
       for (std::size_t i = 0; i < axis.values.size(); ++i)
-        study_.places[axis.name + "=" + axis.values[i]] =
+        study_.places[SceneSetting(axis.name, axis.values[i]).text()] =
             value.is_array() ? value.items[i].place : value.place;
     const auto same = [&](const StudyAxis& s) { return s.name == axis.name; };
     std::erase_if(study_.axes, same);

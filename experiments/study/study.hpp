@@ -50,19 +50,19 @@ struct Study {
   std::filesystem::path file;
   std::string preset;                ///< the preset that was applied; "": none
   std::vector<std::string> presets;  ///< names of all its presets
-  /// "name:key=value,...": name or path, and overrides for it alone.
+  /// "name:key=value,...": name or path, and settings for it alone.
   std::vector<std::string> scenes;
   std::vector<std::string> solvers;  ///< "name:key=value,..."
   /// File of settings that a search chose for the solvers, scene by scene; "": none.
   std::filesystem::path searched;
   /// The settings in that file, by scene as in `scenes`; empty if there is no such file yet.
   std::map<std::string, std::vector<std::string>> chosen;
-  std::vector<std::string> settings;  ///< scene overrides of every case
+  SceneSettings settings;  ///< of the scene, in every case
   std::vector<StudyAxis> axes;
   std::vector<Exclusion> exclusions;
   std::vector<Plot> plots;
-  /// `places`: where the file has the texts of `settings` and the values of scene axes, by
-  /// override. `scene_places`: where it has the texts of `scenes`, by text.
+  /// `places`: where the file has `settings` and the values of scene axes, by setting.
+  /// `scene_places`: where it has the texts of `scenes`, by text.
   std::map<std::string, SourceLocation> places, scene_places;
 };
 
@@ -95,7 +95,7 @@ std::string searched_toml(const std::string& heading, const std::vector<Searched
 /// Throws InputError with all errors of the file.
 std::vector<SearchedSetting> read_searched(const std::filesystem::path&);
 
-/// Error of one of Study::scenes, placed where the study names the scene, since an override has no
+/// Error of one of Study::scenes, placed where the study names the scene, since a setting has no
 /// line of its own.
 Diagnostic placed(const Study&, const std::string& scene, const Diagnostic& of_scene);
 
@@ -111,7 +111,7 @@ std::string study_name(const std::string& name_or_path);
 /// The parts of one of Study::scenes.
 struct StudyScene {
   std::string name;  ///< name or path
-  std::vector<std::string> settings;
+  SceneSettings settings;
 };
 /// Throws InputError unless a list of key=value follows the colon, with each key once.
 StudyScene parse_study_scene(const std::string& text);

@@ -17,16 +17,17 @@ StudyScene parse_study_scene(const std::string& text) {
   };
   for (const ParamItem& item : param_items(std::string_view(text).substr(colon + 1))) {
     if (!item.problem.empty()) wrong(item.problem);
-    for (const std::string& before : scene.settings)
-      if (before.starts_with(item.key + "=")) wrong("'" + item.key + "' is given twice");
-    scene.settings.push_back(item.key + "=" + item.value);
+    const SceneSetting one(item.key, item.value);
+    if (find_setting(scene.settings, one.key())) wrong("'" + one.key() + "' is given twice");
+    scene.settings.push_back(one);
   }
   if (scene.settings.empty()) wrong("key=value is missing after the colon");
   return scene;
 }
 
 Diagnostic placed(const Study& study, const std::string& scene, const Diagnostic& d) {
-  const bool own = std::ranges::count(parse_study_scene(scene).settings, d.file) > 0;
+  const bool own =
+      std::ranges::count(parse_study_scene(scene).settings, d.file, &SceneSetting::text) > 0;
   const auto& places = own ? study.scene_places : study.places;
   const auto at = places.find(own ? scene : d.file);
   if (at == places.end()) return d;
@@ -34,20 +35,18 @@ Diagnostic placed(const Study& study, const std::string& scene, const Diagnostic
 }
 
 void judge_scenes(const Study& study, Diagnostics& diagnostics) {
-  std::vector<std::vector<std::string>> variants(1);
+  std::vector<SceneSettings> variants(1);
   for (const StudyAxis& axis : study.axes)
     for (const std::string& value : axis.values)
-      if (axis.of_scene()) {
-        variants.push_back({axis.name + "=" + value});
-      }
+      if (axis.of_scene()) variants.push_back({SceneSetting(axis.name, value)});
   std::set<std::string> said;
   for (const std::string& scene : study.scenes)
-    for (const std::vector<std::string>& of_axis : variants) try {
+    for (const SceneSettings& of_axis : variants) try {
         const StudyScene own = parse_study_scene(scene);
-        std::vector<std::string> overrides = study.settings;
-        overrides.insert(overrides.end(), own.settings.begin(), own.settings.end());
-        overrides.insert(overrides.end(), of_axis.begin(), of_axis.end());
-        load_scene(find_scene(own.name), overrides);
+        SceneSettings settings = study.settings;
+        settings.insert(settings.end(), own.settings.begin(), own.settings.end());
+        settings.insert(settings.end(), of_axis.begin(), of_axis.end());
+        load_scene(find_scene(own.name), settings);
       } catch (const InputError& error) {
         for (const Diagnostic& d : error.diagnostics())
           if (said.insert(d.text()).second && !d.file.empty())

@@ -15,12 +15,12 @@ namespace {
 
 /// Text that distinguishes the cases of one scene: "jakobsen:iterations=4 dt=1/120".
 std::string setting_of(const Case& one, const Study& study) {
-  std::vector<std::string> shared = study.settings;
+  SceneSettings shared = study.settings;
   for (const std::string& scene : study.scenes)
     std::ranges::copy(parse_study_scene(scene).settings, std::back_inserter(shared));
   std::string text = one.choice.brief();
-  for (const std::string& change : one.spec.overrides)
-    if (std::ranges::find(shared, change) == shared.end()) text += " " + change;
+  for (const SceneSetting& change : one.spec.settings)
+    if (std::ranges::find(shared, change) == shared.end()) text += " " + change.text();
   return text;
 }
 

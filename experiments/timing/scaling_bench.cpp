@@ -58,7 +58,7 @@ Measured least(const Case& base, double error, Store& store, const ScalingOption
   std::optional<Record> last;
   const auto with_value = [&](int n) {
     CaseSpec spec = base.spec;
-    set_parameter(spec.solver, name, std::to_string(n));
+    spec.solver = base.choice.with(name, std::to_string(n)).canonical();
     return make_case(spec);
   };
   const auto meets = [&](int n) -> std::optional<bool> {

@@ -34,20 +34,15 @@ struct Columns {
 class OpenParameters {
  public:
   explicit OpenParameters(const std::string& solver)
-      : base_(solver), entry_(*parse_solver(solver).entry) {}
+      : base_(parse_solver(solver)), entry_(*base_.entry) {}
 
-  bool open(std::string_view name) const {
-    const auto fixed = [&](char mark) {
-      return base_.find(mark + std::string(name) + "=") != std::string::npos;
-    };
-    return !name.empty() && !fixed(':') && !fixed(',');
-  }
+  bool open(std::string_view name) const { return !name.empty() && !base_.params.given(name); }
 
   /// Those of the parameters that are open, set to that value.
-  Values values_of(std::string_view parameters, const std::string& value) const {
+  Values values_of(const Words& parameters, std::string_view value) const {
     Values values;
-    for (const std::string& name : parts_of(parameters))
-      if (open(name)) values[name] = value;
+    for (const std::string_view name : parameters)
+      if (open(name)) values[std::string(name)] = value;
     return values;
   }
 
@@ -61,10 +56,12 @@ class OpenParameters {
       for (int v = 1; v <= kMostSweeps; v *= 2) columns.values.push_back(std::to_string(v));
       return columns;
     }
-    Columns columns{parts_of(entry_.accuracy.stiffness.parameters), {}, false};
-    std::erase_if(columns.parameters, [&](const std::string& name) { return !open(name); });
+    Columns columns;
+    for (const std::string_view name : entry_.accuracy.stiffness.parameters)
+      if (open(name)) columns.parameters.emplace_back(name);
     if (columns.parameters.empty()) return {{}, {""}, false};
-    columns.values = parts_of(entry_.accuracy.stiffness.values);
+    for (const std::string_view value : entry_.accuracy.stiffness.values)
+      columns.values.emplace_back(value);
     return columns;
   }
 
@@ -72,7 +69,7 @@ class OpenParameters {
   std::vector<Values> stiffnesses() const {
     std::vector<Values> all;
     if (open(entry_.accuracy.sweeps))
-      for (const std::string& value : parts_of(entry_.accuracy.stiffness.values))
+      for (const std::string_view value : entry_.accuracy.stiffness.values)
         if (const Values values = values_of(entry_.accuracy.stiffness.parameters, value);
             !values.empty())
           all.push_back(values);
@@ -82,9 +79,10 @@ class OpenParameters {
   /// Single changes to try besides substeps and columns.
   std::vector<Values> alternatives() const {
     std::vector<Values> all;
-    for (const auto& [name, values] : entry_.accuracy.alternatives)
-      for (const std::string& value : parts_of(values))
-        if (open(name)) all.push_back({{std::string(name), value}});
+    for (const auto& [names, values] : entry_.accuracy.alternatives)
+      for (const std::string_view value : values)
+        if (Values change = values_of(names, value); !change.empty())
+          all.push_back(std::move(change));
     for (const Values& values : stiffnesses()) all.push_back(values);
     return all;
   }
@@ -92,16 +90,15 @@ class OpenParameters {
   /// The alternatives that differ from what the solver's text already gives.
   std::vector<Values> other_alternatives() const {
     std::vector<Values> all = alternatives();
-    const Params& params = parse_solver(base_).params;
     std::erase_if(all, [&](const Values& values) {
       return std::ranges::all_of(
-          values, [&](const auto& one) { return params.value(one.first) == one.second; });
+          values, [&](const auto& one) { return base_.params.value(one.first) == one.second; });
     });
     return all;
   }
 
  private:
-  std::string base_;
+  SolverChoice base_;
   const SolverEntry& entry_;
 };
 

@@ -52,7 +52,8 @@ std::vector<std::string> worker_command(const CaseSpec& spec,
                                         const std::filesystem::path& program) {
   std::vector<std::string> words{program.empty() ? program_of(spec) : program, "bench", "--worker",
                                  spec.scene, spec.solver};
-  for (const std::string& value : spec.overrides) words.insert(words.end(), {"--set", value});
+  for (const SceneSetting& setting : spec.settings)
+    words.insert(words.end(), {"--set", setting.text()});
   return words;
 }
 

@@ -75,4 +75,4 @@ TAUT_SOLVER(made_up) = {
     .resolved_settings = [](const taut::Scene&, const taut::Params&) -> taut::ResolvedSettings {
       return {{"precision", "double"}};
     },
-    .accuracy = {.substeps = "slices", .sweeps = "passes", .accelerators = "boost"}};
+    .accuracy = {.substeps = "slices", .sweeps = "passes", .accelerators = {"boost"}}};

@@ -186,7 +186,7 @@ TEST(Updates, TakeRowsOfAnotherQuestionAnew) {
 
 TEST(Reproduced, AreFrontiersByTheirOwnVerb) {
   BaselineRow one = row("my scene.toml", "jakobsen:iterations=3", {});
-  one.spec.overrides = {"a=1"};
+  one.spec.settings = {"a=1"};
   EXPECT_EQ(reproduce(one), "taut case 'my scene.toml' jakobsen:iterations=3 --set a=1");
   one.frontier = "--of dt --from 1";
   EXPECT_EQ(reproduce(one),
@@ -214,7 +214,7 @@ TEST(Reproduced, AStatusHasItsReasonUnlessItRefuses) {
 TEST(BaselineFolders, KeepEveryFieldAndRefuseWhatTheyShould) {
   const Scratch scratch;
   BaselineRow one = row("a", "s:k=2", {{"x", 0.1 + 0.2}, {"none", kNaN}});
-  one.spec.overrides = {"b=\"1\"", "c=2"};
+  one.spec.settings = {"b=\"1\"", "c=2"};
   one.flaky = true;
   one.frontier = "--of dt";
   one.status = {"exploded", "energy"};
@@ -222,8 +222,8 @@ TEST(BaselineFolders, KeepEveryFieldAndRefuseWhatTheyShould) {
   const Baseline back = read_baseline(scratch.path());
   ASSERT_EQ(back.size(), 3u);
   EXPECT_EQ(
-      (std::tuple{back[0].id, back[0].spec.scene, back[0].spec.overrides, back[0].spec.solver}),
-      (std::tuple{one.id, one.spec.scene, one.spec.overrides, one.spec.solver}));
+      (std::tuple{back[0].id, back[0].spec.scene, back[0].spec.settings, back[0].spec.solver}),
+      (std::tuple{one.id, one.spec.scene, one.spec.settings, one.spec.solver}));
   EXPECT_EQ((std::tuple{back[0].scene, back[0].status, back[0].projections, back[0].frontier,
                         back[0].flaky}),
             (std::tuple{one.scene, one.status, one.projections, one.frontier, true}));

@@ -43,12 +43,11 @@ TEST_F(FrontierFiles, AreQuestionsInOrder) {
   EXPECT_EQ(
       (std::tuple{first.base.scene, first.base.solver, first.of}),
       (std::tuple{std::string("hang"), std::string("jakobsen:iterations=2"), std::string("dt")}));
-  EXPECT_TRUE(first.base.overrides.empty());
+  EXPECT_TRUE(first.base.settings.empty());
   EXPECT_EQ(
       (std::tuple{first.range.from, first.range.to, first.range.tolerance, first.range.whole}),
       (std::tuple{0.001, 0.25, 0.01, false}));
-  EXPECT_EQ(second.base.overrides,
-            (std::vector<std::string>{"cloth.grid=[4, 4]", "time.duration=1"}));
+  EXPECT_EQ(second.base.settings, (SceneSettings{"cloth.grid=[4, 4]", "time.duration=1"}));
   EXPECT_EQ(
       (std::tuple{second.range.from, second.range.to, second.range.tolerance, second.range.whole}),
       (std::tuple{2.0, 64.0, 0.125, true}));
@@ -84,8 +83,8 @@ TEST_F(FrontierFiles, WhatWasFoundIsARowOfItsBaseline) {
   BaselineRow row = frontier_row(question, found);
   const Case base = make_case(question.base);
   EXPECT_EQ(row.id, frontier_id(question));
-  EXPECT_EQ((std::tuple{row.spec.scene, row.spec.solver, row.spec.overrides}),
-            (std::tuple{std::string("hang"), std::string("mass-spring"), question.base.overrides}));
+  EXPECT_EQ((std::tuple{row.spec.scene, row.spec.solver, row.spec.settings}),
+            (std::tuple{std::string("hang"), std::string("mass-spring"), question.base.settings}));
   EXPECT_EQ(row.scene, digest(*base.scene));
   EXPECT_EQ(row.frontier, "--of substeps --from 2 --to 64 --tolerance 0.125");
   EXPECT_EQ(row.status.kind, "bracketed");

@@ -17,10 +17,10 @@
 namespace taut::computed_motion_test {
 namespace {
 
-const std::vector<std::string> kSmall{"cloth.grid=[8, 8]", "time.duration=0.5"};
+const SceneSettings kSmall{"cloth.grid=[8, 8]", "time.duration=0.5"};
 
-Scene small(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> all = kSmall;
+Scene small(const SceneSettings& more = {}) {
+  SceneSettings all = kSmall;
   all.insert(all.end(), more.begin(), more.end());  // the last of a key counts
   return load_scene(find_scene("hang"), all);
 }
@@ -95,7 +95,7 @@ TEST(ComputedMotions, InMemoryAreWhatTheyAreInAFile) {
 }
 
 TEST(ComputedMotions, GiveTheSceneTheirTimeStepAndTheirDuration) {
-  const auto load = [](const std::vector<std::string>& with) { return small(with); };
+  const auto load = [](const SceneSettings& with) { return small(with); };
   const Scene scene = small();
   const auto with = [&](int stride, std::size_t frames, double fps) {
     Computed made = computed(scene, stride);

@@ -40,7 +40,7 @@ TEST(CaseText, IsCalledByWhatWasAskedAndAddressedByWhatItIs) {
             ",material=scene,multipliers=keep,method=sweeps,primal=off,order=coloured,seed=1,"
             "layout=auto,tethers=off,"
             "contact=continuous,faces=off,self=grid,simd=auto,threads=1");
-  EXPECT_EQ(one.spec.overrides.size(), 3u);
+  EXPECT_EQ(one.spec.settings.size(), 3u);
   EXPECT_EQ(one.scene->steps, 64);
   EXPECT_EQ(one.key, case_key(*one.scene, digest(*one.scene), one.choice));
   std::set<std::string> keys{one.key};
@@ -71,7 +71,8 @@ TEST(CaseText, ThatDidNotRunHasAllButResults) {
   const Record r = unfinished(one, {Status::Kind::timeout, "60 s", 7, -1});
   EXPECT_EQ(r.key, one.key);
   EXPECT_EQ(r.id, one.id);
-  EXPECT_EQ(r.spec.overrides, one.spec.overrides);
+  EXPECT_EQ(r.scene + " " + r.setting, r.id);
+  EXPECT_EQ(r.spec.settings, one.spec.settings);
   EXPECT_EQ(r.vertices, 12);
   EXPECT_EQ(r.links, 17 + 12);
   EXPECT_EQ(r.steps, 640);
@@ -134,6 +135,7 @@ Record small_record() {
   r.key.assign(63, '0');
   r.key.push_back('f');
   r.id = "an id";
+  r.setting = "a setting";
   r.spec = {"file", {"a=1", "b=2"}, "text"};
   r.scene = "hang";
   r.solver = "xpbd";
@@ -167,7 +169,7 @@ TEST(RecordLine, HasEveryColumnOnce) {
 TEST(RecordLine, IsThisOneLine) {
   const std::string text =
       R"({"schema":2,"key":")" + std::string(63, '0') +
-      R"(f","id":"an id","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
+      R"(f","id":"an id","setting":"a setting","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
       R"("scene":"hang","solver":"xpbd","params":{"p":"q"},"substeps":2,"sweeps":8,)"
       R"("work_parameters":["p"],"dt":0.25,"steps":6,"vertices":4,"links":5,)"
       R"("status":{"kind":"exploded","reason":"energy","step":17,"vertex":3},)"
@@ -270,10 +272,10 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
 
 // In which order settings are given, and how long a step is, makes it no other task.
 TEST(Tasks, AreTheSameInAnyOrderOfTheirSettings) {
-  const auto asked = [](std::vector<std::string> overrides, double dt = 0.01) {
+  const auto asked = [](SceneSettings settings, double dt = 0.01) {
     Record record;
     record.scene = "hang";
-    record.spec.overrides = std::move(overrides);
+    record.spec.settings = std::move(settings);
     record.dt = dt;
     return task_of(record);
   };

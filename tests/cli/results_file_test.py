@@ -79,6 +79,7 @@ class ResultsFile(CommandLine):
 
     def test_values_keep_their_bits_and_curves_their_rows(self):
         self.taut("run", self.study(rest="axes.iterations = [1, 2]\n"))
+        self.assertEqual(self.query("SELECT count(*) FROM cases WHERE id <> scene || ' ' || setting"), [(0,)])
         for record in self.records():
             rows = dict(self.query("SELECT metric, value FROM results WHERE key = ?", record["key"]))
             self.assertEqual(rows, record["values"])

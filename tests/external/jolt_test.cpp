@@ -18,8 +18,8 @@
 namespace taut::external::jolt_test {
 namespace {
 
-Scene scene_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return load_scene(find_scene(name), overrides);
+Scene scene_of(const std::string& name, const SceneSettings& settings = {}) {
+  return load_scene(find_scene(name), settings);
 }
 
 Scene hanging(int side) {

@@ -1,4 +1,4 @@
-// Documents: kinds and places of values, what an override does, how deep and how long is too much.
+// Documents: kinds and places of values, what a setting does, how deep and how long is too much.
 
 #include "core/io/document.hpp"
 
@@ -14,15 +14,13 @@
 namespace taut::document_test {
 namespace {
 
-using Overrides = std::vector<std::string>;
-
-Value root_of(const std::string& text, const Overrides& overrides = {}) {
-  return parse_document("x", text, overrides).root;
+Value root_of(const std::string& text, const SceneSettings& settings = {}) {
+  return parse_document("x", text, settings).root;
 }
 
-std::string problems(const std::string& text, const Overrides& overrides = {}) {
+std::string problems(const std::string& text, const SceneSettings& settings = {}) {
   try {
-    root_of(text, overrides);
+    root_of(text, settings);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -54,7 +52,7 @@ TEST(Document, KnowsEachKindOfValueAndWhereItStands) {
   EXPECT_EQ(root.find("u"), nullptr);
   EXPECT_EQ(at("l").find("1"), nullptr) << "no table";
   const auto place = [](const SourceLocation& p) {
-    return std::vector{p.line, p.column, p.override};
+    return std::vector{p.line, p.column, p.setting};
   };
   EXPECT_EQ(place(at("no").place), (std::vector{2, 8, -1}));
   EXPECT_EQ(place(at("l").items[2].place), (std::vector{6, 14, -1}));
@@ -98,10 +96,10 @@ TEST(Document, ValuesLieSixtyFourLevelsDeepAtMost) {
             std::string::npos);
 }
 
-TEST(Overrides, ReplaceAddMergeAndPickElements) {
+TEST(Settings, ReplaceAddMergeAndPickElements) {
   const std::string text = "n = 1\nlist = [10, 20, {k = 30}]\n[t]\na = 1\nb = 2\n";
-  const auto number = [&](const std::string& override, const std::vector<const char*>& path) {
-    const Value root = root_of(text, {override});
+  const auto number = [&](const std::string& setting, const std::vector<const char*>& path) {
+    const Value root = root_of(text, {setting});
     const Value* value = &root;
     for (const char* step : path)
       value = value->is_array() ? &value->items[to_index(std::stoi(step))] : value->find(step);
@@ -116,16 +114,16 @@ TEST(Overrides, ReplaceAddMergeAndPickElements) {
   EXPECT_EQ(number("list.2.k=5", {"list", "2", "k"}), 5);
   EXPECT_EQ(number("list.2.k=5", {"list", "1"}), 20);
   EXPECT_EQ(number("n.deep.er=5", {"n", "deep", "er"}), 5) << "the schema judges";
-  EXPECT_EQ(root_of(text, {"n=5"}).find("n")->place.override, 0);
-  EXPECT_EQ(root_of(text, {"n=5", "t.c=1"}).find("t")->find("c")->place.override, 1);
-  EXPECT_EQ(root_of(text, {"n=5"}).find("list")->place.override, -1);
+  EXPECT_EQ(root_of(text, {"n=5"}).find("n")->place.setting, 0);
+  EXPECT_EQ(root_of(text, {"n=5", "t.c=1"}).find("t")->find("c")->place.setting, 1);
+  EXPECT_EQ(root_of(text, {"n=5"}).find("list")->place.setting, -1);
 }
 
-TEST(Overrides, EachThatIsWrongIsNamed) {
+TEST(Settings, EachThatIsWrongIsNamed) {
   const std::string text = "list = [10, 20, 30]\n";
-  const auto element = [&](const std::string& override, const std::string& name) {
-    EXPECT_EQ(problems(text, {override}),
-              override + ": column 1: no element '" + name + "' among the 3 of this array");
+  const auto element = [&](const std::string& setting, const std::string& name) {
+    EXPECT_EQ(problems(text, {setting}),
+              setting + ": column 1: no element '" + name + "' among the 3 of this array");
   };
   element("list.3=1", "3");
   element("list.x=1", "x");

@@ -106,14 +106,14 @@ TEST(SceneFuzz, EveryMutantLoadsOrIsRefusedWithItsPlace) {
   EXPECT_GT(refused, 500);
 }
 
-TEST(SceneFuzz, EveryMutantOverrideIsAppliedOrRefused) {
+TEST(SceneFuzz, EveryMutantSettingIsAppliedOrRefused) {
   Mutator mutator;
-  const std::vector<std::string> overrides{"cloth.grid=[4, 3]", "time.dt=\"1/120\"",
-                                           "collider.0.radius=0.4", "wind.velocity=[1, 0, 0]"};
+  const std::vector<std::string> settings{"cloth.grid=[4, 3]", "time.dt=\"1/120\"",
+                                          "collider.0.radius=0.4", "wind.velocity=[1, 0, 0]"};
   int refused = 0;
   for (int k = 0; k < 400; ++k) try {
       load_scene(kScenes / "hang.toml",
-                 {mutator.mutate(overrides[static_cast<std::size_t>(k) % overrides.size()])});
+                 {mutator.mutate(settings[static_cast<std::size_t>(k) % settings.size()])});
     } catch (const InputError&) {
       ++refused;
     }

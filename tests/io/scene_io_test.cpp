@@ -26,14 +26,14 @@ std::vector<std::filesystem::path> shipped_files() {
   return files;
 }
 
-Scene shipped(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return load_scene(kScenes / (name + ".toml"), overrides);
+Scene shipped(const std::string& name, const SceneSettings& settings = {}) {
+  return load_scene(kScenes / (name + ".toml"), settings);
 }
 
 /// What is wrong with the text of a scene file that is called x; "" if nothing is.
-std::string errors_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+std::string errors_of(const std::string& text, const SceneSettings& settings = {}) {
   try {
-    parse_scene("x", text, overrides);
+    parse_scene("x", text, settings);
   } catch (const InputError& error) {
     return std::string(error.what()) + "\n";
   }
@@ -135,7 +135,7 @@ TEST(SceneFiles, TheTimeStepIsRoundedToBinary32) {
   EXPECT_EQ(shipped("hang", {"time.dt=0.3", "time.duration=1"}).steps, 4);
 }
 
-TEST(SceneFiles, OverridesReplaceAddAndPickElements) {
+TEST(SceneFiles, SettingsReplaceAddAndPickElements) {
   const Scene scene =
       shipped("ball", {"collider.0.radius=\"2/5\"", "wind.velocity=[1, 0, 0]", "cloth.mass=3"});
   EXPECT_EQ(std::get<Ball>(scene.colliders[0].shape).radius, 0.4);
@@ -278,16 +278,15 @@ TEST(SceneFiles, EachKindOfBadInputIsNamed) {
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos)
           << assignment << "\n  says " << error.what() << "\n  not " << expected;
       EXPECT_NE(std::string(error.what()).find(assignment), std::string::npos)
-          << error.what() << " does not name the override";
+          << error.what() << " does not name the setting";
     }
   }
 }
 
 TEST(SceneFiles, WhatMakesContactMeaninglessIsRefused) {
-  const auto refused = [](const char* scene, std::vector<std::string> overrides,
-                          const std::string& expected) {
+  const auto refused = [](const char* scene, SceneSettings settings, const std::string& expected) {
     try {
-      shipped(scene, overrides);
+      shipped(scene, settings);
       ADD_FAILURE() << scene << " was accepted; expected: " << expected;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
@@ -354,13 +353,13 @@ TEST(SceneFiles, AFabricIsMassAndBendingInPlaceOfTheScenes) {
 
 TEST(SceneFiles, WhatIsSetBesideAFabricContradictsIt) {
   const auto beside = [](const std::string& cloth, const std::string& rest,
-                         const std::vector<std::string>& overrides) {
-    return errors_of("cloth = { grid = [2, 2], size = [1, 1]" + cloth + " }\n" + rest, overrides);
+                         const SceneSettings& settings) {
+    return errors_of("cloth = { grid = [2, 2], size = [1, 1]" + cloth + " }\n" + rest, settings);
   };
   const std::string fabric = "fabric = \"petrak-m1\"", stiff = "bending = { stiffness = 1 }";
   EXPECT_EQ(beside(", mass = 1", stiff, {fabric}), "") << "which replaces what the file says";
-  for (const auto& [cloth, rest, overrides, says] :
-       std::vector<std::tuple<std::string, std::string, std::vector<std::string>, std::string>>{
+  for (const auto& [cloth, rest, settings, says] :
+       std::vector<std::tuple<std::string, std::string, SceneSettings, std::string>>{
            {", mass = 1", fabric, {}, "'mass' in [cloth]"},
            {", area_density = 1", fabric, {}, "'area_density' in [cloth]"},
            {"", fabric + "\n" + stiff, {}, "'stiffness' in [bending]"},
@@ -376,7 +375,7 @@ TEST(SceneFiles, WhatIsSetBesideAFabricContradictsIt) {
             "bending.stiffness = { warp = 1, weft = 1 }",
             {fabric, "bending.stiffness.warp=2"},
             "'stiffness' in [bending]"}}) {
-    const std::string errors = beside(cloth, rest, overrides);
+    const std::string errors = beside(cloth, rest, settings);
     EXPECT_NE(errors.find(says + " conflicts with fabric = \"petrak-m1\", which sets it"),
               std::string::npos)
         << cloth << rest << errors;
@@ -483,7 +482,7 @@ a = [64, 65, 66]
 b = [72, 73, 74]
 )";
 
-/// The dotted key under which an override reaches a documented key in kBare.
+/// The dotted key under which a setting reaches a documented key in kBare.
 std::string path_to(const std::string& key, const std::string& meaning) {
   const auto dot = key.find('.');
   const auto about = [&](const char* type) { return meaning.rfind(type, 0) == 0; };
@@ -506,11 +505,11 @@ TEST(SceneSchema, EveryDocumentedExampleIsAccepted) {
     const std::string key = unquoted(row[1]), fallback = row[5], example = unquoted(row[6]);
     const bool mesh = row[7].ends_with("; mesh") || key == "cloth.mesh";
     const bool body = row[7].starts_with("mesh: ");
-    const auto load = [&](std::vector<std::string> overrides) {
-      if (key == "collider.frames" || key == "collider.fps") return shipped("skirt", overrides);
-      if (body) return shipped("mesh-box", overrides);
-      if (mesh) overrides.emplace_back("cloth.start_inside=\"resolve\"");
-      return mesh ? shipped("disc", overrides) : parse_scene("bare", kBare, overrides);
+    const auto load = [&](SceneSettings settings) {
+      if (key == "collider.frames" || key == "collider.fps") return shipped("skirt", settings);
+      if (body) return shipped("mesh-box", settings);
+      if (mesh) settings.emplace_back("cloth.start_inside=\"resolve\"");
+      return mesh ? shipped("disc", settings) : parse_scene("bare", kBare, settings);
     };
     const std::string path = path_to(key, row[7]);
     const Scene plain = load({});

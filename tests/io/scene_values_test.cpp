@@ -13,9 +13,9 @@
 namespace taut::scene_values_test {
 namespace {
 
-std::string problems(const std::string& text, const std::vector<std::string>& overrides = {}) {
+std::string problems(const std::string& text, const SceneSettings& settings = {}) {
   try {
-    parse_scene("x", text, overrides);
+    parse_scene("x", text, settings);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -346,7 +346,7 @@ TEST(SceneValues, PinsMoveOnceAndFacesAreWhatWindNeeds) {
   EXPECT_TRUE(rests.pin_motions.empty()) << "that does not move";
 }
 
-TEST(SceneValues, TheFileComesFirstAndOverridesInTheirOrder) {
+TEST(SceneValues, TheFileComesFirstAndSettingsInTheirOrder) {
   EXPECT_EQ(problems("wind = 1\n" + level("mass = 0"), {"forces.damping=-2", "cloth.lumping='x'"}),
             "x:1:8: 'wind' in the scene must be a table, not a whole number\n"
             "x:6:8: 'mass' in [cloth] must be at least 1e-9 and at most 1e9, not 0\n"

@@ -299,7 +299,7 @@ TEST(ReferencePath, OfASlowedAndOfAFrozenClothIsAShare) {
   EXPECT_TRUE(std::isnan(slowed(1).share()));
 }
 
-Scene shipped(const std::string& name, const std::vector<std::string>& set) {
+Scene shipped(const std::string& name, const SceneSettings& set) {
   return load_scene(
       std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes" / (name + ".toml"), set);
 }

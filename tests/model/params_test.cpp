@@ -176,5 +176,17 @@ TEST(Params, HaveAnotherDefaultBesideAnotherChoice) {
   EXPECT_EQ(of("n=3").brief(), "n=3");
 }
 
+TEST(Params, KnowWhatWasGivenAndTakeAnotherValue) {
+  const Params some("mine", kSpecs, "omega=0.10,note='a, b'");
+  EXPECT_TRUE(some.given("omega") && some.given("note"));
+  EXPECT_FALSE(some.given("sweeps") || some.given("nosuch"));
+  EXPECT_EQ(some.given_with("omega", "2"), "omega=2,note='a, b'");
+  EXPECT_EQ(some.given_with("sweeps", "3"), "sweeps=3,omega=0.1,note='a, b'");
+  EXPECT_EQ(some.given_with("note", "it's"), "omega=0.1,note='it''s'");
+  EXPECT_EQ(problems(some.given_with("omeg", "2")),
+            "omeg=2: column 1: mine: unknown parameter 'omeg'; did you mean 'omega'?");
+  EXPECT_EQ(parse_solver("jakobsen:omega=1.5").with("omega", "2").brief(), "jakobsen:omega=2");
+}
+
 }  // namespace
 }  // namespace taut::params_test

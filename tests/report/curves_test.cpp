@@ -86,13 +86,13 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
 
 TEST(Curves, NameASettingWhereItsValueAloneSaysNothing) {
   std::vector<Record> all;
-  const auto add = [&](const char* name, const char* value, const char* override_) {
+  const auto add = [&](const char* name, const char* value, const char* setting) {
     Record r = at_step(0.01);
     r.params["omega"] = "1";
     r.params["tethers"] = "off";
     r.params["order"] = "mesh";
     r.params[name] = value;
-    if (*override_) r.spec.overrides = {"time.dt=0.01", override_};
+    if (*setting) r.spec.settings = {"time.dt=0.01", setting};
     r.values["stretch.rms"] = 1;
     all.push_back(r);
   };
@@ -144,7 +144,7 @@ TEST(Quantities, ReadARecordsSettingsSizesAndValues) {
   r.links = 6;
   r.projections = 9;
   r.values["stretch.rms"] = 0.5;
-  r.spec.overrides = {"wind.strength=2", "wind.strength=3", "wind.strengths=4", "a=1x"};
+  r.spec.settings = {"wind.strength=2", "wind.strength=3", "wind.strengths=4", "a=1x"};
   r.resolved_settings = {{"time step", "1"}, {kStrainFloor, "of binary32", "", 1.5e-7}};
   for (const auto& [name, value] : {std::pair<std::string, double>{"dt", 0.01},
                                     {"steps", 7},

@@ -195,8 +195,8 @@ TEST(Drawn, AMapNamesItsAxesAndItsSharedSettings) {
   for (const char* dt : {"0.01", "0.02"})
     for (const char* span : {"0.7", "0.8", "0.9"}) {
       Record r = synthetic::record("hang", "jakobsen", 8, std::stod(dt));
-      r.spec.overrides = {std::string("time.dt=") + dt, "cloth.mass=2",
-                          std::string("cloth.span=") + span, "forces.damping=1"};
+      r.spec.settings = {std::string("time.dt=") + dt, "cloth.mass=2",
+                         std::string("cloth.span=") + span, "forces.damping=1"};
       r.key = std::string(dt) + span + std::string(20, 'x');
       input.maps[0].records.push_back(r);
     }

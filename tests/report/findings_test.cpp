@@ -306,7 +306,7 @@ TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
     }
   }
   Record alone = all[1];
-  alone.spec.overrides.push_back("cloth.mass=2");
+  alone.spec.settings.push_back("cloth.mass=2");
   put(alone, "20");
   const Differences found = stored_differences(store_, other);
   EXPECT_EQ(found.a, store_.root().string());

@@ -493,7 +493,7 @@ struct Stiffened {
               double energy) {
     Record r = synthetic::record("swing", solver, 16, 1.0 / 64);
     if (!stiffness.empty())
-      r.spec.overrides.push_back("links.stiffness={ structural = " + stiffness + " }");
+      r.spec.settings.push_back("links.stiffness={ structural = " + stiffness + " }");
     r.values = {{"step.share", share}, {"stretch.rms", strain}, {"energy.peak", energy}};
     return records.emplace_back(r);
   }

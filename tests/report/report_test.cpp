@@ -148,7 +148,7 @@ TEST(Model, HasTheFailureMap) {
   ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
   for (const char* stiffness : {"1e3", "1e6"}) {
     Record r = synthetic::record("swing", "jakobsen", 4, 1.0 / 64);
-    r.spec.overrides = {std::string("links.stiffness={ structural = ") + stiffness + " }"};
+    r.spec.settings = {std::string("links.stiffness={ structural = ") + stiffness + " }"};
     r.key += stiffness;
     r.values = {{"step.share", 0.1}, {"stretch.rms", 0.001}};
     input.studies[0].records.push_back(r);
@@ -402,7 +402,7 @@ TEST(Model, ScenesOutsideStudiesHaveWhoRefusesThem) {
 TEST(ComparedSolvers, OnlyTheSameQuestionIsQuotedSideBySide) {
   ReportInput input = example();
   for (Record& r : input.studies[0].records)
-    if (r.solver == "bullet") r.spec.overrides = {"cloth.grid=[8, 8]"};
+    if (r.solver == "bullet") r.spec.settings = {"cloth.grid=[8, 8]"};
   input.studies.pop_back();
   const ComparedSolvers compared = compared_solvers_of(input);
   for (const QuotedScene& quoted : compared.scenes)

@@ -27,7 +27,7 @@ Observation moving(const CaseSpec& spec, const std::vector<double>& times,
   return seen;
 }
 Observation still(
-    const std::string& scene, const std::vector<std::string>& settings,
+    const std::string& scene, const SceneSettings& settings,
     const std::function<Vec3(const Vec3&)>& f = [](const Vec3& x) { return x; }) {
   return moving({scene, settings, "jakobsen"}, {1}, [&](const Vec3& x, double) { return f(x); });
 }

@@ -20,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
 
-Case hang(const Strings& settings, const std::string& solver = "jakobsen:substeps=1,iterations=1") {
+Case hang(const SceneSettings& settings,
+          const std::string& solver = "jakobsen:substeps=1,iterations=1") {
   return make_case({"hang", settings, solver});
 }
 
@@ -150,14 +151,14 @@ TEST(Drafts, AreTheCaseAsItWasGivenUntilTheSceneChanges) {
   Draft draft(spec);
   const CaseSpec same = draft.write(scratch.path(), "same");
   EXPECT_EQ(same.scene, "hang");
-  EXPECT_EQ(same.overrides, spec.overrides);
+  EXPECT_EQ(same.settings, spec.settings);
   EXPECT_EQ(same.solver, parse_solver(spec.solver).canonical());
   EXPECT_TRUE(fs::is_empty(scratch.path()));
   draft.set_parameter("iterations", "3");
   const CaseSpec other = draft.write(scratch.path() / "a/b", "other", "# why\n");
   EXPECT_EQ(parse_solver(other.solver).params.integer("iterations"), 3);
   EXPECT_EQ(other.scene, (scratch.path() / "a/b/other.toml").string());
-  EXPECT_TRUE(other.overrides.empty());
+  EXPECT_TRUE(other.settings.empty());
   EXPECT_TRUE(read_text(other.scene).starts_with("# why\n"));
   EXPECT_EQ(make_case(other).scene->mesh.size(), 16);
   draft.set("time", "duration", "3");

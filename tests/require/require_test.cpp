@@ -28,7 +28,7 @@ std::vector<std::string> names(const std::vector<Effect>& effects) {
 }
 
 /// A case with a motion of one frame: the rest shape moved by f(x).
-Observation observation(const std::string& scene, const std::vector<std::string>& settings,
+Observation observation(const std::string& scene, const SceneSettings& settings,
                         const std::function<Vec3(const Vec3&)>& f) {
   Observation seen{make_case({scene, settings, "jakobsen"}), {}, {}};
   State state = seen.one.scene->start;

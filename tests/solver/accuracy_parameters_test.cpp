@@ -29,9 +29,9 @@ TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
     ladders.push_back(accuracy.stiffness);
     for (const auto& [parameters, values] : ladders) {
       EXPECT_EQ(parameters.empty(), values.empty()) << name;
-      for (const std::string& parameter : parts_of(parameters))
-        for (const std::string& value : parts_of(values))
-          EXPECT_EQ(parse_solver(name + ":" + parameter + "=" + value).params.value(parameter),
+      for (const std::string_view parameter : parameters)
+        for (const std::string_view value : values)
+          EXPECT_EQ(parse_solver(name).with(parameter, std::string(value)).params.value(parameter),
                     value);
     }
   }
@@ -39,12 +39,12 @@ TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
 
 TEST(AccuracyParameters, StiffnessesRiseAndHaveTheDefault) {
   for (const SolverEntry* entry : solvers())
-    for (const std::string& parameter : parts_of(entry->accuracy.stiffness.parameters)) {
-      const std::vector<std::string> values = parts_of(entry->accuracy.stiffness.values);
+    for (const std::string_view parameter : entry->accuracy.stiffness.parameters) {
+      const Words& values = entry->accuracy.stiffness.values;
       const std::string own(parse_solver(std::string(entry->name)).params.value(parameter));
       EXPECT_NE(std::ranges::find(values, own), values.end()) << entry->name;
-      EXPECT_TRUE(
-          std::ranges::is_sorted(values, {}, [](const std::string& v) { return std::stod(v); }));
+      EXPECT_TRUE(std::ranges::is_sorted(
+          values, {}, [](std::string_view v) { return std::stod(std::string(v)); }));
     }
 }
 

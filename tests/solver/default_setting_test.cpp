@@ -9,15 +9,14 @@
 namespace taut::default_setting_test {
 namespace {
 
-Record run(const std::string& scene, const std::string& solver,
-           const std::vector<std::string>& changes) {
+Record run(const std::string& scene, const std::string& solver, const SceneSettings& changes) {
   return run_case(load_scene(TAUT_SOURCE_DIR "/experiments/scenes/" + scene + ".toml", changes),
                   parse_solver(solver))
       .record;
 }
 
 TEST(DefaultSetting, HoldsALargeFlagWhereNeighboursExplode) {
-  const std::vector<std::string> hard{"cloth.grid=[64, 64]", "time.dt=\"1/5\"", "time.duration=3"};
+  const SceneSettings hard{"cloth.grid=[64, 64]", "time.dt=\"1/5\"", "time.duration=3"};
   EXPECT_EQ(run("flag", "jakobsen", hard).status.kind, Status::Kind::ok);
   for (const char* neighbour : {"jakobsen:order=mesh", "jakobsen:order=reversed",
                                 "jakobsen:projection=exact", "jakobsen:iterations=15,substeps=1"})

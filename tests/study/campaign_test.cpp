@@ -6,10 +6,10 @@
 namespace taut::campaign_test {
 namespace {
 
-double work(const std::string& solver, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides{"cloth.grid=[9, 9]", "time.duration=1"};
-  overrides.insert(overrides.end(), more.begin(), more.end());
-  return estimated_work(make_case({"hang", overrides, solver}));
+double work(const std::string& solver, const SceneSettings& more = {}) {
+  SceneSettings settings{"cloth.grid=[9, 9]", "time.duration=1"};
+  settings.insert(settings.end(), more.begin(), more.end());
+  return estimated_work(make_case({"hang", settings, solver}));
 }
 
 TEST(EstimatedWork, GrowsByTheLinksOfEverySweepAndWithTheSteps) {

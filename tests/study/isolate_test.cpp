@@ -112,7 +112,7 @@ TEST(ProcessEnds, OutOfMemoryIsToldFromAKill) {
 
 TEST_F(Isolated, OnlyItsOwnRecordIsTaken) {
   const Record mine =
-      run_case(make_case({kSmall.scene, kSmall.overrides, "jakobsen:iterations=2"})).record;
+      run_case(make_case({kSmall.scene, kSmall.settings, "jakobsen:iterations=2"})).record;
   Record its = mine;
   its.key = one_.key;
   write_file(scripted_.folder() / "its", to_json(its));
@@ -137,8 +137,7 @@ TEST_F(Isolated, WhatStaysOfItIsWhatSaysSomething) {
     fs::remove_all(folder_);
     return names;
   };
-  Record its =
-      run_case(make_case({kSmall.scene, kSmall.overrides, "jakobsen:iterations=2"})).record;
+  Record its = run_case(make_case({kSmall.scene, kSmall.settings, "jakobsen:iterations=2"})).record;
   its.key = one_.key;
   write_file(scripted_.folder() / "its", to_json(its));
   EXPECT_EQ(left("cp $folder/its $5/case.json"), "case.json series.json ");
@@ -182,7 +181,7 @@ TEST_F(Isolated, WhatIsNoPropertyOfTheCaseIsNoRecord) {
 // The test program runs it (tests/support/main.cpp).
 TEST(IsolatedRun, GivesWhatTheCaseGivesAndItsMotion) {
   const Scratch scratch;
-  const Case one = make_case({kSmall.scene, kSmall.overrides, "jakobsen:iterations=2"});
+  const Case one = make_case({kSmall.scene, kSmall.settings, "jakobsen:iterations=2"});
   const Record record = IsolatedCase(one, scratch.path(), {}, 4).wait();
   EXPECT_EQ(to_json(record), to_json(run_case(one).record));
   const auto frames = frames_in(read_text(scratch.path() / kFramesFile), one.scene->mesh.size());
@@ -207,7 +206,7 @@ TEST(IsolatedRun, OfALongRunItKeepsAHundredAndTwentyRows) {
 
 TEST(IsolatedRun, SaysByItsExitCodeThatItCannotWrite) {
   const Scratch scratch;
-  const Case one = make_case({kSmall.scene, kSmall.overrides, "jakobsen:iterations=2"});
+  const Case one = make_case({kSmall.scene, kSmall.settings, "jakobsen:iterations=2"});
   testing::internal::CaptureStderr();
   EXPECT_EQ(run_into(one, scratch.path() / "none"), kCannotWrite);
   EXPECT_NE(

@@ -77,7 +77,7 @@ kind = "scaling"
 )");
   EXPECT_EQ(study.name, "asked");
   EXPECT_EQ(study.question, "Why?");
-  EXPECT_EQ(study.settings, (Strings{"time.duration=1", "links.bend=true"}));
+  EXPECT_EQ(study.settings, (SceneSettings{"time.duration=1", "links.bend=true"}));
   std::string all;
   for (const StudyAxis& axis : study.axes) {
     all += axis.name + (axis.of_scene() ? "*" : "") + ":";
@@ -238,7 +238,7 @@ TEST_F(StudyFile, ASceneMayHaveSettingsOfItsOwn) {
             "2:20: scene 'drape' stands twice: vary a setting by an axis\n");
   EXPECT_EQ(wrong(asked("\"drape:cloth.span=0.7\"") + "axes.\"cloth.span\" = [0.8, 0.9]\n"),
             "2:11: 'cloth.span' of scene 'drape' is an axis of the study\n");
-  // The hem of `hang` has no collider; the ball has one, under the same override.
+  // The hem of `hang` has no collider; the ball has one, under the same setting.
   EXPECT_EQ(
       wrong(asked("\"ball:collider.0.radius=0.3\", \"hang:collider.0.radius=0.3\"")).substr(0, 5),
       "2:41:");

@@ -17,7 +17,7 @@ int serve(std::vector<std::string> words) try {
   std::string folder, frames = "0";
   for (std::size_t i = words[0] == "case" ? 1 : 2; i < words.size(); ++i) {
     if (words[i] == "--set")
-      spec.overrides.push_back(words.at(++i));
+      spec.settings.push_back(words.at(++i));
     else if (words[i] == "--into")
       folder = words.at(++i);
     else if (words[i] == "--frames")

@@ -127,7 +127,7 @@ TEST(References, AreReadAsTheyWereWritten) {
 
 /// As they are, or as studies set them.
 TEST(References, TheCommittedOnesBelongToTheShippedScenes) {
-  const std::map<std::string, std::vector<std::string>> set{
+  const std::map<std::string, SceneSettings> set{
       {"drape", {"cloth.span=0.7"}},
       {"swing", {"cloth.grid=[12, 12]", "links.stiffness={ structural = 300, shear = 300 }"}}};
   int count = 0;

@@ -16,7 +16,8 @@ struct Options {
   double cpu = 8;     ///< s for each solver on a scene of a study
   double budget = 0;  ///< ms per frame; 0: not given
   double fps = 1 / kFrame;
-  std::vector<std::string> solvers, settings, keep;
+  std::vector<std::string> solvers, keep;
+  SceneSettings settings;
   double patience = 120;
   int rounds = 8;
   double seconds = 0.05, tolerance = kTolerance;

@@ -12,7 +12,8 @@ namespace taut::verb::bench {
 namespace {
 
 struct Options {
-  std::vector<std::string> what, solvers, settings;
+  std::vector<std::string> what, solvers;
+  SceneSettings settings;
   std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
   std::string preset, metric = kErrorMetric, out, against, keep_build, beside;
   TimingOptions timing;

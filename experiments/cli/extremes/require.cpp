@@ -18,7 +18,8 @@ constexpr double kPictureSeconds = 8;  ///< s that have to be left for the pictu
 
 struct Options {
   std::string scene, solver = "jakobsen", output, out;
-  std::vector<std::string> keep, settings;
+  std::vector<std::string> keep;
+  SceneSettings settings;
   double patience = 120;
   int jobs = 1;
   Format format;

@@ -15,7 +15,7 @@ using external::Check;
 
 struct Options {
   std::string command, scene, output;
-  std::vector<std::string> settings;
+  SceneSettings settings;
   Format format;
 };
 

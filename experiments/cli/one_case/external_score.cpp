@@ -14,7 +14,8 @@ namespace {
 struct Options {
   std::string scene, series, picture;
   external::MotionOptions motion;
-  std::vector<std::string> settings, solvers;
+  SceneSettings settings;
+  std::vector<std::string> solvers;
   Format format;
 };
 
@@ -26,10 +27,10 @@ int run(const Options& o) {
   check_solvers(o.solvers);
   const std::string solver = external::solver_text(o.motion);
   admit_solver(solver);
-  const auto load = [&](const std::vector<std::string>& settings) {
+  const auto load = [&](const SceneSettings& settings) {
     return load_scene(find_scene(o.scene), settings);
   };
-  const std::vector<std::string> settings = fitted(load, o.settings, external::opened(o.motion));
+  const SceneSettings settings = fitted(load, o.settings, external::opened(o.motion));
   const Case one = CaseMaker().make({o.scene, settings, solver});
   for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
     throw InputError(why);
@@ -41,8 +42,7 @@ int run(const Options& o) {
     read.rows.push_back({setting.name, setting.text});
   answer.add(std::move(read));
   if (!o.picture.empty()) {
-    RunRequest both{
-        .scene = o.scene, .overrides = one.spec.overrides, .solvers = {one.spec.solver}};
+    RunRequest both{.scene = o.scene, .settings = one.spec.settings, .solvers = {one.spec.solver}};
     both.solvers.insert(both.solvers.end(), o.solvers.begin(), o.solvers.end());
     const RunSet set =
         record_runs(both, [](const std::string& news) { progress() << news << '\n'; });

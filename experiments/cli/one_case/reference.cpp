@@ -11,7 +11,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::vector<std::string> scenes, settings;
+  std::vector<std::string> scenes;
+  SceneSettings settings;
   bool all = false, replace = false;
   Format format;
   std::string output = (results_folder() / "references").string();

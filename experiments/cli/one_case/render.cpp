@@ -73,19 +73,19 @@ Drawing drawing_of(const Options& options) {
 
 /// Requested moments in ascending order. If nothing later is shown, the run is shortened to end
 /// with the last of them. Throws InputError if one lies outside the scene's time.
-std::vector<double> times_of(const Options& options, std::vector<std::string>& overrides) {
+std::vector<double> times_of(const Options& options, SceneSettings& settings) {
   std::vector<double> times;
   for (const std::string& at : options.at) times.push_back(parse_number(at));
   if (times.empty()) return times;
   std::ranges::sort(times);
   if (times.front() < 0) throw InputError("--at: expected times of at least 0");
-  const Scene scene = load_scene(find_scene(options.what.scene), overrides);
+  const Scene scene = load_scene(find_scene(options.what.scene), settings);
   if (times.back() > scene.duration() + scene.dt)
     throw InputError("--at " + number_text(times.back()) + " is after the end at " +
                      number_text(scene.duration()) + " s: see --duration");
   const double seen = times.back() + 1e-4;
   if (!options.video && !options.changes.has_duration() && seen < scene.duration())
-    overrides.push_back("time.duration=" + std::to_string(seen));
+    settings.emplace_back("time.duration", std::to_string(seen));
   return times;
 }
 
@@ -97,9 +97,9 @@ int run(Options options) {
     throw InputError(
         "expected one to nine --solver, for example --solver jakobsen --solver bullet");
   check_solvers(what.solvers);
-  what.overrides = options.changes.settings();
+  what.settings = options.changes.settings();
   Drawing drawing = drawing_of(options);
-  drawing.times = times_of(options, what.overrides);
+  drawing.times = times_of(options, what.settings);
   const RunSet set = record_runs(what, [](const std::string& text) { progress() << text << '\n'; });
   const double end = set.scene.duration();
   if (drawing.times.empty())

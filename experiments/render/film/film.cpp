@@ -82,7 +82,7 @@ std::string key_of(const Film& film) {
   const auto add = [&](const auto&... values) { ((all += "\n" + std::to_string(values)), ...); };
   CaseMaker maker;
   for (const std::string& solver : film.request.solvers)
-    all += "\n" + maker.make({film.request.scene, film.request.overrides, solver}).key;
+    all += "\n" + maker.make({film.request.scene, film.request.settings, solver}).key;
   add(options.width, options.height, options.duration, options.speed, options.fps, options.crf,
       film.still);
   return sha256(all);

@@ -48,7 +48,7 @@ PlannedFilm of_studied(const report::ComparedSolvers& compared, const report::Qu
       continue;
     }
     request.scene = one->spec.scene;
-    request.overrides = one->spec.overrides;
+    request.settings = one->spec.settings;
     planned.add(one->spec.solver, compared.all[i].label, one->key);
   }
   return planned;
@@ -73,7 +73,7 @@ PlannedFilm of_other(const report::ComparedSolvers& compared, const OtherScene& 
   film.speed = watchable_speed(scene);
   film.request.scene = other.name;
   if (scene.duration() > kFilmSeconds)
-    film.request.overrides.push_back("time.duration=" + std::to_string(kFilmSeconds));
+    film.request.settings.emplace_back("time.duration", std::to_string(kFilmSeconds));
   for (const report::ComparedSolver& solver : compared.all) {
     const auto quoted = std::ranges::find_if(
         solver.cases, [&](const Record* r) { return report::work_of(*r) == solver.work; });

@@ -54,12 +54,12 @@ RecordedRun finished_run(IsolatedCase& process) {
 }  // namespace
 
 RunSet record_runs(const RunRequest& request, const std::function<void(const std::string&)>& say) {
-  RunSet set{load_scene(find_scene(request.scene), request.overrides), {}};
+  RunSet set{load_scene(find_scene(request.scene), request.settings), {}};
   const Scratch scratch;
   CaseMaker maker;
   std::list<IsolatedCase> processes;
   for (const std::string& solver : request.solvers) {
-    const Case one = maker.make({request.scene, request.overrides, solver});
+    const Case one = maker.make({request.scene, request.settings, solver});
     say("running " + one.choice.brief() + " on " + set.scene.name);
     const fs::path folder = scratch.path() / std::to_string(processes.size());
     make_folder(folder);

@@ -11,9 +11,9 @@ namespace taut {
 
 /// What is to be drawn: one scene, several solvers.
 struct RunRequest {
-  std::string scene;                   ///< name or path
-  std::vector<std::string> overrides;  ///< of the scene file
-  std::vector<std::string> solvers;    ///< "jakobsen:iterations=8"
+  std::string scene;  ///< name or path
+  SceneSettings settings;
+  std::vector<std::string> solvers;  ///< "jakobsen:iterations=8"
 };
 
 struct RunSet {

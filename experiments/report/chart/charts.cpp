@@ -25,10 +25,8 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
   if (record.sweeps >= 0) all[kSweeps] = std::to_string(record.sweeps);
   all["dt"] = quantity("dt").text(record.dt, 3);
   all["scene"] = record.scene;
-  for (const std::string& text : record.spec.overrides)
-    if (!text.starts_with("time.dt"))
-      if (const auto equals = text.find('='); equals != std::string::npos)
-        all[text.substr(0, equals)] = text.substr(equals + 1);
+  for (const SceneSetting& one : without(record.spec.settings, "time.dt"))
+    all[one.key()] = one.value();
   for (const std::string& name : free) {
     all.erase(name == "vertices" ? "cloth.grid" : own_parameter(record.solver, name));
     if (name != "setting") continue;

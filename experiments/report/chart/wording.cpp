@@ -122,12 +122,10 @@ double number(const std::string& text) {
   return parsed.ec == std::errc() && parsed.ptr == end ? value : kNaN;
 }
 
-/// The last number that the case gives a scene key; NaN if none.
-double overridden(const Record& record, const std::string& key) {
-  double value = kNaN;
-  for (const std::string& text : record.spec.overrides)
-    if (text.starts_with(key + "=")) value = number(text.substr(key.size() + 1));
-  return value;
+/// The number that the case gives a scene key; NaN: none.
+double set_number(const Record& record, const std::string& key) {
+  const SceneSetting* setting = find_setting(record.spec.settings, key);
+  return setting ? number(setting->value()) : kNaN;
 }
 
 /// "stretch.max" -> "largest stretch"
@@ -168,7 +166,7 @@ double value_of(const Record& record, std::string_view name) {
   if (const auto value = record.values.find(key); value != record.values.end())
     return value->second;
   const auto param = record.params.find(own_parameter(record.solver, key));
-  return param == record.params.end() ? overridden(record, key) : number(param->second);
+  return param == record.params.end() ? set_number(record, key) : number(param->second);
 }
 
 std::string Quantity::label() const {
@@ -219,10 +217,9 @@ std::map<std::string, std::string> other_settings(const Record& r) {
 std::vector<std::string> labelled_parameters(const std::string& solver) {
   const SolverEntry* entry = find_entry(solver);
   if (!entry) return {};
-  std::vector<std::string> all = parts_of(entry->accuracy.labelled);
-  std::erase_if(all, [&](const std::string& name) {
-    return name == entry->accuracy.substeps || name == entry->accuracy.sweeps;
-  });
+  std::vector<std::string> all;
+  for (const std::string_view name : entry->accuracy.labelled)
+    if (name != entry->accuracy.substeps && name != entry->accuracy.sweeps) all.emplace_back(name);
   return all;
 }
 
@@ -233,7 +230,9 @@ std::string link_order_parameter(const std::string& solver) {
 
 std::vector<std::string> stiffness_parameters(const std::string& solver) {
   const SolverEntry* entry = find_entry(solver);
-  return parts_of(entry ? entry->accuracy.stiffness.parameters : "");
+  if (!entry) return {};
+  const Words& names = entry->accuracy.stiffness.parameters;
+  return {names.begin(), names.end()};
 }
 
 std::vector<std::string> searched_parameters(const std::string& solver) {
@@ -241,15 +240,17 @@ std::vector<std::string> searched_parameters(const std::string& solver) {
   const SolverEntry* entry = find_entry(solver);
   if (!entry) return all;
   for (const std::string& name : stiffness_parameters(solver)) push_unique(all, name);
-  for (const auto& [name, values] : entry->accuracy.alternatives)
-    push_unique(all, std::string(name));
+  for (const auto& [names, values] : entry->accuracy.alternatives)
+    for (const std::string_view name : names) push_unique(all, std::string(name));
   return all;
 }
 
 std::vector<std::string> extras(const Record& r, const std::map<std::string, std::string>& others) {
   std::vector<std::string> used;
   const SolverEntry* entry = find_entry(r.solver);
-  for (const std::string& name : parts_of(entry ? entry->accuracy.accelerators : "")) {
+  if (!entry) return used;
+  for (const std::string_view accelerator : entry->accuracy.accelerators) {
+    const std::string name(accelerator);
     const auto spec = std::ranges::find(entry->params, name, &ParamSpec::name);
     const auto at = r.params.find(name);
     if (at != r.params.end() && at->second != spec->default_value && !others.contains(name))

@@ -121,7 +121,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
     one["cost"] = {{"cpu.per_second", json_interval(second, n)},
                    {"cpu.per_step", json_interval(step, n)}};
   }
-  add_if(one, "overrides", r.spec.overrides);
+  add_if(one, "overrides", r.spec.settings);
   one["command"] = reproduce(spec);
   return one;
 }

@@ -52,7 +52,7 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
   const CaseSpec spec = scene.bench.cases.empty() ? CaseSpec{scene.bench.scene, {}, {}}
                                                   : scene.bench.cases.front().record.spec;
   std::string again = "taut advise " + spec.scene + " --error 1%";
-  for (const std::string& value : spec.overrides) again += " --set '" + value + "'";
+  for (const SceneSetting& one : spec.settings) again += " --set '" + one.text() + "'";
   Table table{"cost-levels-" + slug(scene.bench.scene),
               "CPU time of an error, per simulated second",
               scene.columns(Column("level", q.title, q.unit, 1), quantity("cpu.per_second").unit),

@@ -219,13 +219,13 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
            {"study", map.study},
            {"x", json_of_axis(refs.use(map.x.name), map.columns)},
            {"y", json_of_axis(refs.use(map.y.name), map.rows)}};
-  std::vector<std::string> common = task_of(*map.cells.front().record).overrides;
+  SceneSettings common = task_of(*map.cells.front().record).settings;
   for (const StatusMap::Cell& cell : map.cells)
-    std::erase_if(common, [&](const std::string& setting) {
-      const auto own = task_of(*cell.record).overrides;
+    std::erase_if(common, [&](const SceneSetting& setting) {
+      const auto own = task_of(*cell.record).settings;
       return std::ranges::find(own, setting) == own.end();
     });
-  add_if(one, "scene_settings", join(common, ", "));
+  add_if(one, "scene_settings", join(common, ", ", &SceneSetting::text));
   for (const StatusMap::Cell& cell : map.cells) {
     const Status& status = cell.record->status;
     Json at{{"column", cell.column},

@@ -124,7 +124,7 @@ std::string ComparedSolvers::common_work() const {
 namespace {
 
 Task untimed(Task task) {
-  std::erase_if(task.overrides, [](const auto& s) { return s.starts_with("time."); });
+  std::erase_if(task.settings, [](const SceneSetting& one) { return one.is_of_time(); });
   task.dt = 0;
   return task;
 }

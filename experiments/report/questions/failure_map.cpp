@@ -16,18 +16,16 @@ namespace taut::report {
 namespace {
 
 constexpr double kLate = 0.9, kStrained = 0.005, kGained = 0.02;
-constexpr std::string_view kStiffness = "links.stiffness=";
+constexpr std::string_view kStiffness = "links.stiffness";
 
 /// "structural = 1e3" from a case's settings; "" if they do not set stiffness.
 std::string stiffness_of(const Record& r) {
-  for (const std::string& setting : r.spec.overrides)
-    if (setting.starts_with(kStiffness)) {
-      std::string text = setting.substr(kStiffness.size());
-      std::erase_if(text, [](char c) { return c == '{' || c == '}'; });
-      const auto first = text.find_first_not_of(' ');
-      return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
-    }
-  return "";
+  const SceneSetting* setting = find_setting(r.spec.settings, kStiffness);
+  if (!setting) return "";
+  std::string text = setting->value();
+  std::erase_if(text, [](char c) { return c == '{' || c == '}'; });
+  const auto first = text.find_first_not_of(' ');
+  return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
 /// Column of a case: "swing, structural = 1e3".

@@ -56,9 +56,8 @@ int shards_for(Plan& plan, const std::vector<Case>& cases, double hours) {
   return fewest;
 }
 
-void copy_mesh(const fs::path& scene, const std::vector<std::string>& overrides,
-               const fs::path& into) {
-  const Document document = read_document(scene, overrides);
+void copy_mesh(const fs::path& scene, const SceneSettings& settings, const fs::path& into) {
+  const Document document = read_document(scene, settings);
   const Value* cloth = document.root.find("cloth");
   const Value* mesh = cloth && cloth->is_table() ? cloth->find("mesh") : nullptr;
   if (!mesh || !mesh->is_string()) return;
@@ -73,9 +72,9 @@ void copy_mesh(const fs::path& scene, const std::vector<std::string>& overrides,
 /// Copies the user's own scene files and their meshes to where the folder's copy of the study finds
 /// them, so that the folder is complete in itself.
 void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
-  std::set<std::string> seen;
+  std::set<std::pair<std::string, SceneSettings>> seen;
   for (const Case& one : cases) {
-    if (!seen.insert(one.spec.scene + '\n' + join(one.spec.overrides, "\n")).second) continue;
+    if (!seen.insert({one.spec.scene, one.spec.settings}).second) continue;
     const fs::path name(one.spec.scene), file = find_scene(one.spec.scene);
     if (file.parent_path() == data_folder() / "scenes" || !fs::exists(name)) continue;
     if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
@@ -83,7 +82,7 @@ void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
                        ": a scene that goes to other machines lies in this folder or below");
     make_folder((folder / name).parent_path());
     write_file(folder / name, read_text(file));
-    copy_mesh(file, one.spec.overrides, (folder / name).parent_path());
+    copy_mesh(file, one.spec.settings, (folder / name).parent_path());
   }
 }
 

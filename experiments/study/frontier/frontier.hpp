@@ -68,14 +68,6 @@ using Trial = std::function<std::vector<Outcome>(const std::vector<double>&)>;
 /// stability is not monotone. Ignores values whose outcome is not known.
 Frontier find_frontier(const SearchRange&, const Trial&);
 
-/// Adds an override of a scene ("cloth.grid=[9, 9]"), in place of an existing one with the same
-/// key.
-void set_override(std::vector<std::string>& overrides, const std::string& assignment);
-
-/// Sets a parameter in a solver text ("jakobsen:iterations=8"), whether it is already there or not.
-/// Precondition: the text contains no quotes.
-void set_parameter(std::string& solver, const std::string& name, const std::string& value);
-
 /// Direction in which a setting becomes harder. Downwards, the search ascends in 1/setting.
 enum class Direction { up, down, down_in_whole_numbers };
 

@@ -127,8 +127,8 @@ Answer answer_of(const std::vector<ParameterFrontier>& frontiers) {
     table.rows.push_back({one.solver, one.parameter, one.unit, one.good, one.bad, one.symptom,
                           one.at_start, one.theory, one.law, one.lacks, one.from, one.to,
                           one.downwards, one.cases, one.beyond.scene, one.beyond.solver});
-    for (const std::string& text : one.beyond.overrides)
-      beyond.rows.push_back({one.solver, one.parameter, text});
+    for (const SceneSetting& setting : one.beyond.settings)
+      beyond.rows.push_back({one.solver, one.parameter, setting.text()});
   }
   beyond.detail = true;
   Answer answer{"frontier"};
@@ -163,7 +163,7 @@ std::vector<ParameterFrontier> frontiers_of(const Answer& answer) {
     for (const auto& own : beyond.rows)
       if (beyond.at(own, "solver").text() == one.solver &&
           beyond.at(own, "parameter").text() == one.parameter)
-        one.beyond.overrides.push_back(beyond.at(own, "override").text());
+        one.beyond.settings.emplace_back(beyond.at(own, "override").text());
     all.push_back(std::move(one));
   }
   return all;

@@ -145,25 +145,6 @@ Frontier find_frontier(const SearchRange& range, const Trial& trial) {
   return BorderSearch(range, trial).run();
 }
 
-void set_parameter(std::string& solver, const std::string& name, const std::string& value) {
-  bool quoted = false;
-  for (std::size_t i = 0; i < solver.size(); ++i) {
-    if (solver[i] == '\'' || solver[i] == '"') quoted = !quoted;
-    if (quoted || (solver[i] != ':' && solver[i] != ',')) continue;
-    if (solver.compare(i + 1, name.size() + 1, name + "=") != 0) continue;
-    const std::size_t from = i + name.size() + 2;
-    solver.replace(from, std::min(solver.find(',', from), solver.size()) - from, value);
-    return;
-  }
-  solver = with(solver, name + "=" + value);
-}
-
-void set_override(std::vector<std::string>& overrides, const std::string& assignment) {
-  const std::string key = assignment.substr(0, assignment.find('=') + 1);
-  std::erase_if(overrides, [&](const std::string& one) { return one.starts_with(key); });
-  overrides.push_back(assignment);
-}
-
 double FrontierQuestion::setting(double value) const {
   if (direction == Direction::up) return value;
   if (direction == Direction::down_in_whole_numbers) return std::round(1 / value);
@@ -176,11 +157,11 @@ CaseSpec FrontierQuestion::at(double value) const {
   const std::string text = shortest(setting(value));
   for (const std::string& name : parts_of(of))
     if (name == "dt")
-      set_override(spec.overrides, "time.dt=\"" + text + "\"");
+      spec.settings = replaced(std::move(spec.settings), {{"time.dt", '"' + text + '"'}});
     else if (of_scene(name))
-      set_override(spec.overrides, name + "=" + text);
+      spec.settings = replaced(std::move(spec.settings), {{name, text}});
     else
-      set_parameter(spec.solver, name, text);
+      spec.solver = parse_solver(spec.solver).with(name, text).brief();
   return spec;
 }
 

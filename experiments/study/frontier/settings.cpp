@@ -14,10 +14,8 @@ constexpr double kG = 9.81;          ///< m/s^2
 constexpr double kPlate = 0.02;      ///< m, thickness of the rising plate
 constexpr double kTolerance = 0.02;  ///< relative width of a bracket
 
-std::vector<std::string> standard(const std::vector<std::string>& more) {
-  std::vector<std::string> all{"cloth.grid=[9, 9]", "time.dt=\"1/240\"", "time.duration=2"};
-  for (const std::string& one : more) set_override(all, one);
-  return all;
+SceneSettings standard(const SceneSettings& more) {
+  return replaced({"cloth.grid=[9, 9]", "time.dt=\"1/240\"", "time.duration=2"}, more);
 }
 
 /// Builds the settings for one solver.
@@ -59,7 +57,7 @@ class FrontierSettings {
 
   FrontierSetting& add(const std::string& name, const std::string& unit, const std::string& of,
                        double from, double to, Direction direction = Direction::up,
-                       const std::vector<std::string>& more = {}) {
+                       const SceneSettings& more = {}) {
     FrontierSetting one{name, unit, {{"swing", standard(more), choice_.brief()}, of, {}}, "", {}};
     one.question.direction = direction;
     one.question.range = {.from = from, .to = to, .tolerance = kTolerance};
@@ -80,11 +78,11 @@ class FrontierSettings {
     FrontierSetting& one = add("sweeps", "", sweeps, 1.0 / 64, 1, Direction::down_in_whole_numbers,
                                {"cloth.grid=[17, 17]", "time.dt=\"1/30\""});
     const std::string substeps(choice_.entry->accuracy.substeps);
-    if (!substeps.empty()) set_parameter(one.question.base.solver, substeps, "1");
+    if (!substeps.empty()) one.question.base.solver = choice_.with(substeps, "1").brief();
   }
 
   void add_stiffness() {
-    const std::string springs(choice_.entry->accuracy.stiffness.parameters);
+    const std::string springs = join(choice_.entry->accuracy.stiffness.parameters, "|");
     if (!springs.empty()) return linear(add("stiffness", "N/m", springs, 50, 1e8));
     for (const char* share : {"stiffness", "omega"})
       if (const ParamSpec* spec = parameter(share)) {

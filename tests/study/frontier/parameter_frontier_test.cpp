@@ -80,7 +80,7 @@ TEST(Symptoms, AsymmetryIsTheDistanceFromTheMirrorImage) {
 
 // The mirror is the plane across the middle of the first side, wherever that is.
 TEST(Symptoms, AsymmetryAsksForASceneThatIsSymmetric) {
-  const auto of = [](const std::vector<std::string>& changes) {
+  const auto of = [](const SceneSettings& changes) {
     const Case one = make_case({"swing", changes, "jakobsen"});
     std::vector<Vec3> end = one.scene->start.x;
     end.back().z() += 0.25;
@@ -238,7 +238,7 @@ TEST(Frontiers, AreReadBackFromTheirAnswer) {
   const Answer answer = answer_of(all);
   const std::vector<ParameterFrontier> read = frontiers_of(answer);
   EXPECT_EQ(answer_of(read), answer);
-  EXPECT_EQ(read[0].beyond.overrides, all[0].beyond.overrides);
+  EXPECT_EQ(read[0].beyond.settings, all[0].beyond.settings);
   EXPECT_DOUBLE_EQ(read[0].headroom(), 10);
   EXPECT_DOUBLE_EQ(read[1].headroom(), 10) << "downwards from 1 to 0.1";
   Answer damaged = answer;

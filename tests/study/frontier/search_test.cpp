@@ -98,27 +98,14 @@ TEST(Frontier, ASymptomEndsWhatIsGoodThoughTheRunDoesNot) {
   EXPECT_EQ(found.at(found.unstable)->symptom, "tunnels");
 }
 
-TEST(Frontier, AParameterIsSetWhereItStands) {
-  const auto set = [](std::string solver) {
-    set_parameter(solver, "omega", "2");
-    return solver;
-  };
-  EXPECT_EQ(set("jakobsen"), "jakobsen:omega=2");
-  EXPECT_EQ(set("jakobsen:omega=1.5"), "jakobsen:omega=2");
-  EXPECT_EQ(set("jakobsen:iterations=2,omega=1,substeps=3"),
-            "jakobsen:iterations=2,omega=2,substeps=3");
-  EXPECT_EQ(set("external:cmd='a,omega=1'"), "external:cmd='a,omega=1',omega=2");
-}
-
 TEST(Frontier, QuestionsBecomeCases) {
   const CaseSpec base{"chain", {}, "jakobsen:iterations=2"};
-  EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).overrides.back()), "time.dt=\"0.01\"");
+  EXPECT_EQ((FrontierQuestion{base, "dt", {}}.at(0.01).settings.back()), "time.dt=\"0.01\"");
   EXPECT_EQ((FrontierQuestion{base, "omega", {}}.at(1.5).solver),
             "jakobsen:iterations=2,omega=1.5");
-  EXPECT_EQ((FrontierQuestion{base, "wind.strength", {}}.at(3).overrides.back()),
-            "wind.strength=3");
-  EXPECT_EQ((FrontierQuestion{base, "cloth.size.0|cloth.size.1", {}}.at(3).overrides),
-            (std::vector<std::string>{"cloth.size.0=3", "cloth.size.1=3"}));
+  EXPECT_EQ((FrontierQuestion{base, "wind.strength", {}}.at(3).settings.back()), "wind.strength=3");
+  EXPECT_EQ((FrontierQuestion{base, "cloth.size.0|cloth.size.1", {}}.at(3).settings),
+            (SceneSettings{"cloth.size.0=3", "cloth.size.1=3"}));
   EXPECT_EQ((FrontierQuestion{base, "iterations", {}, Direction::down_in_whole_numbers}
                  .at(1 / 7.2)
                  .solver),
@@ -128,7 +115,7 @@ TEST(Frontier, QuestionsBecomeCases) {
       7)
       << "the nearest";
   EXPECT_EQ(
-      (FrontierQuestion{base, "wind.strength", {}, Direction::down}.at(1 / 8.0).overrides.back()),
+      (FrontierQuestion{base, "wind.strength", {}, Direction::down}.at(1 / 8.0).settings.back()),
       "wind.strength=8");
   EXPECT_EQ(range_of(base, "omega", 0.5, {}).from, 0.5);
   EXPECT_EQ(range_of(base, "omega", {}, {}).to, 2);
@@ -218,9 +205,6 @@ TEST(Frontier, ARangeIsTheParametersOwnOrHasToBeGiven) {
   EXPECT_EQ(range("omeg"),
             "jakobsen has no parameter 'omeg'; did you mean 'omega'? (a scene key "
             "has a dot, as \"wind.strength\")");
-  std::vector<std::string> overrides{"a.b=1", "a.bc=2", "x.y=3"};
-  set_override(overrides, "a.b=4");
-  EXPECT_EQ(overrides, (std::vector<std::string>{"a.bc=2", "x.y=3", "a.b=4"}));
 }
 
 // Springs are stable below 2/w, over-relaxation below 4/3 on one link (see below).

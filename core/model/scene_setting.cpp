@@ -1,0 +1,41 @@
+#include "core/model/scene_setting.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace taut {
+
+SceneSetting::SceneSetting(std::string text) : text_(std::move(text)) {
+  const std::size_t equals = text_.find('=');
+  key_ = text_.substr(0, equals);
+  std::erase_if(key_, [](char c) { return c == ' ' || c == '\t' || c == '"' || c == '\''; });
+  if (equals == text_.npos) return;
+  const std::size_t first = text_.find_first_not_of(" \t", equals + 1);
+  if (first != text_.npos) value_ = text_.substr(first, text_.find_last_not_of(" \t") + 1 - first);
+}
+
+SceneSettings scene_settings(const std::vector<std::string>& texts) {
+  return {texts.begin(), texts.end()};
+}
+
+const SceneSetting* find_setting(const SceneSettings& settings, std::string_view key) {
+  const SceneSetting* last = nullptr;
+  for (const SceneSetting& one : settings)
+    if (one.key() == key) last = &one;
+  return last;
+}
+
+SceneSettings without(SceneSettings settings, std::string_view key) {
+  std::erase_if(settings, [&](const SceneSetting& one) { return one.key() == key; });
+  return settings;
+}
+
+SceneSettings replaced(SceneSettings settings, const SceneSettings& more) {
+  for (const SceneSetting& one : more) {
+    settings = without(std::move(settings), one.key());
+    settings.push_back(one);
+  }
+  return settings;
+}
+
+}  // namespace taut

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <compare>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut {
+
+/// "key=value" of a scene, in place of what its file says: a dotted key and a value in TOML, such
+/// as cloth.grid=[16, 16] or time.dt="1/120". A text without "=" is a key without a value; whoever
+/// reads the scene refuses it (core/io/document.hpp).
+class SceneSetting {
+ public:
+  SceneSetting(std::string text);
+  SceneSetting(const char* text) : SceneSetting(std::string(text)) {}
+  explicit SceneSetting(const std::string& key, const std::string& value)
+      : SceneSetting(key + "=" + value) {}
+
+  const std::string& text() const { return text_; }    ///< as it was written
+  const std::string& key() const { return key_; }      ///< without blanks and quotes
+  const std::string& value() const { return value_; }  ///< without blanks around it
+  bool is_of_time() const { return key_.starts_with("time."); }
+
+  auto operator<=>(const SceneSetting&) const = default;  ///< by text
+
+ private:
+  std::string text_, key_, value_;
+};
+
+/// In the order in which they are applied.
+using SceneSettings = std::vector<SceneSetting>;
+
+SceneSettings scene_settings(const std::vector<std::string>& texts);
+
+/// The last of that key, which is the one that counts; nullptr: there is none.
+const SceneSetting* find_setting(const SceneSettings&, std::string_view key);
+/// Without those of that key.
+SceneSettings without(SceneSettings, std::string_view key);
+/// With more, each in the place of those of the same key.
+SceneSettings replaced(SceneSettings, const SceneSettings& more);
+
+}  // namespace taut
