@@ -60,6 +60,7 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 std::string_view to_string(Cell::State);
+std::optional<Cell::State> cell_state(std::string_view);  ///< nothing: it is none of them
 
 /// What a cell says: its name in data ("cpu"), in words, and its unit.
 struct Column {

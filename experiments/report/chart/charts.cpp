@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -105,11 +106,11 @@ void draw_levels(Chart& chart) {
 
 /// What the chart of a value is called in its scene; where several have the role, after the value.
 std::string id_of(const ValueSpec& value) {
-  constexpr std::string_view kNames[] = {"",         "convergence", "motion", "vertices", "faces",
-                                         "passages", "reference",   "step",   "slip"};
+  constexpr Names<Role::contact_error> kNames{
+      "", "convergence", "motion", "vertices", "faces", "passages", "reference", "step", "slip"};
   const std::vector<const ValueSpec*> all = values_with_role();
   const bool alone = std::ranges::count(all, value.role, &ValueSpec::role) == 1;
-  return std::string(alone ? kNames[static_cast<std::size_t>(value.role)] : value.name);
+  return std::string(alone ? kNames[value.role] : value.name);
 }
 
 bool over_sweeps_alone(const ValueSpec& value) {
