@@ -3,6 +3,7 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/case/record_parts.hpp"
 #include "experiments/results/schema.hpp"
 #include "experiments/system/json.hpp"
 
