@@ -139,8 +139,7 @@ void read_colliders(Section& root, const std::filesystem::path& folder, Scene& s
   }
 }
 
-const Range kRelease = Range::positive(1e6);  ///< s
-constexpr std::size_t kMostReleases = 64;     ///< each makes a solver of its own
+constexpr std::size_t kMostReleases = 64;  ///< each makes a solver of its own
 
 /// Release times [s] and the pins released then, as the file has them.
 using Timed = std::vector<std::pair<double, std::vector<int>>>;
@@ -155,7 +154,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
     section.need({"vertices"});
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);
     group.motion = read_motion(section, "pin_motion", Vec3::Zero());
-    const auto release = section.number("release", kRelease);
+    const auto release = section.number("release", allowed_at("pin_motion.release"));
     section.finish();
     for (const int vertex : group.vertices) {
       const bool pinned = std::binary_search(scene.pins.begin(), scene.pins.end(), vertex);
@@ -178,7 +177,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
 
 /// The release time [s] of pins without their own; nothing: they hold.
 std::optional<double> read_release(Section& cloth) {
-  const auto release = cloth.number("release", kRelease);
+  const auto release = cloth.number("release", allowed_at("cloth.release"));
   if (release && !cloth.find("pins"))
     cloth.report("release", "lets go of pins, and this cloth has none");
   return release;
@@ -229,7 +228,8 @@ void read_stiffness(Section& links, Scene& scene) {
   if (!table) return;
   Section stiffness(links.diagnostics(), *table, "[links] stiffness");
   for (const Family family : kFamilies)
-    if (const auto k = stiffness.number(std::string(to_string(family)), Range::positive(1e12)))
+    if (const auto k =
+            stiffness.number(std::string(to_string(family)), allowed_at("links.stiffness")))
       scene.stiffness[static_cast<std::size_t>(family)] = *k;
   stiffness.finish();
 }
@@ -266,7 +266,7 @@ void judge_fabric(Section& root) {
 Bending read_bending(Section& section, const Fabric* fabric) {
   Bending bending;
   if (!fabric) section.need({"stiffness"});
-  const Range range{1e-12, 1e6};
+  const Range& range = allowed_at("bending.stiffness");
   const Value* value = section.find("stiffness");
   if (value && value->is_table()) {
     Section both(section.diagnostics(), *value, "'stiffness' in [bending]");

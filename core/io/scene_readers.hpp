@@ -15,6 +15,9 @@
 
 namespace taut {
 
+/// What the numbers of that key may be. Precondition: there is such a key.
+inline const Range& allowed_at(std::string_view path) { return find_scene_key(path)->range; }
+
 /// Reads a value of the kind that the key is; one that is absent or wrong stays what it was.
 void read_value(Section&, const SceneKey&, double&);
 void read_value(Section&, const SceneKey&, Vec3&);
