@@ -99,12 +99,12 @@ Vec3 middle(const MeshBody& body) { return body.center; }
 Collider read_collider(Section& section, const std::filesystem::path& folder) {
   Collider collider;
   section.need({"type"});
-  const std::string type = section.choice("type", {"plane", "ball", "box", "capsule", "mesh"}, "");
-  if (type == "plane") collider.shape = Plane();
-  if (type == "ball") collider.shape = Ball();
-  if (type == "box") collider.shape = Box();
-  if (type == "capsule") collider.shape = Capsule();
-  if (type == "mesh") collider.shape = MeshBody();
+  const std::vector<Shape> shapes = shapes_of_each_type();
+  std::vector<std::string> types;
+  for (const Shape& shape : shapes) types.emplace_back(type_name(shape));
+  const std::string type = section.choice("type", types, "");
+  for (const Shape& shape : shapes)
+    if (type_name(shape) == type) collider.shape = shape;
   if (type.empty())
     section.know();  // without a type all keys are accepted
   else

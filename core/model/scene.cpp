@@ -42,12 +42,11 @@ class Bytes {
   void add(const Link& l) { add_each(l.a, l.b, l.rest, l.family); }
   void add(const Grid& g) { add_each(g.nu, g.nv); }
   void add(const Motion::Key& k) { add_each(k.t, k.displacement); }
-  void add(const Motion& m) {
-    add("collider", m);
-    add(m.path);
-  }
   void add(const Release& r) { add_each(r.step, r.vertices); }
-  void add(const PinMotion& m) { add_each(m.vertices, m.motion); }
+  void add(const PinMotion& m) {
+    add(m.vertices);
+    add_motion("pin_motion", m.motion);
+  }
   void add(const Collider& c) {
     add(c.shape.index());
     std::visit([&](const auto& shape) { add("collider", shape); }, c.shape);
@@ -58,7 +57,7 @@ class Bytes {
       add(body->mesh->vertices());
       add(body->mesh->triangles());
     }
-    add(c.motion);
+    add_motion("collider", c.motion);
     add("collider", c);
     if (c.frames) add_later(kFramesKey, [&](Bytes& b) { b.add(*c.frames); });
   }
@@ -80,6 +79,10 @@ class Bytes {
   void add(const std::optional<T>& value) {
     add(value.has_value());
     if (value) add(*value);
+  }
+  void add_motion(std::string_view section, const Motion& m) {
+    add(section, m);
+    add(m.path);
   }
   /// The keys of the section that are members of the part.
   template <class Part>

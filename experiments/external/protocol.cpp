@@ -46,9 +46,9 @@ Json json_of(std::string_view section, const Part& part) {
   return all;
 }
 
-Json json_of(const Motion& motion) {
+Json motion_of(std::string_view section, const Motion& motion) {
   if (motion.at_rest()) return nullptr;
-  Json all = json_of("collider", motion), path = Json::array();
+  Json all = json_of(section, motion), path = Json::array();
   for (const Motion::Key& key : motion.path)
     path.push_back({{"t", key.t}, {"displacement", json_of(key.displacement)}});
   all["path"] = path;
@@ -74,7 +74,7 @@ Json json_of(const Collider& collider) {
     one["fps"] = collider.frames->fps;
   }
   one.update(json_of("collider", collider));
-  one["motion"] = json_of(collider.motion);
+  one["motion"] = motion_of("collider", collider.motion);
   return one;
 }
 
@@ -216,7 +216,8 @@ std::string scene_file(const Scene& scene) {
   for (const Link& link : scene.links)
     links.push_back({link.a, link.b, link.rest, to_string(link.family)});
   for (const PinMotion& group : scene.pin_motions)
-    motions.push_back({{"vertices", group.vertices}, {"motion", json_of(group.motion)}});
+    motions.push_back(
+        {{"vertices", group.vertices}, {"motion", motion_of("pin_motion", group.motion)}});
   for (const Collider& collider : scene.colliders) colliders.push_back(json_of(collider));
   const auto& grid = scene.mesh.grid;
   Json file{{"format", kFormats[0]},
