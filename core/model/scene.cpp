@@ -88,7 +88,7 @@ class Bytes {
   template <class Part>
   void add(std::string_view section, const Part& part) {
     const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
-      if (!key.added_later) return add(value);
+      if (!key.added_later()) return add(value);
       if (key.counts(value, initial)) add_later(key.path, [&](Bytes& b) { b.add(value); });
     };
     each_key(section, part, visit, keys_);
@@ -195,7 +195,8 @@ Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
   bytes.add("cloth", s);
   bytes.add(s.dt);
   bytes.add(s.steps);
-  if (s.stiffness != kRigid)  // a scene without has the bytes that it had before there was any
+  // Older than add_later(): a scene without has the bytes that it had before there was any.
+  if (s.stiffness != kRigid)
     for (const double k : s.stiffness) bytes.add(k);
   if (s.bending) bytes.add(s.bending);
   if (!s.releases.empty()) bytes.add(s.releases);

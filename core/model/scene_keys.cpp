@@ -171,7 +171,8 @@ const SceneKey kKeys[] = {
     other(kFramesKey, "string", "", "", "none: it is rigid", "\"walker.npy\"",
           "mesh: NumPy array [frames, vertices, 3], relative to the scene, in the file's unit and "
           "frame: where the file's vertices are; the first frame is at t = 0, between two they go "
-          "straight, after the last they rest; velocity, spin and path move the whole"),
+          "straight, after the last they rest; velocity, spin and path move the whole")
+        .came_later(4),
     other("collider.fps", "number", "1/s", Range::positive(1e6), "needed with `frames`", "30",
           "mesh: frames in a second"),
     vector("collider.center", &MeshBody::center, "m", Range::within(kFar), "[0, -1, 0]",

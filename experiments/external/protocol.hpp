@@ -53,9 +53,8 @@ double take_steps(Connection&, double t, double dt, int count);
 bool agrees(double word, double clock, double empty);
 void store_state(Connection&, int vertices, State&);
 
-/// What of a scene came after that version of the protocol, a few words each: with the second
-/// elastic links, capsules, bending and keys that came later; with the third bodies of triangles. A
-/// program that speaks an earlier one is not asked for such a scene.
+/// What of a scene came after that version of the protocol, a few words each. A program that speaks
+/// no later one is not asked for such a scene.
 std::vector<std::string> beyond(int version, const Scene&);
 
 /// The scene as a program gets it: JSON, everything resolved, SI units, doubles in shortest exact
