@@ -15,13 +15,20 @@ namespace taut {
 
 /// One setting of one solver on one scene: what it costs and how far it is off.
 struct Candidate {
-  std::string solver;         ///< the entry's name
-  std::string setting;        ///< "jakobsen:substeps=16,iterations=1"
-  Interval cost;              ///< CPU seconds per simulated second
-  double error = 0;           ///< of the chosen metric, >= 0; NaN if the metric has no meaning here
-  std::string failure;        ///< why it is refused, such as "exploded (energy)"; empty: it ran
-  bool hardly_moves = false;  ///< which is why: its strain is that of cloth that stands still
-  bool not_accepted = false;  ///< which is why: it does what its scene does not accept
+  enum class Refusal {
+    failed,        ///< it did not run to its end, or could not be timed
+    hardly_moves,  ///< its strain is that of cloth that stands still
+    not_accepted   ///< it does what its scene does not accept
+  };
+  std::string solver;   ///< the entry's name
+  std::string setting;  ///< "jakobsen:substeps=16,iterations=1"
+  Interval cost;        ///< CPU seconds per simulated second
+  double error = 0;     ///< of the chosen metric, >= 0; NaN if the metric has no meaning here
+  std::string failure;  ///< why it is refused, such as "exploded (energy)"; empty: it is not
+  Refusal refusal = Refusal::failed;  ///< which kind of failure that is
+
+  /// Whether it has a cost and an error that do not count.
+  bool is_uncounted() const { return !failure.empty() && refusal != Refusal::failed; }
 };
 
 /// What is asked for: the cheapest setting within an error, or the most accurate within a cost.
@@ -79,8 +86,8 @@ struct SceneBench {
   /// What its scene accepts; nothing: nobody asked the scene, so that no case can win anything.
   std::optional<std::vector<Limit>> limits = {};
 
-  /// The cases by their error in the metric's value; same order. Those beyond the limits are
-  /// refused (Candidate::not_accepted).
+  /// The cases by their error in the metric's value; same order. Those beyond the limits are not
+  /// accepted.
   std::vector<Candidate> candidates(const std::string& metric) const;
   /// Cost of case i over case j per simulated second, from their interleaved samples; nothing if
   /// either failed, or if they were not timed in turns.

@@ -432,7 +432,7 @@ Chart cost_chart(const SceneBench& scene, const Records& records) {
     const BenchedCase& c = scene.cases[i];
     const Candidate& one = candidates[i];
     if (c.stable()) chart.cost[c.record.key] = c.cost();
-    if (one.hardly_moves || one.not_accepted) chart.not_counted[c.record.key] = one.failure;
+    if (one.is_uncounted()) chart.not_counted[c.record.key] = one.failure;
   }
   return chart;
 }
