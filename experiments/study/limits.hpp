@@ -21,15 +21,15 @@ struct Limit {
 /// and of the duration; of shares, points. Throws InputError.
 Limit parse_limit(const std::string&, const Scene&);
 
-/// The largest RMS stretch that is accepted.
-inline constexpr double kMostStretch = 0.1;
+/// The largest RMS stretch that is accepted; the largest depth of a vertex, over the cloth's
+/// extent; the largest motion error.
+inline constexpr double kMostStretch = 0.1, kMostDepth = 1e-3, kMostMotionError = 0.25;
 
 /// The limits unless others are asked for, as far as the scene has the values:
 ///   - no passage of a vertex and no crossing;
-///   - depths of vertices of at most 0.1 % of the cloth's extent;
+///   - depths of vertices of at most kMostDepth of the cloth's extent;
 ///   - an RMS stretch of at most kMostStretch;
-///   - a motion error of at most 25 % of the way from the dynamic reference, for cloth that stands
-///     still has little strain.
+///   - a motion error of at most kMostMotionError, for cloth that stands still has little strain.
 /// Passages of edges and faces are accepted: past an edge of a box they happen to every solver that
 /// keeps vertices alone outside (`--keep edge.passages:0` asks for none).
 std::vector<Limit> default_limits(const Scene&);

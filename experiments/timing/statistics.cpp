@@ -65,19 +65,6 @@ std::string_view to_string(Certainty certainty) {
   return kWords[certainty];
 }
 
-std::string_view meaning(Certainty certainty) {
-  constexpr Names<Certainty::unopposed> kMeanings{
-      "the whole 95 % interval is further from 1 than 5 % and than identical code differed from "
-      "itself, which was less than 5 %",
-      "the 95 % interval excludes 1, and its middle is further from 1 than 5 % and than identical "
-      "code differed from itself",
-      "identical code differed from itself by more than the difference",
-      "the 95 % interval has 1 in it, or its middle is within 5 % of 1",
-      "computed, not timed: the same build gives the same bits on every run, so there is no spread",
-      "nothing else that was timed reaches it"};
-  return kMeanings[certainty];
-}
-
 Certainty judge(const Interval& ratio, const Interval& control, double tolerance) {
   const double noise = spread(control), change = std::abs(std::log(ratio.mid));
   if (change <= std::log1p(tolerance)) return Certainty::none;

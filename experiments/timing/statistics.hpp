@@ -47,8 +47,6 @@ enum class Certainty {
 };
 /// "clear", "too noisy", "no difference", ...
 std::string_view to_string(Certainty);
-/// What the word means, one sentence.
-std::string_view meaning(Certainty);
 
 /// How sure a ratio of costs is, given the ratio of identical code to itself: `clear` or `likely`
 /// a difference of more than the tolerance, which way the ratio's middle says; `too_noisy`; `none`.

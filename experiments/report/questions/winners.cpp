@@ -221,6 +221,44 @@ std::string line_of(const WinnerRow& row, std::size_t level) {
   return text;
 }
 
+std::vector<std::string> rules_of(const WinnerMap& map) {
+  const auto titles = [&](WayGone::By way) {
+    std::vector<std::string> all;
+    for (const WinnerRow& row : map.rows)
+      if (row.way == way) all.push_back(row.title);
+    return join(all, ", ");
+  };
+  std::vector<std::string> all{
+      "Each cell names the cheapest solver, how many times cheaper it is than the next one, the "
+      "CPU time of a frame of 1/" +
+          number_text(1 / kFrame) +
+          "\u00A0s, the setting, the arithmetic, and the stiffness of links that are not rigid.",
+      "A setting does not count if it fails, passes through a body or sinks into it by more than " +
+          shown(kShare, kMostDepth, 1) +
+          " of the cloth\u2019s diagonal, or if the cloth travels less than " +
+          shown(kShare, kLeastMotion, 2) + " of its way.",
+      "The way is that of the scene\u2019s reference in motion, from which the cloth may be off "
+      "by " +
+          shown(kShare, kMostMotionError, 2) + " of it.",
+      "Without a reference and without contact, the way is that of exact steps of implicit Euler."};
+  if (const std::string missed = titles(WayGone::By::missed); !missed.empty())
+    all.push_back(
+        "On " + missed +
+        " motion is judged by what the cloth\u2019s own steps miss of exact ones: solvers "
+        "that declare no step (Bullet\u2019s) and contact that does not settle are not "
+        "judged there.");
+  if (const std::string unjudged = titles(WayGone::By::nothing); !unjudged.empty())
+    all.push_back("On " + unjudged +
+                  " motion is not judged; cloth that lags may show little stretch.");
+  all.emplace_back(
+      "The error is that of the last second; a setting that exceeds it at some moment of the run "
+      "says by how much.");
+  all.emplace_back(
+      "Only settings that were timed compete: a solver is absent if no timed setting reaches the "
+      "error.");
+  return all;
+}
+
 std::string certainty_text(double noise) {
   return "Cheaper means, in every table: the 95\u00A0% interval of the ratio of two costs, sampled "
          "in turns, leaves out 1, and the ratio is beyond " +
