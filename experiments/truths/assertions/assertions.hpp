@@ -17,7 +17,7 @@ struct Assertion {
   AssertionVerdict verdict;
   std::string_view because;      ///< the condition, the figure, or why it cannot be tested
   std::string_view truth;        ///< by name: `taut verify` holds the verdict to it; "": none can
-  std::string_view figure = "";  ///< how the truth's number that is quoted begins; "": the first
+  std::string_view figure = "";  ///< the quantity of the truth that is quoted; "": the first
 };
 
 /// All of them, source by source.
