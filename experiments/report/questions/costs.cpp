@@ -141,7 +141,8 @@ class Costs {
                 columns_of(solvers_, q.unit),
                 {},
                 std::string(to_string(q.window)) + "; least of the settings timed within " +
-                    significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/60\u00A0s (" +
+                    significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/" +
+                    number_text(1 / kFrame) + "\u00A0s (" +
                     quantity("cpu.per_second").text(budget / kFrame) + " per simulated second), " +
                     kWithoutExtras + orders()};
     for (const TimedScene& scene : shared_) {
