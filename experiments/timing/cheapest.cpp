@@ -8,8 +8,8 @@ namespace taut {
 
 namespace {
 
-Rival beside(const Cost& cost, std::size_t other, const RatioOf& ratio, const Interval& control,
-             double tolerance) {
+Rival rival_of(const Cost& cost, std::size_t other, const RatioOf& ratio, const Interval& control,
+               double tolerance) {
   Rival rival{.at = cost.at, .times = ratio(cost.at, other), .is_bound = cost.is_bound};
   if (rival.times) rival.certainty = judge(*rival.times, control, tolerance);
   return rival;
@@ -31,7 +31,7 @@ Cheapest cheapest_of(std::vector<Cost> costs, const RatioOf& ratio, const Interv
   std::ranges::stable_sort(costs, {}, &Cost::mid);
   Cheapest found{costs.front().at, {}};
   for (std::size_t i = 1; i < costs.size(); ++i)
-    found.rivals.push_back(beside(costs[i], found.at, ratio, control, tolerance));
+    found.rivals.push_back(rival_of(costs[i], found.at, ratio, control, tolerance));
   return found;
 }
 
@@ -78,7 +78,7 @@ bool TimedScene::is_upper_bound(std::size_t at) const {
 }
 
 Rival TimedScene::beside(std::size_t at, std::size_t other, double tolerance) const {
-  return taut::beside(
+  return rival_of(
       {at, candidates[at].cost.mid, is_upper_bound(at)}, other,
       [&](std::size_t i, std::size_t j) { return bench.ratio(i, j); }, bench.control, tolerance);
 }
