@@ -35,25 +35,26 @@ Cheapest cheapest_of(std::vector<Cost> costs, const RatioOf& ratio, const Interv
   return found;
 }
 
-TimedScene::TimedScene(SceneBench scene, const std::string& metric)
+JudgedScene::JudgedScene(SceneBench scene, const std::string& metric)
     : bench(std::move(scene)), candidates(bench.candidates(metric)) {}
 
-bool TimedScene::has(const std::string& solver) const {
+bool JudgedScene::has(const std::string& solver) const {
   return std::ranges::find(candidates, solver, &Candidate::solver) != candidates.end();
 }
 
-std::optional<std::size_t> TimedScene::best(const Target& target, const std::string& solver) const {
+std::optional<std::size_t> JudgedScene::best(const Target& target,
+                                             const std::string& solver) const {
   return best_for(target, candidates, solver);
 }
 
-std::vector<std::size_t> TimedScene::best_of_each(const Target& target) const {
+std::vector<std::size_t> JudgedScene::best_of_each(const Target& target) const {
   std::vector<std::size_t> all;
   for (const std::string& solver : solvers_of(bench))
     if (const auto at = best(target, solver)) all.push_back(*at);
   return all;
 }
 
-std::optional<std::size_t> TimedScene::uncounted(const std::string& solver, double error) const {
+std::optional<std::size_t> JudgedScene::uncounted(const std::string& solver, double error) const {
   std::optional<std::size_t> cheapest;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& one = candidates[i];
@@ -63,7 +64,7 @@ std::optional<std::size_t> TimedScene::uncounted(const std::string& solver, doub
   return cheapest;
 }
 
-bool TimedScene::is_upper_bound(std::size_t at) const {
+bool JudgedScene::is_upper_bound(std::size_t at) const {
   const auto work = [&](std::size_t i) {
     const Record& r = bench.cases[i].record;
     return std::max(1, r.substeps) * std::max(1, r.sweeps);
@@ -77,13 +78,13 @@ bool TimedScene::is_upper_bound(std::size_t at) const {
   return true;
 }
 
-Rival TimedScene::beside(std::size_t at, std::size_t other, double tolerance) const {
+Rival JudgedScene::beside(std::size_t at, std::size_t other, double tolerance) const {
   return rival_of(
       {at, candidates[at].cost.mid, is_upper_bound(at)}, other,
       [&](std::size_t i, std::size_t j) { return bench.ratio(i, j); }, bench.control, tolerance);
 }
 
-Cheapest TimedScene::cheapest(const std::vector<std::size_t>& cases) const {
+Cheapest JudgedScene::cheapest(const std::vector<std::size_t>& cases) const {
   std::vector<Cost> costs;
   for (const std::size_t at : cases)
     costs.push_back({at, candidates[at].cost.mid, is_upper_bound(at)});

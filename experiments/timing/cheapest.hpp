@@ -47,11 +47,11 @@ Cheapest cheapest_of(std::vector<Cost>, const RatioOf&, const Interval& control,
 
 /// A scene of a bench with its cases judged by their error: once, for each of their intervals is a
 /// bootstrap.
-struct TimedScene {
+struct JudgedScene {
   SceneBench bench;
   std::vector<Candidate> candidates;  ///< of its cases, in their order
 
-  TimedScene(SceneBench, const std::string& metric);
+  JudgedScene(SceneBench, const std::string& metric);
   bool has(const std::string& solver) const;
   /// The case of the solver ("" = any) that serves the target best; nothing: none meets it.
   std::optional<std::size_t> best(const Target&, const std::string& solver = "") const;

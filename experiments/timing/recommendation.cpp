@@ -73,7 +73,7 @@ std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Ta
 
 Recommendation recommend(const SceneBench& bench, const Target& target, const std::string& metric,
                          double tolerance) {
-  const TimedScene scene(bench, metric);
+  const JudgedScene scene(bench, metric);
   const std::vector<std::size_t> order = ranking(scene.candidates, target);
   Recommendation recommendation{.target = target, .tolerance = tolerance};
   for (const std::string& solver : solvers_of(bench))

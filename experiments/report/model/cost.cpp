@@ -19,7 +19,7 @@ namespace {
 
 /// Of one scene, with what all of its solvers have: the answers and the whole page compare that.
 struct CostScene {
-  TimedScene timed;
+  JudgedScene timed;
   CaseList& refs;
 
   /// The cell of a case: its note is the setting, and what a small strain may have cost.
@@ -82,7 +82,7 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
 std::string upper_bounds(const std::vector<SceneBench>& scenes) {
   std::map<std::string, int> bounds;
   for (const SceneBench& scene : scenes) {
-    const TimedScene timed(scene, kErrorMetric);
+    const JudgedScene timed(scene, kErrorMetric);
     for (const double level : kErrorLevels)
       for (const std::size_t at : timed.best_of_each({.error = level}))
         bounds[solver_title(timed.candidates[at].solver)] += timed.is_upper_bound(at);
@@ -137,7 +137,7 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, 
   for (const SceneBench& bench : study.scenes) {
     const std::vector<Record>& records = kept.emplace_back(StudyBench{"", "", {bench}}.records());
     shared.push_back(with_shared_parameters(bench));
-    const CostScene scene{TimedScene(shared.back(), kErrorMetric), refs};
+    const CostScene scene{JudgedScene(shared.back(), kErrorMetric), refs};
     Json one{{"scene", bench.scene}};
     try {
       charts.push_back(cost_chart(bench, records));

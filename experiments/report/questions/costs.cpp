@@ -37,8 +37,8 @@ std::string setting_text(const SceneBench& bench, std::size_t at, std::vector<st
   return label + (order.empty() ? "" : ", " + order);
 }
 
-std::optional<Cell> only_uncounted(const TimedScene& scene, const std::string& solver, double error,
-                                   const std::string& words) {
+std::optional<Cell> only_uncounted(const JudgedScene& scene, const std::string& solver,
+                                   double error, const std::string& words) {
   const auto at = scene.uncounted(solver, error);
   if (!at) return {};
   const Candidate& one = scene.candidates[*at];
@@ -50,7 +50,7 @@ std::optional<Cell> only_uncounted(const TimedScene& scene, const std::string& s
 namespace {
 
 /// The cell of a solver that misses the error: `words`, and how near it came ("at best 0.12 %").
-Cell not_reached(const TimedScene& scene, const std::string& words, const std::string& solver) {
+Cell not_reached(const JudgedScene& scene, const std::string& words, const std::string& solver) {
   if (!scene.has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
   if (const auto uncounted = only_uncounted(scene, solver, kPricedError, words)) return *uncounted;
   const Cell cell = Cell::lacking(Cell::State::none, words);
@@ -76,7 +76,7 @@ void mark_cheapest(std::vector<Cell>& row, const std::vector<Cost>& costs, const
   const Cheapest found = cheapest_of(costs, ratio, control);
   row[found.at + 1].best = found.is_told();
 }
-void mark_cheapest(std::vector<Cell>& row, const TimedScene& scene, const Chosen& chosen) {
+void mark_cheapest(std::vector<Cell>& row, const JudgedScene& scene, const Chosen& chosen) {
   std::vector<Cost> costs;
   for (std::size_t i = 0; i < chosen.size(); ++i)
     if (const auto at = chosen[i])
@@ -115,7 +115,7 @@ class Costs {
   }
 
  private:
-  Cell cell_of(const TimedScene& scene, std::size_t at, Cell cell) {
+  Cell cell_of(const JudgedScene& scene, std::size_t at, Cell cell) {
     cell.note = setting_text(scene.bench, at);
     cell.key = list_.key(scene.bench.cases[at].record);
     return cell;
@@ -124,7 +124,7 @@ class Costs {
   /// The least budget within which every solver has a setting on every scene, else the largest.
   double common_budget() const {
     for (const double budget : kFrameBudgets)
-      if (std::ranges::all_of(shared_, [&](const TimedScene& scene) {
+      if (std::ranges::all_of(shared_, [&](const JudgedScene& scene) {
             return std::ranges::all_of(solvers_of(scene.bench), [&](const std::string& solver) {
               return scene.best({.budget = budget / kFrame}, solver).has_value();
             });
@@ -145,7 +145,7 @@ class Costs {
                     number_text(1 / kFrame) + "\u00A0s (" +
                     quantity("cpu.per_second").text(budget / kFrame) + " per simulated second), " +
                     kWithoutExtras + orders()};
-    for (const TimedScene& scene : shared_) {
+    for (const JudgedScene& scene : shared_) {
       std::vector<Cell> row{head_of(scene.bench)};
       for (const Column& solver : solvers_) {
         const auto at = scene.best({.budget = budget / kFrame}, solver.name);
@@ -178,7 +178,7 @@ class Costs {
                     std::string(kWithoutExtras) + orders()};
     std::vector<Chosen> chosen;  // of each scene
     bool any_bound = false;
-    for (const TimedScene& scene : shared_) {
+    for (const JudgedScene& scene : shared_) {
       std::vector<Cell> row{head_of(scene.bench)};
       Chosen& own = chosen.emplace_back();
       for (const Column& solver : solvers_) {
@@ -201,17 +201,17 @@ class Costs {
   /// The order of links of each solver; "": none has one.
   std::string orders() const {
     std::vector<SceneBench> scenes;
-    for (const TimedScene& scene : shared_) scenes.push_back(scene.bench);
+    for (const JudgedScene& scene : shared_) scenes.push_back(scene.bench);
     const std::string all = link_orders(scenes);
     return all.empty() ? "" : "; links in each solver's own order: " + all;
   }
 
-  static double noise(const std::vector<TimedScene>& scenes) {
+  static double noise(const std::vector<JudgedScene>& scenes) {
     double most = 0;
-    for (const TimedScene& scene : scenes) most = std::max(most, spread(scene.bench.control));
+    for (const JudgedScene& scene : scenes) most = std::max(most, spread(scene.bench.control));
     return most;
   }
-  static Interval control(const std::vector<TimedScene>& scenes) {
+  static Interval control(const std::vector<JudgedScene>& scenes) {
     return {1 / (1 + noise(scenes)), 1, 1 + noise(scenes)};
   }
 
@@ -257,7 +257,7 @@ class Costs {
                 "the cheapest timed that reaches " + priced() +
                     ", accelerators that only one solver has included, and its CPU time per "
                     "simulated second; of all scenes: on most of them, then least geometric mean"};
-    for (const TimedScene& scene : all_) {
+    for (const JudgedScene& scene : all_) {
       std::vector<Cell> row{head_of(scene.bench)};
       Chosen chosen;
       for (const Column& solver : solvers_) {
@@ -274,7 +274,7 @@ class Costs {
     answer.add(std::move(table));
   }
 
-  Cell setting_cell(const TimedScene& scene, std::size_t at, double cost, bool bound,
+  Cell setting_cell(const JudgedScene& scene, std::size_t at, double cost, bool bound,
                     const std::string& on) {
     Cell cell(setting_text(scene.bench, at));
     cell.key = list_.key(scene.bench.cases[at].record);
@@ -285,7 +285,7 @@ class Costs {
   struct Reached {
     using Case = std::pair<const std::size_t, std::size_t>;
     std::map<std::size_t, std::size_t> cases;
-    double mean_log_cost(const std::vector<TimedScene>& all) const {
+    double mean_log_cost(const std::vector<JudgedScene>& all) const {
       double logs = 0;
       for (const auto& [scene, at] : cases) logs += std::log(all[scene].candidates[at].cost.mid);
       return logs / static_cast<double>(cases.size());
@@ -344,7 +344,7 @@ class Costs {
 
   const std::vector<Column>& solvers_;
   CaseList& list_;
-  std::vector<TimedScene> all_, shared_;
+  std::vector<JudgedScene> all_, shared_;
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ std::string setting_text(const SceneBench&, std::size_t at, std::vector<std::str
 
 /// If the settings of a solver that reach the error do not count: a cell of these words, with the
 /// state and the reason of the cheapest, such as "hardly moves: 5 % of the way".
-std::optional<Cell> only_uncounted(const TimedScene&, const std::string& solver, double error,
+std::optional<Cell> only_uncounted(const JudgedScene&, const std::string& solver, double error,
                                    const std::string& words);
 
 /// Behind the setting of an upper bound.

@@ -96,7 +96,7 @@ class SceneWinners {
     return all.empty() ? "nothing was timed" : all.front().failure;
   }
 
-  TimedScene scene_;
+  JudgedScene scene_;
   const ReportInput& input_;
   CaseList& list_;
 };
