@@ -106,7 +106,7 @@ std::shared_ptr<const BodyFrames> read_frames(Section& section, const std::files
                                               double scale, MeshBody::Sides sides,
                                               const TriangleMesh* mesh) {
   const auto name = section.string("frames");
-  const auto fps = section.number("fps", Range::positive(1e6));
+  const auto fps = section.number("fps", allowed_at("collider.fps"));
   if (!name) {
     if (section.find("fps"))
       section.report("fps",
@@ -154,7 +154,7 @@ std::shared_ptr<const BodyFrames> read_frames(Section& section, const std::files
 
 void read_body(Section& section, const std::filesystem::path& folder, Collider& collider) {
   auto& body = std::get<MeshBody>(collider.shape);
-  const double scale = section.number("scale", Range{1e-6, 1e6}, 1);
+  const double scale = section.number("scale", allowed_at("collider.scale"), 1);
   body.mesh = read_mesh(section, folder, scale, body.sides);
   collider.frames = read_frames(section, folder, scale, body.sides, body.mesh.get());
   if (!collider.frames) return;

@@ -158,7 +158,7 @@ bool read_surface(Section& cloth, const std::filesystem::path& folder, const Fab
                   const FileKeys& said, Scene& scene) {
   const Eigen::Quaterniond rotation = read_rotation(cloth);
   const auto name = cloth.string("mesh");
-  const double weld = cloth.number("weld", Range::positive(kFar), 0);
+  const double weld = cloth.number("weld", allowed_at("cloth.weld"), 0);
   Polygons surface;
   try {
     if (name) surface = read_obj(folder / *name, weld / said.scale);
@@ -347,7 +347,7 @@ void read_weights(Section& cloth, Scene& scene) {
   for (const Value* entry : cloth.tables("weights")) {
     Section weight(cloth.diagnostics(), *entry, "'weights' in [cloth]");
     weight.need({"vertices", "factor"});
-    const double factor = weight.number("factor", {1e-9, 1e9}, 1);
+    const double factor = weight.number("factor", allowed_at("cloth.weights"), 1);
     for (const int vertex : read_vertices(weight, "vertices", scene.mesh))
       scene.mesh.mass[to_index(vertex)] *= factor;
     weight.finish();
@@ -360,7 +360,7 @@ void read_placed(Section& cloth, Scene& scene) {
     Section placed(cloth.diagnostics(), *entry, "'placed' in [cloth]");
     placed.need({"vertex", "at"});
     const Value* vertex = placed.find("vertex");
-    const auto target = placed.vec3("at", kSpace);
+    const auto target = placed.vec3("at", allowed_at("cloth.placed"));
     placed.finish();
     if (!vertex || !target) continue;
     const auto vertices = vertices_of(*vertex, placed, "vertex", scene.mesh);

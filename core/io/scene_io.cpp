@@ -99,12 +99,12 @@ Vec3 middle(const MeshBody& body) { return body.center; }
 Collider read_collider(Section& section, const std::filesystem::path& folder) {
   Collider collider;
   section.need({"type"});
-  const std::string type = section.choice("type", {"plane", "ball", "box", "capsule", "mesh"}, "");
-  if (type == "plane") collider.shape = Plane();
-  if (type == "ball") collider.shape = Ball();
-  if (type == "box") collider.shape = Box();
-  if (type == "capsule") collider.shape = Capsule();
-  if (type == "mesh") collider.shape = MeshBody();
+  const std::vector<Shape> shapes = shapes_of_each_type();
+  std::vector<std::string> types;
+  for (const Shape& shape : shapes) types.emplace_back(type_name(shape));
+  const std::string type = section.choice("type", types, "");
+  for (const Shape& shape : shapes)
+    if (type_name(shape) == type) collider.shape = shape;
   if (type.empty())
     section.know();  // without a type all keys are accepted
   else
@@ -139,7 +139,6 @@ void read_colliders(Section& root, const std::filesystem::path& folder, Scene& s
   }
 }
 
-const Range kRelease = Range::positive(1e6);  ///< s
 /// Most release times: each makes a solver of its own.
 constexpr std::size_t kMostReleases = 64;
 
@@ -156,7 +155,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
     section.need({"vertices"});
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);
     group.motion = read_motion(section, "pin_motion", Vec3::Zero());
-    const auto release = section.number("release", kRelease);
+    const auto release = section.number("release", allowed_at("pin_motion.release"));
     section.finish();
     for (const int vertex : group.vertices) {
       const bool pinned = std::binary_search(scene.pins.begin(), scene.pins.end(), vertex);
@@ -179,7 +178,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
 
 /// Release time [s] of pins without their own; empty: they hold.
 std::optional<double> read_release(Section& cloth) {
-  const auto release = cloth.number("release", kRelease);
+  const auto release = cloth.number("release", allowed_at("cloth.release"));
   if (release && !cloth.find("pins"))
     cloth.report("release", "lets go of pins, and this cloth has none");
   return release;
@@ -230,7 +229,8 @@ void read_stiffness(Section& links, Scene& scene) {
   if (!table) return;
   Section stiffness(links.diagnostics(), *table, "[links] stiffness");
   for (const Family family : kFamilies)
-    if (const auto k = stiffness.number(std::string(to_string(family)), Range::positive(1e12)))
+    if (const auto k =
+            stiffness.number(std::string(to_string(family)), allowed_at("links.stiffness")))
       scene.stiffness[static_cast<std::size_t>(family)] = *k;
   stiffness.finish();
 }
@@ -268,7 +268,7 @@ void judge_fabric(Section& root) {
 Bending read_bending(Section& section, const Fabric* fabric) {
   Bending bending;
   if (!fabric) section.need({"stiffness"});
-  const Range range{1e-12, 1e6};
+  const Range& range = allowed_at("bending.stiffness");
   const Value* value = section.find("stiffness");
   if (value && value->is_table()) {
     Section both(section.diagnostics(), *value, "'stiffness' in [bending]");

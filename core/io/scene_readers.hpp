@@ -14,6 +14,9 @@
 
 namespace taut {
 
+/// The allowed numbers of a key. Precondition: the key exists.
+inline const Range& allowed_at(std::string_view path) { return find_scene_key(path)->range; }
+
 /// Reads a value of the key's kind. If it is absent or wrong, the value keeps its content.
 void read_value(Section&, const SceneKey&, double&);
 void read_value(Section&, const SceneKey&, Vec3&);

@@ -1,6 +1,7 @@
 #include "core/model/collider.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/model/body_frames.hpp"
 #include "core/model/deforming_body.hpp"
@@ -69,6 +70,13 @@ std::string_view type_name(const Shape& shape) {
                              [](const Capsule&) { return std::string_view("capsule"); },
                              [](const MeshBody&) { return std::string_view("mesh"); }},
                     shape);
+}
+
+std::vector<Shape> shapes_of_each_type() {
+  return []<std::size_t... k>(std::index_sequence<k...>) {
+    return std::vector<Shape>{std::variant_alternative_t<k, Shape>()...};
+  }
+  (std::make_index_sequence<std::variant_size_v<Shape>>());
 }
 
 Vec3 Capsule::nearest_on_axis(const Vec3& p) const {

@@ -54,6 +54,8 @@ struct MeshBody {
 
 using Shape = std::variant<Plane, Ball, Box, Capsule, MeshBody>;
 std::string_view type_name(const Shape&);
+/// One of each type, at its defaults.
+std::vector<Shape> shapes_of_each_type();
 
 /// A prescribed rigid motion, known in advance and never influenced by the cloth. The displacement
 /// is velocity * t plus the path, which is linear between its keys and constant before the first

@@ -43,12 +43,11 @@ class Bytes {
   void add(const Link& l) { add_each(l.a, l.b, l.rest, l.family); }
   void add(const Grid& g) { add_each(g.nu, g.nv); }
   void add(const Motion::Key& k) { add_each(k.t, k.displacement); }
-  void add(const Motion& m) {
-    add("collider", m);
-    add(m.path);
-  }
   void add(const Release& r) { add_each(r.step, r.vertices); }
-  void add(const PinMotion& m) { add_each(m.vertices, m.motion); }
+  void add(const PinMotion& m) {
+    add(m.vertices);
+    add_motion("pin_motion", m.motion);
+  }
   void add(const Collider& c) {
     add(c.shape.index());
     std::visit([&](const auto& shape) { add("collider", shape); }, c.shape);
@@ -59,7 +58,7 @@ class Bytes {
       add(body->mesh->vertices());
       add(body->mesh->triangles());
     }
-    add(c.motion);
+    add_motion("collider", c.motion);
     add("collider", c);
     if (c.frames) add_later(kFramesKey, [&](Bytes& b) { b.add(*c.frames); });
   }
@@ -82,11 +81,15 @@ class Bytes {
     add(value.has_value());
     if (value) add(*value);
   }
+  void add_motion(std::string_view section, const Motion& m) {
+    add(section, m);
+    add(m.path);
+  }
   /// Adds the keys of the section that are members of the part.
   template <class Part>
   void add(std::string_view section, const Part& part) {
     const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
-      if (!key.added_later) return add(value);
+      if (!key.added_later()) return add(value);
       if (key.counts(value, initial)) add_later(key.path, [&](Bytes& b) { b.add(value); });
     };
     each_key(section, part, visit, keys_);
@@ -195,7 +198,8 @@ Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
   bytes.add("cloth", s);
   bytes.add(s.dt);
   bytes.add(s.steps);
-  // A scene without stiffness keeps the bytes that it had before stiffness existed.
+  // Stiffness is older than add_later(). A scene without it keeps the bytes that it had before
+  // stiffness existed.
   if (s.stiffness != kRigid)
     for (const double k : s.stiffness) bytes.add(k);
   if (s.bending) bytes.add(s.bending);

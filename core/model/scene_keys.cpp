@@ -41,6 +41,11 @@ SceneKey other(std::string_view path, std::string_view type, std::string_view un
                std::string_view help) {
   return {path, {}, type, unit, {}, "", example, help, limits, fallback};
 }
+/// Numbers that code of its own reads, within the range.
+SceneKey other(std::string_view path, std::string_view type, std::string_view unit, Range range,
+               std::string_view fallback, std::string_view example, std::string_view help) {
+  return {path, {}, type, unit, range, "", example, help, "", fallback};
+}
 
 // Scenes are hashed in the order of the table: add a new key at the end of its section, with
 // came_later().
@@ -78,12 +83,12 @@ const SceneKey kKeys[] = {
     number("cloth.stretch", &FileKeys::stretch, "1", Range{1e-3, 1e3}, "0.5",
            "the start as a multiple of the shape about the first vertex, pins too, after `tilt`; "
            "rest lengths stay"),
-    other("cloth.weights", "tables", "1", "1e-9 to 1e9", "none",
+    other("cloth.weights", "tables", "1", Range{1e-9, 1e9}, "none",
           "[{ vertices = [\"bottom\"], factor = 1000 }]",
           "masses of these vertices as a multiple of what the lumping gives"),
     other("cloth.pins", "vertices", "", "", "none", "[\"top\"]",
           "never integrated: they stay, or follow `pin_motion`"),
-    other("cloth.placed", "tables", "m", "within 1e6", "none",
+    other("cloth.placed", "tables", "m", Range::within(kFar), "none",
           "[{ vertex = [31, 0], at = [0.99, 0, 0] }]",
           "vertices that start elsewhere, after `tilt` and `stretch`"),
     vector("cloth.velocity", &FileKeys::velocity, "m/s", Range::within(kFar), "[1, 0, 0]",
@@ -96,10 +101,10 @@ const SceneKey kKeys[] = {
            "a cloth that starts inside a collider is refused, or moved to its surface at the "
            "thickness; pins may be inside"),
     other(
-        "cloth.weld", "number", "m", "above 0, at most 1e6", "none", "1e-4",
+        "cloth.weld", "number", "m", Range::positive(kFar), "none", "1e-4",
         "joins vertices that are at most this far apart, each to the first that stays: seams that "
         "a program split; what a scene numbers stays the file's; mesh"),
-    other("cloth.release", "number", "s", "above 0, at most 1e6", "never", "2.0",
+    other("cloth.release", "number", "s", Range::positive(1e6), "never", "2.0",
           "pins let go at the first step boundary at or after this time, free with the velocity "
           "that they had; those of a `pin_motion` that has a `release` of its own at that. At or "
           "after the end of the run they hold: a note says so"),
@@ -109,11 +114,11 @@ const SceneKey kKeys[] = {
     flag("links.shear", &FileKeys::shear, "false", "along both diagonals of every quad"),
     flag("links.bend", &FileKeys::bend, "true",
          "between every second vertex; across each inner edge of a mesh"),
-    other("links.stiffness", "table", "N/m", "above 0, at most 1e12", "{}", "{ structural = 5000 }",
+    other("links.stiffness", "table", "N/m", Range::positive(1e12), "{}", "{ structural = 5000 }",
           "by family; one that is not named is rigid. `jakobsen` and `bullet`, whose links are "
           "rigid, refuse such a scene unless told otherwise: `--set 'links.stiffness={}'`"),
 
-    other("bending.stiffness", "number or table", "N m", "1e-12 to 1e6", "needed",
+    other("bending.stiffness", "number or table", "N m", Range{1e-12, 1e6}, "needed",
           "{ warp = 1.2e-5, weft = 8e-6 }",
           "moment per width and curvature; one number, or of a strip along the warp and one across "
           "it; one at an angle a to the warp, free to twist, 1/(cos^2 a/sqrt(warp) + sin^2 "
@@ -161,13 +166,14 @@ const SceneKey kKeys[] = {
         .need(),
     other("collider.file", "string", "", "", "needed for a mesh", "\"box.obj\"",
           "mesh: OBJ file, relative to the scene; vertices that coincide are one"),
-    other("collider.scale", "number", "1", "1e-6 to 1e6", "1", "0.01",
+    other("collider.scale", "number", "1", Range{1e-6, 1e6}, "1", "0.01",
           "mesh: metres per unit of its file"),
     other(kFramesKey, "string", "", "", "none: it is rigid", "\"walker.npy\"",
           "mesh: NumPy array [frames, vertices, 3], relative to the scene, in the file's unit and "
           "frame: where the file's vertices are; the first frame is at t = 0, between two they go "
-          "straight, after the last they rest; velocity, spin and path move the whole"),
-    other("collider.fps", "number", "1/s", "above 0, at most 1e6", "needed with `frames`", "30",
+          "straight, after the last they rest; velocity, spin and path move the whole")
+        .came_later(4),
+    other("collider.fps", "number", "1/s", Range::positive(1e6), "needed with `frames`", "30",
           "mesh: frames in a second"),
     vector("collider.center", &MeshBody::center, "m", Range::within(kFar), "[0, -1, 0]",
            "mesh: where its file's origin is"),
@@ -198,7 +204,7 @@ const SceneKey kKeys[] = {
     other("pin_motion.path", "tables", "s, m", "t growing", "none",
           "[{ t = 0, displacement = [0, 0, 0] }, { t = 1, displacement = [0, 0, 1] }]",
           "as of a collider"),
-    other("pin_motion.release", "number", "s", "above 0, at most 1e6", "the cloth's", "2.0",
+    other("pin_motion.release", "number", "s", Range::positive(1e6), "the cloth's", "2.0",
           "when these pins let go, moved or not: as `cloth.release`"),
 
     other("seam.a", "vertices", "", "", "needed", "[3, 4, 5]",

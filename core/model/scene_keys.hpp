@@ -20,8 +20,8 @@ namespace taut {
 /// Largest coordinate, size or displacement in a scene [m].
 inline constexpr double kFar = 1e6;
 
-/// Key of a body's frames, added after results were stored. It is in no SceneKey::Member, but
-/// content() includes it.
+/// Key of a body's frames. It is in no SceneKey::Member; content() includes it as a key that was
+/// added later.
 inline constexpr std::string_view kFramesKey = "collider.frames";
 
 /// Allowed range of a number. Non-finite numbers are never allowed.
@@ -84,18 +84,20 @@ struct SceneKey {
   std::string_view fallback = {};  ///< the default in words, if it is not a constant
   std::string_view effect = {};    ///< name of the effect that `taut require` removes
   bool needed = false;
-  /// Added after results were stored. The digest includes the key only where it differs from its
-  /// default, so that scenes without it keep their digests.
-  bool added_later = false;
+  /// Version of the scene file for external programs that introduced the key. A key of version 2
+  /// or later was added after results were stored: the digest includes it only where it differs
+  /// from its default, so that scenes without it keep their digests.
+  int since = 1;
 
+  bool added_later() const { return since > 1; }
   /// Whether the digest includes the key at this value.
   template <class Value>
   bool counts(const Value& value, const Value& initial) const {
-    return !added_later || value != initial;
+    return !added_later() || value != initial;
   }
 
   SceneKey need() const { return with(&SceneKey::needed, true); }
-  SceneKey came_later() const { return with(&SceneKey::added_later, true); }
+  SceneKey came_later(int version = 2) const { return with(&SceneKey::since, version); }
   SceneKey limited(std::string_view words) const { return with(&SceneKey::limits, words); }
   SceneKey otherwise(std::string_view words) const { return with(&SceneKey::fallback, words); }
   SceneKey left_out_as(std::string_view name) const { return with(&SceneKey::effect, name); }

@@ -6,13 +6,18 @@
 #include <utility>
 
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 
 namespace taut {
 
-std::string_view to_string(Cell::State state) {
-  constexpr std::string_view kNames[] = {"value", "none", "refused", "not_run", "hardly_moves"};
-  return kNames[static_cast<std::size_t>(state)];
+namespace {
+constexpr Names<Cell::State::hardly_moves> kStates{"value", "none", "refused", "not_run",
+                                                   "hardly_moves"};
 }
+
+std::string_view to_string(Cell::State state) { return kStates[state]; }
+
+std::optional<Cell::State> cell_state(std::string_view name) { return kStates.find(name); }
 
 Cell::Cell(double number) {
   if (!std::isfinite(number)) return;

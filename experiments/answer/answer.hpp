@@ -61,6 +61,7 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 std::string_view to_string(Cell::State);
+std::optional<Cell::State> cell_state(std::string_view);  ///< nothing: it is none of them
 
 /// Description of a column: its name in data ("cpu"), its heading and its unit.
 struct Column {

@@ -80,9 +80,7 @@ Cell read_cell(const JsonReader& json) {
 }
 
 Cell::State read_state(const JsonReader& json) {
-  for (const auto state : {Cell::State::value, Cell::State::none, Cell::State::refused,
-                           Cell::State::not_run, Cell::State::hardly_moves})
-    if (to_string(state) == json.text()) return state;
+  if (const auto state = cell_state(json.text())) return *state;
   json.fail("unknown state '" + json.text() + "'");
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/answer/number.hpp"
@@ -280,19 +281,17 @@ std::vector<MovedValue> roll_up(const Comparison& comparison,
 }
 
 namespace {
-constexpr std::string_view kKindNames[] = {"value moved",      "status changed", "case missing",
-                                           "case new",         "case renamed",   "scene changed",
-                                           "solver missing",   "solver new",     "value missing",
-                                           "value unrecorded", "value new"};
+constexpr Names<Change::Kind::value_new> kKinds{
+    "value moved",   "status changed",   "case missing",   "case new",
+    "case renamed",  "scene changed",    "solver missing", "solver new",
+    "value missing", "value unrecorded", "value new"};
 }
 
-std::string_view to_string(Change::Kind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
+std::string_view to_string(Change::Kind kind) { return kKinds[kind]; }
 
 Change::Kind change_kind(std::string_view name) {
-  const auto at = std::ranges::find(kKindNames, name);
-  if (at == std::end(kKindNames))
-    throw InputError("unknown kind of change '" + std::string(name) + "'");
-  return static_cast<Change::Kind>(at - std::begin(kKindNames));
+  if (const auto kind = kKinds.find(name)) return *kind;
+  throw InputError("unknown kind of change '" + std::string(name) + "'");
 }
 
 }  // namespace taut

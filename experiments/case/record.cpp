@@ -1,28 +1,24 @@
 #include "experiments/case/record.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 
 namespace taut {
 
 namespace {
-constexpr std::array<std::string_view, 11> kNames{
+constexpr Names<Status::Kind::interrupted> kNames{
     "ok",  "exploded", "unsettled", "extreme", "unsupported", "timeout",
     "oom", "crash",    "protocol",  "error",   "interrupted"};
 }
 
-std::string_view to_string(Status::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+std::string_view to_string(Status::Kind kind) { return kNames[kind]; }
 
-bool is_status(std::string_view name) {
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
+bool is_status(std::string_view name) { return kNames.find(name).has_value(); }
 
 Status::Kind status_kind(std::string_view name) {
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (kNames[i] == name) return static_cast<Status::Kind>(i);
+  if (const auto kind = kNames.find(name)) return *kind;
   throw InputError("unknown status '" + std::string(name) + "'");
 }
 

@@ -7,6 +7,7 @@
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_columns.hpp"
+#include "experiments/case/record_parts.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
@@ -44,6 +45,18 @@ std::string csv_line(const Values& values) {
 }
 
 }  // namespace
+
+void to_json(Json& json, const PassCost& pass) { json = json_of(pass, kPassCost); }
+
+void to_json(Json& json, const SceneSetting& setting) { json = setting.text(); }
+
+void to_json(Json& json, const ResolvedSetting& s) {
+  json = {{"name", s.name}, {"text", s.text}};
+  if (!s.token.empty()) json["token"] = s.token;
+  if (!std::isnan(s.number)) json["number"] = s.number;
+}
+
+void to_json(Json& json, const Status::Kind& kind) { json = std::string(to_string(kind)); }
 
 void read_into(const JsonReader& j, Status::Kind& kind) {
   if (!is_status(j.text())) j.fail("unknown status '" + j.text() + "'");

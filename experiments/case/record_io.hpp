@@ -19,35 +19,6 @@ std::string describe(const Status&);
 /// Version of every JSON text below; readers refuse others.
 inline constexpr int kRecordSchema = 2;
 
-/// The JSON library finds these by their names.
-template <class Json>
-void to_json(Json& json, const PassCost& p) {
-  json = {{"pass", p.pass},
-          {"items", p.items},
-          {"repeats", p.repeats},
-          {"bytes", p.bytes},
-          {"projections", p.projections}};
-}
-template <class Json>
-void to_json(Json& json, const SceneSetting& setting) {
-  json = setting.text();
-}
-template <class Json>
-void to_json(Json& json, const ResolvedSetting& s) {
-  json = {{"name", s.name}, {"text", s.text}};
-  if (!s.token.empty()) json["token"] = s.token;
-  if (s.number == s.number) json["number"] = s.number;
-}
-template <class Json>
-void to_json(Json& json, const Status::Kind& kind) {
-  json = std::string(to_string(kind));
-}
-// These throw InputError.
-void read_into(const JsonReader&, Status::Kind&);
-void read_into(const JsonReader&, std::vector<PassCost>&);
-void read_into(const JsonReader&, SceneSettings&);
-void read_into(const JsonReader&, ResolvedSettings&);
-
 /// One JSON object; doubles in shortest exact form, NaN as null. indent < 0: one line.
 std::string to_json(const Record&, int indent = -1);
 /// Throws InputError that names `where` (a file) if the text is not a record of this schema.

@@ -5,6 +5,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
+#include "core/model/names.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/text.hpp"
 
@@ -288,8 +289,8 @@ void physics(Prober& probe) {
 }  // namespace
 
 std::string_view to_string(Check::Verdict verdict) {
-  constexpr std::string_view kWords[] = {"passed", "FAILED", "skipped"};
-  return kWords[static_cast<int>(verdict)];
+  constexpr Names<Check::Verdict::skipped> kWords{"passed", "FAILED", "skipped"};
+  return kWords[verdict];
 }
 
 std::vector<Check> quick_probe(const Command& command, const Json& params) {

@@ -14,6 +14,7 @@
 #include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
 #include "core/model/triangle_mesh.hpp"
+#include "experiments/system/distinct.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::external {
@@ -46,9 +47,9 @@ Json json_of(std::string_view section, const Part& part) {
   return all;
 }
 
-Json json_of(const Motion& motion) {
+Json motion_of(std::string_view section, const Motion& motion) {
   if (motion.at_rest()) return nullptr;
-  Json all = json_of("collider", motion), path = Json::array();
+  Json all = json_of(section, motion), path = Json::array();
   for (const Motion::Key& key : motion.path)
     path.push_back({{"t", key.t}, {"displacement", json_of(key.displacement)}});
   all["path"] = path;
@@ -74,12 +75,12 @@ Json json_of(const Collider& collider) {
     one["fps"] = collider.frames->fps;
   }
   one.update(json_of("collider", collider));
-  one["motion"] = json_of(collider.motion);
+  one["motion"] = motion_of("collider", collider.motion);
   return one;
 }
 
-/// Versions of the protocol and of the scene file. Each includes the ones before it; beyond() names
-/// what each adds.
+/// Versions of the protocol and of the scene file. Each includes the ones before it; later_parts()
+/// names what each adds.
 constexpr std::string_view kProtocols[] = {"taut-solver/1", "taut-solver/2", "taut-solver/3",
                                            "taut-solver/4"};
 constexpr std::string_view kFormats[] = {"taut-scene/1", "taut-scene/2", "taut-scene/3",
@@ -188,28 +189,39 @@ Json stiffness(const Scene& scene) {
   return all;
 }
 
+/// What of a scene the first version did not have, a few words each.
+struct Later {
+  int since;  ///< the version with which it came
+  std::string words;
+};
+
+template <class T>
+bool is_there(const Scene& scene) {
+  return std::ranges::any_of(scene.colliders,
+                             [](const Collider& c) { return std::holds_alternative<T>(c.shape); });
+}
+
+/// By version.
+std::vector<Later> later_parts(const Scene& scene) {
+  std::vector<Later> all;
+  for (std::string& links : elastic_links(scene)) all.push_back({2, std::move(links)});
+  if (is_there<Capsule>(scene)) all.push_back({2, "a capsule"});
+  if (scene.bending) all.push_back({2, "bending stiffness"});
+  if (!scene.releases.empty()) all.push_back({2, "pins that let go"});
+  if (std::ranges::any_of(scene.links, is_seam)) all.push_back({2, "a seam"});
+  if (is_there<MeshBody>(scene)) all.push_back({3, "a body of triangles"});
+  for (const std::string& key : distinct(later_keys(scene)))
+    all.push_back({find_scene_key(key)->since, key == kFramesKey ? "a body that deforms" : key});
+  std::ranges::stable_sort(all, {}, &Later::since);
+  return all;
+}
+
 }  // namespace
 
 std::vector<std::string> beyond(int version, const Scene& scene) {
-  const auto is_there = []<class T>(const Scene& s, std::type_identity<T>) {
-    return std::ranges::any_of(
-        s.colliders, [](const Collider& c) { return std::holds_alternative<T>(c.shape); });
-  };
   std::vector<std::string> all;
-  if (version < 2) {
-    all = elastic_links(scene);
-    if (is_there(scene, std::type_identity<Capsule>())) all.emplace_back("a capsule");
-    if (scene.bending) all.emplace_back("bending stiffness");
-    if (!scene.releases.empty()) all.emplace_back("pins that let go");
-    if (std::ranges::any_of(scene.links, is_seam)) all.emplace_back("a seam");
-    for (std::string& key : later_keys(scene))
-      if (key != kFramesKey) all.push_back(std::move(key));
-  }
-  if (version < 3 && is_there(scene, std::type_identity<MeshBody>()))
-    all.emplace_back("a body of triangles");
-  const auto deforms = [](const Collider& c) { return c.frames != nullptr; };
-  if (version < 4 && std::ranges::any_of(scene.colliders, deforms))
-    all.emplace_back("a body that deforms");
+  for (Later& one : later_parts(scene))
+    if (one.since > version) all.push_back(std::move(one.words));
   return all;
 }
 
@@ -218,10 +230,13 @@ std::string scene_file(const Scene& scene) {
   for (const Link& link : scene.links)
     links.push_back({link.a, link.b, link.rest, to_string(link.family)});
   for (const PinMotion& group : scene.pin_motions)
-    motions.push_back({{"vertices", group.vertices}, {"motion", json_of(group.motion)}});
+    motions.push_back(
+        {{"vertices", group.vertices}, {"motion", motion_of("pin_motion", group.motion)}});
   for (const Collider& collider : scene.colliders) colliders.push_back(json_of(collider));
   const auto& grid = scene.mesh.grid;
-  Json file{{"format", kFormats[0]},
+  const std::vector<Later> later = later_parts(scene);
+  const int version = later.empty() ? 1 : later.back().since;
+  Json file{{"format", kFormats[version - 1]},
             {"name", scene.name},
             {"vertices", scene.mesh.size()},
             {"grid", grid ? Json{grid->nu, grid->nv} : Json()},
@@ -242,8 +257,6 @@ std::string scene_file(const Scene& scene) {
              scene.self_collision ? json_of("self_collision", *scene.self_collision) : Json()}};
   file.update(json_of("forces", scene));
   file.update(json_of("cloth", scene));
-  for (int version : {1, 2, 3})
-    if (!beyond(version, scene).empty()) file["format"] = kFormats[version];
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
   if (!scene.releases.empty()) {
     Json& releases = file["releases"] = Json::array();

@@ -54,9 +54,8 @@ double take_steps(Connection&, double t, double dt, int count);
 bool agrees(double word, double clock, double empty);
 void store_state(Connection&, int vertices, State&);
 
-/// Features of a scene that came after that version of the protocol, in a few words each. Version 2
-/// added elastic links, capsules, bending and later keys; version 3 bodies of triangles; version 4
-/// bodies that deform. A program that speaks an earlier version is not asked to run such a scene.
+/// Features of a scene that came after that version of the protocol, in a few words each. A program
+/// that speaks an earlier version is not asked to run such a scene.
 std::vector<std::string> beyond(int version, const Scene&);
 
 /// The scene as a program gets it: JSON with everything resolved, in SI units, each double in its

@@ -1,4 +1,8 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "core/model/index.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -29,6 +33,9 @@ struct Strain {
   double mean_square() const {
     return count > 0 ? square / static_cast<double>(count) : Summary::kNone;
   }
+  double rms() const { return std::sqrt(mean_square()); }
+  double max() const { return count > 0 ? tension : Summary::kNone; }
+  double compression() const { return count > 0 ? shortening : Summary::kNone; }
 };
 
 /// A group of links over the whole run.
@@ -55,7 +62,132 @@ struct Group {
   }
   double rms() const { return std::sqrt(square.mean()); }
   double rms_peak() const { return std::sqrt(square.peak()); }
+  double max() const { return tension.max(); }
+  double peak() const { return tension.peak(); }
+  double percentile() const { return p95.mean(); }
+  double compression() const { return shortening.max(); }
+  double compression_peak() const { return shortening.peak(); }
 };
+
+constexpr ValueSpec::Floor kRounding{kStrainFloor, "rounding of the file of positions"};
+
+/// A value of some links: what it is of a run and, if it is in series, of a moment.
+struct StretchValue {
+  ValueSpec spec;
+  std::optional<Family> family;  ///< nothing: structural and shear
+  double (Group::*of_run)() const;
+  double (Strain::*of_moment)() const = nullptr;
+};
+constexpr StretchValue kStretchValues[] = {
+    {{.name = "stretch.rms",
+      .unit = kErrorShare,
+      .help =
+          "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
+      .in_series = true,
+      .role = Role::error,
+      .negligible = 1e-3,
+      .shown_over_time = true,
+      .floor = kRounding,
+      .falls_with_sweeps = true},
+     {},
+     &Group::rms,
+     &Strain::rms},
+    {{.name = "stretch.max",
+      .unit = kErrorShare,
+      .help = "largest stretch of a structural or shear link in the last second",
+      .in_series = true,
+      .kept = true,
+      .floor = kRounding,
+      .falls_with_sweeps = true},
+     {},
+     &Group::max,
+     &Strain::max},
+    {{.name = "stretch.p95",
+      .unit = kErrorShare,
+      .help = "95th percentile of |strain| of those links, mean of ten moments of the last second",
+      .floor = kRounding,
+      .falls_with_sweeps = true},
+     {},
+     &Group::percentile},
+    {{.name = "stretch.peak",
+      .unit = kErrorShare,
+      .help = "largest stretch of a structural or shear link over the run",
+      .window = Window::run,
+      .floor = kRounding,
+      .falls_with_sweeps = true},
+     {},
+     &Group::peak},
+    {{.name = kRmsStretchPeak,
+      .unit = kErrorShare,
+      .help = "strain of the structural and shear links, RMS over links, at the moment of the run "
+              "at which it is largest",
+      .window = Window::run,
+      .title = "largest RMS stretch of the run",
+      .floor = kRounding,
+      .falls_with_sweeps = true},
+     {},
+     &Group::rms_peak},
+    {{"compression.max", kErrorShare, "largest shortening of those links in the last second", true},
+     {},
+     &Group::compression,
+     &Strain::compression},
+    {{"compression.peak", kErrorShare, "largest shortening of those links over the run", false,
+      Window::run},
+     {},
+     &Group::compression_peak},
+    {{"structural.rms", kErrorShare, "strain of the structural links, RMS over the last second",
+      true},
+     Family::structural,
+     &Group::rms,
+     &Strain::rms},
+    {{"structural.max", kErrorShare, "their largest stretch in the last second", true},
+     Family::structural,
+     &Group::max,
+     &Strain::max},
+    {{"structural.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+     Family::structural,
+     &Group::percentile},
+    {{"structural.compression", kErrorShare, "their largest shortening in the last second"},
+     Family::structural,
+     &Group::compression},
+    {{"shear.rms", kErrorShare, "strain of the shear links, RMS over the last second", true},
+     Family::shear,
+     &Group::rms,
+     &Strain::rms},
+    {{"shear.max", kErrorShare, "their largest stretch in the last second", true},
+     Family::shear,
+     &Group::max,
+     &Strain::max},
+    {{"shear.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+     Family::shear,
+     &Group::percentile},
+    {{"shear.compression", kErrorShare, "their largest shortening in the last second"},
+     Family::shear,
+     &Group::compression},
+    {{"bend.rms", kShare, "strain of the bend links, RMS over the last second", true},
+     Family::bend,
+     &Group::rms,
+     &Strain::rms},
+    {{"bend.max", kShare, "their largest stretch in the last second", true},
+     Family::bend,
+     &Group::max,
+     &Strain::max},
+    {{"bend.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
+     Family::bend,
+     &Group::percentile},
+    {{"bend.compression", kShare, "their largest shortening in the last second"},
+     Family::bend,
+     &Group::compression},
+};
+
+constexpr auto kSpecs = [] {
+  std::array<ValueSpec, std::size(kStretchValues)> all{};
+  std::ranges::transform(kStretchValues, all.begin(), &StretchValue::spec);
+  return all;
+}();
+static_assert(std::ranges::all_of(kStretchValues, [](const StretchValue& value) {
+  return value.spec.in_series == (value.of_moment != nullptr);
+}));
 
 /// The links whose strain a solver can change: no seams, and no links between two pins.
 std::vector<Link> movable_links(const Scene& scene) {
@@ -67,68 +199,12 @@ std::vector<Link> movable_links(const Scene& scene) {
 }
 
 class Stretch final : public Metric {
-  static constexpr ValueSpec::Floor kRounding{kStrainFloor, "rounding of the file of positions"};
-
  public:
-  static constexpr ValueSpec kValues[] = {
-      {.name = "stretch.rms",
-       .unit = kErrorShare,
-       .help =
-           "strain (d - r)/r of the structural and shear links, RMS over links and the last second",
-       .in_series = true,
-       .role = Role::error,
-       .negligible = 1e-3,
-       .shown_over_time = true,
-       .floor = kRounding,
-       .falls_with_sweeps = true},
-      {.name = "stretch.max",
-       .unit = kErrorShare,
-       .help = "largest stretch of a structural or shear link in the last second",
-       .in_series = true,
-       .kept = true,
-       .floor = kRounding,
-       .falls_with_sweeps = true},
-      {.name = "stretch.p95",
-       .unit = kErrorShare,
-       .help = "95th percentile of |strain| of those links, mean of ten moments of the last second",
-       .floor = kRounding,
-       .falls_with_sweeps = true},
-      {.name = "stretch.peak",
-       .unit = kErrorShare,
-       .help = "largest stretch of a structural or shear link over the run",
-       .window = Window::run,
-       .floor = kRounding,
-       .falls_with_sweeps = true},
-      {.name = kRmsStretchPeak,
-       .unit = kErrorShare,
-       .help = "strain of the structural and shear links, RMS over links, at the moment of the run "
-               "at which it is largest",
-       .window = Window::run,
-       .title = "largest RMS stretch of the run",
-       .floor = kRounding,
-       .falls_with_sweeps = true},
-      {"compression.max", kErrorShare, "largest shortening of those links in the last second",
-       true},
-      {"compression.peak", kErrorShare, "largest shortening of those links over the run", false,
-       Window::run},
-      {"structural.rms", kErrorShare, "strain of the structural links, RMS over the last second",
-       true},
-      {"structural.max", kErrorShare, "their largest stretch in the last second", true},
-      {"structural.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
-      {"structural.compression", kErrorShare, "their largest shortening in the last second"},
-      {"shear.rms", kErrorShare, "strain of the shear links, RMS over the last second", true},
-      {"shear.max", kErrorShare, "their largest stretch in the last second", true},
-      {"shear.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
-      {"shear.compression", kErrorShare, "their largest shortening in the last second"},
-      {"bend.rms", kShare, "strain of the bend links, RMS over the last second", true},
-      {"bend.max", kShare, "their largest stretch in the last second", true},
-      {"bend.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
-      {"bend.compression", kShare, "their largest shortening in the last second"},
-  };
+  static constexpr auto kValues = kSpecs;
   static bool measures(const Scene& scene) { return !movable_links(scene).empty(); }
   explicit Stretch(const Scene& scene) : links_(movable_links(scene)), end_(scene) {
-    for (const Link& link : links_) family(link).exists = true;
-    in_plane_.exists = families_[0].exists || families_[1].exists;
+    for (const Link& link : links_) family(link.family).exists = true;
+    in_plane_.exists = family(Family::structural).exists || family(Family::shear).exists;
   }
 
   void observe(const Snapshot& m) override {
@@ -136,9 +212,9 @@ class Stretch final : public Metric {
     std::array<Strain, kFamilies.size()> strains;
     for (const Link& link : links_) {
       const double e = strain(link, m.state);
-      strains[index(link)].add(e);
+      strains[index(link.family)].add(e);
       if (!sampled) continue;
-      family(link).magnitudes.push_back(std::abs(e));
+      family(link.family).magnitudes.push_back(std::abs(e));
       if (link.family != Family::bend) in_plane_.magnitudes.push_back(std::abs(e));
     }
     for (std::size_t f = 0; f < strains.size(); ++f) families_[f].add(m.step, at_end, strains[f]);
@@ -149,30 +225,26 @@ class Stretch final : public Metric {
   }
 
   std::vector<double> finish() override {
-    const Group& s = in_plane_;
-    std::vector<double> values{
-        s.rms(),      s.tension.max(),    s.p95.mean(),       s.tension.peak(),
-        s.rms_peak(), s.shortening.max(), s.shortening.peak()};
-    for (const Group& f : families_)
-      values.insert(values.end(), {f.rms(), f.tension.max(), f.p95.mean(), f.shortening.max()});
+    std::vector<double> values;
+    for (const StretchValue& value : kStretchValues)
+      values.push_back(((value.family ? family(*value.family) : in_plane_).*value.of_run)());
     return values;
   }
 
   std::vector<double> now(const Snapshot& m) const override {
-    constexpr double none = Summary::kNone;
     std::array<Strain, kFamilies.size()> strains;
-    for (const Link& link : links_) strains[index(link)].add(strain(link, m.state));
-    const auto rms = [](const Strain& s) { return std::sqrt(s.mean_square()); };
-    const auto max = [](const Strain& s) { return s.count > 0 ? s.tension : none; };
+    for (const Link& link : links_) strains[index(link.family)].add(strain(link, m.state));
     const Strain all = in_plane(strains);
-    std::vector<double> values{
-        rms(all), max(all), none, none, none, all.count > 0 ? all.shortening : none, none};
-    for (const Strain& s : strains) values.insert(values.end(), {rms(s), max(s), none, none});
+    std::vector<double> values;
+    for (const StretchValue& value : kStretchValues)
+      values.push_back(value.of_moment ? ((value.family ? strains[index(*value.family)] : all).*
+                                          value.of_moment)()
+                                       : Summary::kNone);
     return values;
   }
 
  private:
-  static std::size_t index(const Link& link) { return static_cast<std::size_t>(link.family); }
+  static std::size_t index(Family of) { return static_cast<std::size_t>(of); }
   static double strain(const Link& l, const State& state) {
     const Vec3& a = state.x[to_index(l.a)];
     const Vec3& b = state.x[to_index(l.b)];
@@ -181,11 +253,11 @@ class Stretch final : public Metric {
   /// Strain of structural and shear links. Bend links are left out: they shorten when the cloth
   /// folds, which is no strain of the cloth.
   static Strain in_plane(const std::array<Strain, kFamilies.size()>& strains) {
-    Strain sum = strains[static_cast<std::size_t>(Family::structural)];
-    sum.add(strains[static_cast<std::size_t>(Family::shear)]);
+    Strain sum = strains[index(Family::structural)];
+    sum.add(strains[index(Family::shear)]);
     return sum;
   }
-  Group& family(const Link& link) { return families_[index(link)]; }
+  Group& family(Family of) { return families_[index(of)]; }
 
   std::vector<Link> links_;
   LastSecond end_;

@@ -3,13 +3,18 @@
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/case/record_parts.hpp"
 #include "experiments/results/schema.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
 
+namespace {
+constexpr int kNone = -1;  ///< of a whole number that is not known: NULL in the file
+}
+
 int whole_or_none(const Database::Rows& row, int column) {
-  return row.null(column) ? -1 : static_cast<int>(row.integer(column));
+  return row.null(column) ? kNone : static_cast<int>(row.integer(column));
 }
 
 namespace {
@@ -21,7 +26,7 @@ Database::Value kept(const std::string& text) { return text; }
 Database::Value kept(double number) { return number; }
 Database::Value kept(std::size_t count) { return static_cast<std::int64_t>(count); }
 Database::Value kept(int number) {
-  if (number < 0) return nullptr;
+  if (number == kNone) return nullptr;
   return std::int64_t{number};
 }
 Database::Value kept(Status::Kind kind) { return std::string(to_string(kind)); }

@@ -70,8 +70,8 @@ std::vector<Limit> default_limits(const Scene& scene) {
     for (const ValueSpec& value : metric->values) {
       const bool depth = value.role == Role::vertex_depth;
       if (depth || value.role == Role::passages || (value.kept && is_count(value.unit)))
-        all.push_back({std::string(value.name), depth ? 0.001 * extent(scene) : 0});
-      if (value.name == kMotionError) all.push_back({std::string(value.name), 0.25});
+        all.push_back({std::string(value.name), depth ? kMostDepth * extent(scene) : 0});
+      if (value.name == kMotionError) all.push_back({std::string(value.name), kMostMotionError});
       if (value.role == Role::error) all.push_back({std::string(value.name), kMostStretch});
     }
   }

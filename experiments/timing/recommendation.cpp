@@ -5,6 +5,8 @@
 #include <numeric>
 #include <set>
 
+#include "experiments/timing/cheapest.hpp"
+
 namespace taut {
 
 namespace {
@@ -71,31 +73,29 @@ std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Ta
 
 Recommendation recommend(const SceneBench& bench, const Target& target, const std::string& metric,
                          double tolerance) {
-  const std::vector<Candidate> candidates = bench.candidates(metric);
-  const std::vector<std::size_t> order = ranking(candidates, target);
+  const JudgedScene scene(bench, metric);
+  const std::vector<std::size_t> order = ranking(scene.candidates, target);
   Recommendation recommendation{.target = target, .tolerance = tolerance};
   for (const std::string& solver : solvers_of(bench))
-    recommendation.solvers.push_back({solver, best_for(target, candidates, solver), {}});
+    recommendation.solvers.push_back({solver, scene.best(target, solver), {}});
   if (order.empty()) return recommendation;
-  recommendation.best = order.front();
+  const std::size_t best = order.front();
+  recommendation.best = best;
   for (SolverRecommendation& solver : recommendation.solvers)
-    if (solver.at) solver.times = bench.ratio(*solver.at, *recommendation.best);
+    if (solver.at) solver.times = bench.ratio(*solver.at, best);
   const auto other = std::find_if(order.begin() + 1, order.end(), [&](std::size_t i) {
-    return candidates[i].solver != candidates[*recommendation.best].solver;
+    return scene.candidates[i].solver != scene.candidates[best].solver;
   });
-  if (other != order.end())
-    recommendation.runner_up = *other;
-  else if (order.size() > 1)
-    recommendation.runner_up = order[1];
-  if (recommendation.runner_up)
-    recommendation.ratio = bench.ratio(*recommendation.runner_up, *recommendation.best);
+  if (order.size() > 1) {
+    const Rival rival = scene.beside(other != order.end() ? *other : order[1], best, tolerance);
+    recommendation.runner_up = rival.at;
+    recommendation.ratio = rival.times;
+    if (rival.times) recommendation.certainty = rival.certainty;
+  }
   if (target.budget)
     // Errors repeat to the last bit; what is uncertain is whether the budget holds.
-    recommendation.certainty = candidates[*recommendation.best].cost.high <= *target.budget
-                                   ? Certainty::clear
-                                   : Certainty::likely;
-  else if (recommendation.ratio)
-    recommendation.certainty = judge(*recommendation.ratio, bench.control, tolerance);
+    recommendation.certainty =
+        scene.candidates[best].cost.high <= *target.budget ? Certainty::clear : Certainty::likely;
   return recommendation;
 }
 

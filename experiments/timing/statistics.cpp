@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "core/model/names.hpp"
+
 namespace taut {
 
 namespace {
@@ -58,22 +60,9 @@ double spread(const Interval& control) {
 }
 
 std::string_view to_string(Certainty certainty) {
-  constexpr std::string_view kWords[] = {"clear",         "likely",     "too noisy",
-                                         "no difference", "single run", "unopposed"};
-  return kWords[static_cast<std::size_t>(certainty)];
-}
-
-std::string_view meaning(Certainty certainty) {
-  constexpr std::string_view kMeanings[] = {
-      "the whole 95 % interval is further from 1 than 5 % and than identical code differed from "
-      "itself, which was less than 5 %",
-      "the 95 % interval excludes 1, and its middle is further from 1 than 5 % and than identical "
-      "code differed from itself",
-      "identical code differed from itself by more than the difference",
-      "the 95 % interval has 1 in it, or its middle is within 5 % of 1",
-      "computed, not timed: the same build gives the same bits on every run, so there is no spread",
-      "nothing else that was timed reaches it"};
-  return kMeanings[static_cast<std::size_t>(certainty)];
+  constexpr Names<Certainty::unopposed> kWords{"clear",         "likely",     "too noisy",
+                                               "no difference", "single run", "unopposed"};
+  return kWords[certainty];
 }
 
 Certainty judge(const Interval& ratio, const Interval& control, double tolerance) {

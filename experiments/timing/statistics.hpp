@@ -48,8 +48,6 @@ enum class Certainty {
 };
 /// "clear", "too noisy", "no difference", ...
 std::string_view to_string(Certainty);
-/// Meaning of that word, as a phrase.
-std::string_view meaning(Certainty);
 
 /// Certainty of a ratio of costs, given the ratio of identical code to itself: `clear` or `likely`
 /// for a difference beyond the tolerance, whose direction the ratio's middle gives; otherwise

@@ -145,19 +145,18 @@ std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
   const ValueSpec* value = find_value(metric).second;
   const bool of_strain = value && value->role == Role::error;
   for (const BenchedCase& c : cases) {
-    std::string failure = c.timing.failure;
-    if (failure.empty() && !c.stable()) failure = describe(c.record.status);
-    const std::string off = failure.empty() && of_strain ? hardly_moves(c.record) : "";
-    if (failure.empty()) failure = off;
-    const bool refused = failure.empty();
-    if (refused) failure = limits ? beyond(c.record, *limits) : kNobodyAsked;
-    all.push_back({.solver = c.record.solver,
-                   .setting = c.record.spec.solver,
-                   .cost = c.cost(),
-                   .error = std::abs(c.record.value(metric)),
-                   .failure = failure,
-                   .hardly_moves = !off.empty(),
-                   .not_accepted = refused && !failure.empty()});
+    Candidate& one = all.emplace_back(Candidate{.solver = c.record.solver,
+                                                .setting = c.record.spec.solver,
+                                                .cost = c.cost(),
+                                                .error = std::abs(c.record.value(metric)),
+                                                .failure = c.timing.failure});
+    if (one.failure.empty() && !c.stable()) one.failure = describe(c.record.status);
+    if (!one.failure.empty()) continue;
+    one.refusal = Candidate::Refusal::hardly_moves;
+    if (of_strain) one.failure = hardly_moves(c.record);
+    if (!one.failure.empty()) continue;
+    one.refusal = Candidate::Refusal::not_accepted;
+    one.failure = limits ? beyond(c.record, *limits) : kNobodyAsked;
   }
   return all;
 }

@@ -15,14 +15,20 @@ namespace taut {
 
 /// One setting of one solver on one scene, with its cost and error.
 struct Candidate {
+  enum class Refusal {
+    failed,        ///< it did not run to its end, or could not be timed
+    hardly_moves,  ///< its strain is low because the cloth hardly moves
+    not_accepted   ///< it exceeds the limits of its scene
+  };
   std::string solver;   ///< the entry's name
   std::string setting;  ///< "jakobsen:substeps=16,iterations=1"
   Interval cost;        ///< CPU seconds per simulated second
   double error = 0;     ///< value of the chosen metric, >= 0; NaN if it has no meaning here
   std::string failure;  ///< why it is refused, such as "exploded (energy)"; empty if it is not
-  /// Reason for `failure`: its strain is low because the cloth hardly moves.
-  bool hardly_moves = false;
-  bool not_accepted = false;  ///< reason for `failure`: it exceeds the limits of its scene
+  Refusal refusal = Refusal::failed;  ///< the kind of `failure`
+
+  /// Whether it has a cost and an error that do not count.
+  bool is_uncounted() const { return !failure.empty() && refusal != Refusal::failed; }
 };
 
 /// The goal of a search: the cheapest setting within an error, or the most accurate one within a
@@ -85,7 +91,7 @@ struct SceneBench {
   std::optional<std::vector<Limit>> limits = {};
 
   /// The cases in the same order, with their error in the metric's value. Cases beyond the limits
-  /// are refused (Candidate::not_accepted).
+  /// are refused (Candidate::Refusal::not_accepted).
   std::vector<Candidate> candidates(const std::string& metric) const;
   /// Cost per simulated second of case i relative to case j, from their interleaved samples.
   /// Nothing if either failed or they were not timed in turns.

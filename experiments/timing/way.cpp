@@ -2,13 +2,14 @@
 
 #include <cmath>
 
+#include "core/model/names.hpp"
 #include "experiments/answer/number.hpp"
 
 namespace taut {
 
 std::string_view to_string(WayGone::By by) {
-  constexpr std::string_view kNames[] = {"nothing", "reference", "exact steps", "missed"};
-  return kNames[static_cast<std::size_t>(by)];
+  constexpr Names<WayGone::By::missed> kNames{"nothing", "reference", "exact steps", "missed"};
+  return kNames[by];
 }
 
 WayGone way_gone(const Record& r) {

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "core/reference/elastica.hpp"
 #include "core/reference/fit.hpp"
 #include "experiments/truths/truth.hpp"
@@ -97,12 +98,11 @@ TAUT_TRUTH(heavy_elastica, 6, 10,
            "a strip clamped level hangs as B theta'' = -w (L - s) cos(theta): H/W of its end",
            "heavy elastica; the curve measured by Romero et al. 2021 is within 0.1 %") {
   if (!can_run(findings, kImplicit, heavy(4, 1))) return;
-  for (const char* gamma : {"0.1", "1", "10", "100"}) {
-    const double number = std::stod(gamma);
-    const reference::Elastica exact = reference::elastica(number);
+  for (const double gamma : {0.1, 1.0, 10.0, 100.0}) {
+    const reference::Elastica exact = reference::elastica(gamma);
     const double want = exact.drop / exact.reach;
-    const Refined r = refined(exact, [&](int n) { return heavy(n, number); });
-    const std::string at = std::string(" at Gamma = ") + gamma;
+    const Refined r = refined(exact, [&](int n) { return heavy(n, gamma); });
+    const std::string at = " at Gamma = " + as_typed(gamma);
     findings.equal(kImplicit, "H/W" + at + ", 128 segments", "1", r.finest.drop / r.finest.reach,
                    want, 1e-3 * want);
     findings.slope(kImplicit, "order in l of the end's place" + at, r.order, 2, 0.1);
@@ -127,11 +127,10 @@ TAUT_TRUTH(cantilever_test, 6, 11,
 TAUT_TRUTH(end_force, 6, 12, "a weight at the end of a clamped strip: B theta'' = -P cos(theta)",
            "elastica; Sze, Liu, Lo, Finite Elem. Anal. Des. 40 (2004): within 0.1 %") {
   if (!can_run(findings, kImplicit, loaded(4, 1))) return;
-  for (const char* force : {"1", "4", "10"}) {
-    const double number = std::stod(force);
-    const reference::Elastica exact = reference::elastica(0, number);
-    const Refined r = refined(exact, [&](int n) { return loaded(n, number); });
-    const std::string at = std::string(" at P L^2/B = ") + force;
+  for (const double force : {1.0, 4.0, 10.0}) {
+    const reference::Elastica exact = reference::elastica(0, force);
+    const Refined r = refined(exact, [&](int n) { return loaded(n, force); });
+    const std::string at = " at P L^2/B = " + as_typed(force);
     findings.equal(kImplicit, "drop over length" + at + ", 128 segments", "1", r.finest.drop,
                    exact.drop, 1e-3 * exact.drop);
     findings.slope(kImplicit, "order in l of the end's place" + at, r.order, 2, 0.1);

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/dense.hpp"
 #include "core/reference/fit.hpp"
@@ -142,19 +143,19 @@ TAUT_TRUTH(over_relaxation, 5, 4, "one sweep with omega > 4/3 is unstable",
     return std::pow(std::abs(strains(s, sim.state())[0]) / before, 0.01);
   };
   for (const bool is_bullet : {false, true}) {
-    const auto solver = [&](const char* omega) {
-      return is_bullet ? with(bullet(1), "stiffness=" + std::string(omega))
-                       : jakobsen(1, "exact", "omega=" + std::string(omega));
+    const auto solver = [&](double omega) {
+      return is_bullet ? with(bullet(1), "stiffness=" + as_typed(omega))
+                       : jakobsen(1, "exact", "omega=" + as_typed(omega));
     };
     const Scene s = strained_chain(Eigen::VectorXd::Constant(1, 1e-9));
-    if (!can_run(findings, solver("1.33"), s)) continue;
-    for (const char* omega : {"1.33", "1.34"}) {
+    if (!can_run(findings, solver(1.33), s)) continue;
+    for (const double omega : {1.33, 1.34}) {
       // Where the roots are complex, |strain| alternates within its envelope; here both are real.
-      const double expected = std::abs(reference::verlet_root(1 - std::stod(omega)));
+      const double expected = std::abs(reference::verlet_root(1 - omega));
       findings.equal(solver(omega), "growth per step", "1", growth(solver(omega)), expected, 2e-3);
     }
-    findings.holds(solver("1.33"), "stable", growth(solver("1.33")) < 1);
-    findings.holds(solver("1.34"), "unstable", growth(solver("1.34")) > 1);
+    findings.holds(solver(1.33), "stable", growth(solver(1.33)) < 1);
+    findings.holds(solver(1.34), "unstable", growth(solver(1.34)) > 1);
   }
 }
 

@@ -6,25 +6,21 @@
 #include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 #include "core/model/solver.hpp"
 
 namespace taut {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kVerdicts{"passed", "deviates", "not applicable",
-                                                    "broken"};
+constexpr Names<TruthVerdict::broken> kVerdicts{"passed", "deviates", "not applicable", "broken"};
 
 }  // namespace
 
-std::string_view to_string(TruthVerdict verdict) {
-  return kVerdicts[static_cast<std::size_t>(verdict)];
-}
+std::string_view to_string(TruthVerdict verdict) { return kVerdicts[verdict]; }
 
 TruthVerdict verdict_of(std::string_view text) {
-  const auto at = std::ranges::find(kVerdicts, text);
-  return at == kVerdicts.end() ? TruthVerdict::broken
-                               : static_cast<TruthVerdict>(at - kVerdicts.begin());
+  return kVerdicts.find(text).value_or(TruthVerdict::broken);
 }
 
 std::string_view section_title(int section) {

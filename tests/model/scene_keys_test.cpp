@@ -54,6 +54,7 @@ Scene scene_of_all() {
       std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()},
       std::vector<Triangle>{{0, 1, 2}});
   scene.colliders = {{Plane{}}, {Ball{}}, {Box{}}, {Capsule{}}, {MeshBody{triangle}}};
+  scene.pin_motions = {{{0}, {}}};
   return scene;
 }
 
@@ -70,6 +71,7 @@ void each_part(Scene& scene, const Visit& visit) {
     visit("collider", collider.motion);
     std::visit([&](auto& shape) { visit("collider", shape); }, collider.shape);
   }
+  for (PinMotion& group : scene.pin_motions) visit("pin_motion", group.motion);
 }
 
 TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
@@ -97,7 +99,8 @@ TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
       EXPECT_NE(content(scene), before) << chosen.path;
     }
   EXPECT_TRUE(counted.count("forces.damping") && counted.count("wind.law") &&
-              counted.count("collider.half_extents") && counted.count("bending.warp"));
+              counted.count("collider.half_extents") && counted.count("bending.warp") &&
+              counted.count("pin_motion.spin"));
   EXPECT_GE(counted.size(), 19u);
 }
 

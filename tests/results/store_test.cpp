@@ -157,6 +157,14 @@ TEST_F(StoreTest, EveryFieldOfARecordIsKept) {
   EXPECT_EQ(to_json(*Store(root_).find(r.key)), to_json(r));
 }
 
+TEST_F(StoreTest, AWholeNumberBelowNoneIsKept) {
+  Record r = some_record();
+  r.status.step = -2;
+  put(r);
+  ASSERT_TRUE(Store(root_).find(r.key));
+  EXPECT_EQ(Store(root_).find(r.key)->status.step, -2);
+}
+
 TEST_F(StoreTest, WhatASolverHasNotIsNull) {
   put(some_record());
   Database file(store_.file(), Database::Access::read);

@@ -67,9 +67,9 @@ TEST(BenchedCases, BeyondTheLimitsOfTheirSceneWinNothing) {
   bench.cases[1].record.values["tunnelling.events"] = 0;
   bench.limits = {{"tunnelling.events", 0}};
   const auto judged = bench.candidates("e");
-  EXPECT_TRUE(judged[0].not_accepted);
+  EXPECT_EQ(judged[0].refusal, Candidate::Refusal::not_accepted);
   EXPECT_EQ(judged[0].failure, "tunnelling.events 2, more than 0");
-  EXPECT_FALSE(judged[1].not_accepted);
+  EXPECT_FALSE(judged[1].is_uncounted());
   EXPECT_EQ(judged[1].failure, "");
   bench.limits.reset();
   for (const Candidate& one : bench.candidates("e"))

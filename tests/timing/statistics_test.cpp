@@ -128,12 +128,6 @@ TEST(Statistics, EveryCertaintyHasItsWord) {
                             Certainty::none, Certainty::single_run, Certainty::unopposed})
     words += std::string(to_string(c)) + (is_difference(c) ? "! " : ". ");
   EXPECT_EQ(words, "clear! likely! too noisy. no difference. single run. unopposed. ");
-  EXPECT_TRUE(meaning(Certainty::clear).starts_with("the whole 95 % interval"));
-  EXPECT_TRUE(meaning(Certainty::likely).starts_with("the 95 % interval excludes 1"));
-  EXPECT_TRUE(meaning(Certainty::too_noisy).starts_with("identical code differed"));
-  EXPECT_TRUE(meaning(Certainty::none).starts_with("the 95 % interval has 1 in it"));
-  EXPECT_TRUE(meaning(Certainty::single_run).starts_with("computed, not timed"));
-  EXPECT_TRUE(meaning(Certainty::unopposed).starts_with("nothing else"));
   EXPECT_TRUE(same_within(0.05, {0.96, 1, 1.049}));
   EXPECT_FALSE(same_within(0.05, {0.95, 1, 1.02})) << "1/0.95 is more than 5 % apart";
   EXPECT_FALSE(same_within(0.05, {0.99, 1, 1.051}));

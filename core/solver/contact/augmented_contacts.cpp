@@ -35,10 +35,11 @@ AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at, const 
   Part out;
   if (push > 0) out = {push * push / (2 * k), push * at.normal, k * along};
   const Vec3 rub = held.rub - k * at.slip(x);
-  const double length = rub.norm(), most = at.friction * held.push;
+  const FrictionCone cone = at.cone(rub, held.push);
+  const auto [length, most] = cone;
   if (most == 0) return out;
   const Matrix3d across = Matrix3d::Identity() - along;
-  if (length <= most) {
+  if (cone.sticks()) {
     out.energy += length * length / (2 * k);
     out.force += rub;
     out.hessian += k * across;

@@ -60,8 +60,7 @@ inline constexpr double kSettled = 0.3;
 inline ContactForce augmented(const TouchingVertex& at, const ContactForce& held, double k,
                               const Vec3& x) {
   ContactForce now{std::max(0.0, held.push - k * at.gap(x)), held.rub - k * at.slip(x)};
-  const double length = now.rub.norm(), most = at.friction * now.push;
-  if (length > most) now.rub *= most / length;
+  now.rub *= at.cone(now.rub, now.push).share();
   return now;
 }
 

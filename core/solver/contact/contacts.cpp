@@ -5,6 +5,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "core/model/index.hpp"
 #include "core/solver/contact/deforming_contact.hpp"
@@ -111,26 +112,36 @@ class DeformingSurfaceIn final : public Contacts::Surface {
   std::vector<int> touched_;  ///< [vertices]: the triangle at which each has touched last
 };
 
-std::unique_ptr<Contacts::Surface> make_surface(const Collider& c, double thickness,
-                                                bool continuous, std::size_t vertices) {
-  if (c.frames) return std::make_unique<DeformingSurfaceIn>(c, thickness, continuous, vertices);
-  if (std::holds_alternative<Plane>(c.shape))
-    return std::make_unique<SurfaceIn<PlaneSurface>>(c, thickness, continuous, vertices);
-  if (std::holds_alternative<Ball>(c.shape))
-    return std::make_unique<SurfaceIn<BallSurface>>(c, thickness, continuous, vertices);
-  if (std::holds_alternative<Capsule>(c.shape))
-    return std::make_unique<SurfaceIn<CapsuleSurface>>(c, thickness, continuous, vertices);
-  if (std::holds_alternative<Box>(c.shape))
-    return std::make_unique<SurfaceIn<BoxSurface>>(c, thickness, continuous, vertices);
-  return std::make_unique<SurfaceIn<MeshSurface>>(c, thickness, continuous, vertices);
-}
+/// Makes what a shape is to contact.
+struct SurfaceMaker {
+  using Made = std::unique_ptr<Contacts::Surface>;
+  const Collider& collider;
+  double thickness;
+  bool continuous;
+  std::size_t vertices;
+
+  Made operator()(const Plane&) const { return made<SurfaceIn<PlaneSurface>>(); }
+  Made operator()(const Ball&) const { return made<SurfaceIn<BallSurface>>(); }
+  Made operator()(const Box&) const { return made<SurfaceIn<BoxSurface>>(); }
+  Made operator()(const Capsule&) const { return made<SurfaceIn<CapsuleSurface>>(); }
+  Made operator()(const MeshBody&) const {
+    return collider.frames ? made<DeformingSurfaceIn>() : made<SurfaceIn<MeshSurface>>();
+  }
+
+ private:
+  template <class Of>
+  Made made() const {
+    return std::make_unique<Of>(collider, thickness, continuous, vertices);
+  }
+};
 
 }  // namespace
 
 Contacts::Contacts(const Scene& scene, bool continuous)
     : forces_(scene.start.x.size() * scene.colliders.size()) {
   for (const Collider& collider : scene.colliders)
-    surfaces_.push_back(make_surface(collider, scene.thickness, continuous, scene.start.x.size()));
+    surfaces_.push_back(std::visit(
+        SurfaceMaker{collider, scene.thickness, continuous, scene.start.x.size()}, collider.shape));
 }
 Contacts::~Contacts() = default;
 

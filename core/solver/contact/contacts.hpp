@@ -11,6 +11,7 @@
 #include "core/model/vec3.hpp"
 #include "core/solver/contact/responses.hpp"
 #include "core/solver/layout/particles.hpp"
+#include "core/solver/simd/coulomb.hpp"
 
 namespace taut {
 
@@ -33,6 +34,9 @@ struct TouchingVertex {
   Vec3 across(const Vec3& v) const { return v - normal.dot(v) * normal; }
   Vec3 slip(const Vec3& x) const { return across(x - from); }
   Vec3 total(const ContactForce& f) const { return f.push * normal + f.rub; }
+  FrictionCone<double> cone(const Vec3& rub, double push) const {
+    return {rub.norm(), friction * push};
+  }
 };
 
 /// Displacement of a vertex per force [m/N]: the same in all directions, or a matrix.
@@ -68,7 +72,7 @@ Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce
   if (at.friction == 0) return leave({-at.gap(free) / along, Vec3::Zero()});
   const Vec3 sticking = compliance.force_for(-at.slip(free) - at.gap(free) * at.normal);
   ContactForce now{at.normal.dot(sticking), at.across(sticking)};
-  if (now.push > 0 && now.rub.norm() <= at.friction * now.push) return leave(now);
+  if (now.push > 0 && at.cone(now.rub, now.push).sticks()) return leave(now);
   // Slipping: push and rub in turn, which a compliance that differs by direction couples.
   const double across = compliance.across(at.normal);
   constexpr int kRounds = 20;
@@ -77,8 +81,7 @@ Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce
     const double push = now.push;
     now.push = std::max(0.0, -at.gap(free + compliance * now.rub) / along);
     Vec3 rub = now.rub - at.slip(free + compliance * at.total(now)) / across;
-    const double length = rub.norm(), bound = at.friction * now.push;
-    if (length > bound) rub *= bound / length;
+    rub *= at.cone(rub, now.push).share();
     const double moved = std::abs(now.push - push) + (rub - now.rub).norm();
     now.rub = rub;
     if (moved <= 1e-12 * now.push) break;

@@ -90,12 +90,12 @@ CoupledContacts::Trial CoupledContacts::trial(std::size_t c, const Rows& x) cons
   if (push <= 0) return {State::open, Vec3::Zero(), own * at.total(force).norm()};
   if (at.friction == 0) return {State::sliding, at.normal, own * std::abs(push - force.push)};
   Vec3 rub = force.rub - at.slip(here) / own;
-  const double length = rub.norm(), most = at.friction * push;
+  const FrictionCone cone = at.cone(rub, push);
   Trial out{State::sticking, Vec3::Zero(), 0};
-  if (length > most) {
+  if (!cone.sticks()) {
     out.state = State::sliding;
-    out.direction = at.normal + at.friction / length * rub;
-    rub *= most / length;
+    out.direction = at.normal + at.friction / cone.length * rub;
+    rub *= cone.share();
   }
   out.away = own * (at.total({push, rub}) - at.total(force)).norm();
   return out;

@@ -5,6 +5,7 @@
 #include "core/solver/contact/deforming_contact.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/simd/collide_impl.hpp"
+#include "core/solver/simd/coulomb.hpp"
 
 namespace taut {
 
@@ -91,8 +92,7 @@ class DeformingProjector final : public Projector<Real> {
     x += depth * touch.normal;
     Vec3 slip = x - touch.from;
     slip -= touch.normal.dot(slip) * touch.normal;
-    const double length = slip.norm(), most = contact_.friction() * depth;
-    x -= length <= most ? slip : Vec3(most / length * slip);
+    x -= FrictionCone{slip.norm(), contact_.friction() * depth}.share() * slip;
     return true;
   }
 

@@ -9,6 +9,7 @@
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/contact/projector.hpp"
 #include "core/solver/layout/particles.hpp"
+#include "core/solver/simd/coulomb.hpp"
 
 namespace taut {
 
@@ -445,8 +446,7 @@ class FaceContactPass final : public Pass<Real> {
       const Vec3 start = at_start(p, face, out.point.weights);
       Vec3 slip = out.point.position + correction - carried(start, out.point.position);
       slip -= out.normal.dot(slip) * out.normal;
-      const double length = slip.norm(), most = collider_.friction * out.length;
-      correction -= length <= most ? slip : Vec3(most / length * slip);
+      correction -= FrictionCone{slip.norm(), collider_.friction * out.length}.share() * slip;
     }
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t i = index(face[c]);

@@ -3,6 +3,7 @@
 #include <bit>
 #include <limits>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "core/solver/contact/deforming_projector.hpp"
@@ -239,26 +240,46 @@ class MeshProjector final : public Projector<Real> {
   mutable ThreadPool* queued_in_ = nullptr;
 };
 
+/// Makes what puts particles out of a shape.
+template <class Real>
+struct ProjectorMaker {
+  using Made = std::unique_ptr<Projector<Real>>;
+  const Collider& collider;
+  double thickness;
+  bool continuous;
+  const CollideKernels<Real>& kernel;
+
+  Made operator()(const Plane&) const { return made(kernel.plane); }
+  Made operator()(const Ball&) const {
+    return made(continuous ? kernel.ball_continuous : kernel.ball);
+  }
+  Made operator()(const Box&) const {
+    return made(continuous ? kernel.box_continuous : kernel.box);
+  }
+  Made operator()(const Capsule&) const {
+    return made(continuous ? kernel.capsule_continuous : kernel.capsule);
+  }
+  Made operator()(const MeshBody&) const {
+    if (collider.frames)
+      return std::make_unique<DeformingProjector<Real>>(collider, thickness, continuous);
+    return std::make_unique<MeshProjector<Real>>(collider, thickness, continuous);
+  }
+
+ private:
+  template <template <class> class SurfaceOf>
+  Made made(Collide<Real, SurfaceOf> collide) const {
+    return std::make_unique<ProjectorOf<Real, SurfaceOf>>(collider, thickness, collide);
+  }
+};
+
 }  // namespace
 
 template <class Real>
 std::unique_ptr<Projector<Real>> make_projector(const Collider& collider, double thickness,
                                                 bool continuous, Simd simd) {
-  const CollideKernels<Real>& kernel = kernels<Real>(simd).collide;
-  if (std::holds_alternative<Plane>(collider.shape))
-    return std::make_unique<ProjectorOf<Real, PlaneSurface>>(collider, thickness, kernel.plane);
-  if (std::holds_alternative<Ball>(collider.shape))
-    return std::make_unique<ProjectorOf<Real, BallSurface>>(
-        collider, thickness, continuous ? kernel.ball_continuous : kernel.ball);
-  if (std::holds_alternative<Capsule>(collider.shape))
-    return std::make_unique<ProjectorOf<Real, CapsuleSurface>>(
-        collider, thickness, continuous ? kernel.capsule_continuous : kernel.capsule);
-  if (collider.frames)
-    return std::make_unique<DeformingProjector<Real>>(collider, thickness, continuous);
-  if (std::holds_alternative<MeshBody>(collider.shape))
-    return std::make_unique<MeshProjector<Real>>(collider, thickness, continuous);
-  return std::make_unique<ProjectorOf<Real, BoxSurface>>(
-      collider, thickness, continuous ? kernel.box_continuous : kernel.box);
+  return std::visit(
+      ProjectorMaker<Real>{collider, thickness, continuous, kernels<Real>(simd).collide},
+      collider.shape);
 }
 
 template std::unique_ptr<Projector<float>> make_projector(const Collider&, double, bool, Simd);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/solver/simd/coulomb.hpp"
 #include "core/solver/simd/surfaces.hpp"
 
 namespace taut {
@@ -78,9 +79,7 @@ struct Contact {
     Vec3T<T> out = add_along(x, depth, normal);
     if (friction != 0) {
       const Vec3T<T> slip = across(out - from, normal);
-      const T length = norm(slip), most = T(friction) * depth;
-      const auto sticks = length <= most || !deep;  // where it is not deep, nothing is used
-      out = out - select(sticks, T(1), most / select(sticks, T(1), length)) * slip;
+      out = out - FrictionCone{norm(slip), T(friction) * depth}.share(!deep) * slip;
     }
     x = select(deep, out, x);
     return deep;

@@ -1,11 +1,14 @@
 #include "core/solver/simd/kernels.hpp"
 
 #include <cassert>
+#include <cstddef>
+#include <iterator>
 
 namespace taut {
 
 std::string_view to_string(Simd simd) {
   constexpr std::string_view kNames[] = {"scalar", "sse2", "avx2", "avx512"};
+  static_assert(std::size(kNames) == static_cast<std::size_t>(Simd::avx512) + 1);
   return kNames[static_cast<std::size_t>(simd)];
 }
 

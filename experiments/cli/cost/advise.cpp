@@ -108,8 +108,12 @@ void add_options(CLI::App& app, Options& o) {
          "--keep", o.keep,
          "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in %; "
          "repeat it for each. 'nothing': only the error counts (default: no passage, no crossing, "
-         "depths of at most 0.1 % of the cloth, motion within 25 % of its way from the reference, "
-         "RMS stretch of at most 10 %)")
+         "depths of at most " +
+             number_text(100 * kMostDepth) + " % of the cloth, motion within " +
+             number_text(100 * kMostMotionError) +
+             " % of its way from the reference, RMS stretch "
+             "of at most " +
+             number_text(100 * kMostStretch) + " %)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--solver", o.solvers,

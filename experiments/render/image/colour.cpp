@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "core/model/input_error.hpp"
@@ -76,6 +77,8 @@ constexpr Style kStyles[] = {
     {"strain", "mean edge strain ε at each vertex", 100, "%", ColourMap::diverging},
     {"penetration", "depth below a collider's surface", 1e3, "mm", ColourMap::violet},
     {"speed", "speed", 1, "m/s", ColourMap::teal}};
+
+static_assert(std::size(kStyles) == static_cast<std::size_t>(ColourBy::speed) + 1);
 
 const Style& style(ColourBy by) { return kStyles[static_cast<std::size_t>(by)]; }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -103,11 +104,11 @@ void draw_levels(Chart& chart) {
 
 /// What the chart of a value is called in its scene; where several have the role, after the value.
 std::string id_of(const ValueSpec& value) {
-  constexpr std::string_view kNames[] = {"",         "convergence", "motion", "vertices", "faces",
-                                         "passages", "reference",   "step",   "slip"};
+  constexpr Names<Role::contact_error> kNames{
+      "", "convergence", "motion", "vertices", "faces", "passages", "reference", "step", "slip"};
   const std::vector<const ValueSpec*> all = values_with_role();
   const bool alone = std::ranges::count(all, value.role, &ValueSpec::role) == 1;
-  return std::string(alone ? kNames[static_cast<std::size_t>(value.role)] : value.name);
+  return std::string(alone ? kNames[value.role] : value.name);
 }
 
 bool over_sweeps_alone(const ValueSpec& value) {
@@ -429,7 +430,7 @@ Chart cost_chart(const SceneBench& scene, const Records& records) {
     const BenchedCase& c = scene.cases[i];
     const Candidate& one = candidates[i];
     if (c.stable()) chart.cost[c.record.key] = c.cost();
-    if (one.hardly_moves || one.not_accepted) chart.not_counted[c.record.key] = one.failure;
+    if (one.is_uncounted()) chart.not_counted[c.record.key] = one.failure;
   }
   return chart;
 }

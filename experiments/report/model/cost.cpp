@@ -10,6 +10,7 @@
 #include "experiments/report/model/parts.hpp"
 #include "experiments/report/questions/costs.hpp"
 #include "experiments/report/questions/winners.hpp"
+#include "experiments/timing/cheapest.hpp"
 #include "experiments/timing/profile.hpp"
 
 namespace taut::report {
@@ -19,18 +20,16 @@ namespace {
 /// Costs on one scene, with the accelerators that all of its solvers have: both the answers and the
 /// page compare these.
 struct CostScene {
-  SceneBench bench;
+  JudgedScene timed;
   CaseList& refs;
-  std::vector<Candidate> candidates;
 
-  bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
   /// Cell of a case. Its note has the setting and the values of motion, since a small strain may
   /// come from cloth that hardly moves.
   Cell of(std::size_t at, Cell cell) const {
-    const Record& r = bench.cases[at].record;
-    cell.note = setting_text(bench, at);
+    const Record& r = timed.bench.cases[at].record;
+    cell.note = setting_text(timed.bench, at);
     cell.key = refs.key(r);
-    if (bounds(at)) cell.note += kUpperBound;
+    if (timed.is_upper_bound(at)) cell.note += kUpperBound;
     for (const ValueSpec* value : values_with_role()) {
       const Quantity q = quantity(value->name);
       if (const double v = value_of(r, value->name);
@@ -41,19 +40,20 @@ struct CostScene {
   }
   std::vector<Column> columns(Column first, const Unit& unit) const {
     std::vector<Column> all{std::move(first)};
-    for (const std::string& solver : solvers_of(bench))
+    for (const std::string& solver : solvers_of(timed.bench))
       all.emplace_back(solver, solver_title(solver), unit, 2);
     return all;
   }
 };
 
 Table levels_table(const CostScene& scene, const WinnerRow& winners) {
+  const SceneBench& bench = scene.timed.bench;
   const Quantity q = quantity(kErrorMetric);
-  const CaseSpec spec = scene.bench.cases.empty() ? CaseSpec{scene.bench.scene, {}, {}}
-                                                  : scene.bench.cases.front().record.spec;
+  const CaseSpec spec =
+      bench.cases.empty() ? CaseSpec{bench.scene, {}, {}} : bench.cases.front().record.spec;
   std::string again = "taut advise " + spec.scene + " --error 1%";
   for (const SceneSetting& one : spec.settings) again += " --set '" + one.text() + "'";
-  Table table{"cost-levels-" + slug(scene.bench.scene),
+  Table table{"cost-levels-" + slug(bench.scene),
               "CPU time of an error, per simulated second",
               scene.columns(Column("level", q.title, q.unit, 1), quantity("cpu.per_second").unit),
               {},
@@ -63,16 +63,16 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
     const double level = kErrorLevels[k];
     const WinnerCell& winner = winners.cells[k];
     std::vector<Cell> row{level};
-    for (const std::string& solver : solvers_of(scene.bench)) {
-      const auto at = best_for({.error = level}, scene.candidates, solver);
+    for (const std::string& solver : solvers_of(bench)) {
+      const auto at = scene.timed.best({.error = level}, solver);
       if (!at) {
         const std::string words =
-            scene.bench.searched_to_the_end(solver) ? "never reached" : "not reached";
-        row.push_back(only_uncounted(scene.candidates, solver, level, words)
+            bench.searched_to_the_end(solver) ? "never reached" : "not reached";
+        row.push_back(only_uncounted(scene.timed, solver, level, words)
                           .value_or(Cell::lacking(Cell::State::none, words)));
         continue;
       }
-      row.push_back(scene.of(*at, Cell(scene.candidates[*at].cost)));
+      row.push_back(scene.of(*at, Cell(scene.timed.candidates[*at].cost)));
       row.back().best = winner.won() && winner.cheapest[0].solver == solver;
     }
     table.rows.push_back(std::move(row));
@@ -85,11 +85,10 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
 std::string upper_bounds(const std::vector<SceneBench>& scenes) {
   std::map<std::string, int> bounds;
   for (const SceneBench& scene : scenes) {
-    const std::vector<Candidate> candidates = scene.candidates(kErrorMetric);
-    for (const std::string& solver : solvers_of(scene))
-      for (const double level : kErrorLevels)
-        if (const auto at = best_for({.error = level}, candidates, solver))
-          bounds[solver_title(solver)] += is_upper_bound(scene, candidates, *at);
+    const JudgedScene timed(scene, kErrorMetric);
+    for (const double level : kErrorLevels)
+      for (const std::size_t at : timed.best_of_each({.error = level}))
+        bounds[solver_title(timed.candidates[at].solver)] += timed.is_upper_bound(at);
   }
   std::erase_if(bounds, [](const auto& one) { return one.second == 0; });
   return join(bounds, ", ",
@@ -141,7 +140,7 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, 
   for (const SceneBench& bench : study.scenes) {
     const std::vector<Record>& records = kept.emplace_back(StudyBench{"", "", {bench}}.records());
     shared.push_back(with_shared_parameters(bench));
-    const CostScene scene{shared.back(), refs, shared.back().candidates(kErrorMetric)};
+    const CostScene scene{JudgedScene(shared.back(), kErrorMetric), refs};
     Json one{{"scene", bench.scene}};
     try {
       charts.push_back(cost_chart(bench, records));

@@ -51,6 +51,7 @@ Json json_of_winners(const ReportInput& input, CaseList& list) {
   Json json{{"metric", kErrorMetric},
             {"levels", std::vector<double>(std::begin(kErrorLevels), std::end(kErrorLevels))},
             {"frame", kFrame},
+            {"rules", rules_of(map)},
             {"certainty", certainty_text(map.noise)}};
   for (const WinnerRow& row : map.rows) {
     Json one{{"scene", row.scene}, {"title", row.title}, {"way", to_string(row.way)}};

@@ -88,21 +88,12 @@ function winnerCell(cell, level) {
 
 /** The map: a row for each scene, a column for each error. */
 function winnersCard() {
-  const {rows, levels, certainty} = model.winners, error = metric(model.winners.metric);
-  const titles = (some) => rows.filter(some).map((row) => row.title).join(', ');
-  const missed = titles((row) => row.way === 'missed'),
-        unjudged = titles((row) => row.way === 'nothing');
+  const {rows, levels, rules, certainty} = model.winners, error = metric(model.winners.metric);
   const wayBy = {
     'exact steps': 'way of exact steps',
     missed: 'way by what steps miss',
     nothing: 'way not judged'
   };
-  const byMissed = `On ${missed} motion is judged by what the cloth\u2019s own steps miss ` +
-      'of exact ones: ' +
-      'solvers that declare no step (Bullet\u2019s) and contact that does not settle ' +
-      'are not judged there. ';
-  const notJudged =
-      `On ${unjudged} motion is not judged; cloth that lags may show little stretch. `;
   const line = (row) => {
     const node =
         el('tr', {},
@@ -122,22 +113,7 @@ function winnersCard() {
           el('tr', {}, el('th', {scope: 'col'}, 'scene'),
              levels.map((level) => el('th', {scope: 'col'}, shown(level, error, 2)))),
           rows.map(line)),
-      note(
-          'Each cell names the cheapest solver, how many times cheaper it is than the next one, ' +
-              'the CPU time of a frame of 1/60\u00A0s, the setting, the arithmetic, ' +
-              'and the stiffness of links that are not rigid. ',
-          'A setting does not count if it fails, passes through a body or sinks into it ' +
-              'by more than 0.1\u00A0% of the cloth\u2019s diagonal, ' +
-              'or if the cloth travels less than half of its way. ',
-          'The way is that of the scene\u2019s reference in motion, ' +
-              'from which the cloth may be off by a quarter of it. ',
-          'Without a reference and without contact, the way is that of exact steps of implicit Euler. ',
-          missed && byMissed, unjudged && notJudged,
-          'The error is that of the last second; ' +
-              'a setting that exceeds it at some moment of the run says by how much. ',
-          'Only settings that were timed compete: ' +
-              'a solver is absent if no timed setting reaches the error. ',
-          certainty));
+      note([...rules, certainty].join(' ')));
 }
 
 /** The part of the first screen about what was timed. */

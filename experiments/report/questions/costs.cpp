@@ -37,80 +37,63 @@ std::string setting_text(const SceneBench& bench, std::size_t at, std::vector<st
   return label + (order.empty() ? "" : ", " + order);
 }
 
-std::optional<Cell> only_uncounted(const std::vector<Candidate>& candidates,
-                                   const std::string& solver, double error,
-                                   const std::string& words) {
-  for (const Candidate& one : candidates)
-    if (one.solver == solver && one.error <= error && (one.hardly_moves || one.not_accepted))
-      return Cell::lacking(one.hardly_moves ? Cell::State::hardly_moves : Cell::State::none, words)
-          .with(one.failure);
-  return {};
-}
-
-bool is_upper_bound(const SceneBench& bench, const std::vector<Candidate>& candidates,
-                    std::size_t at) {
-  const auto work = [&](std::size_t i) {
-    const Work one = work_of(bench.cases[i].record);
-    return std::max(1, one.substeps) * std::max(1, one.sweeps);
-  };
-  if (work(at) == 1) return false;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].solver != candidates[at].solver) continue;
-    const bool timed = bench.cases[i].stable();  // a cheaper one may have failed
-    if (timed ? candidates[i].cost.mid < candidates[at].cost.mid : work(i) < work(at)) return false;
-  }
-  return true;
+std::optional<Cell> only_uncounted(const JudgedScene& scene, const std::string& solver,
+                                   double error, const std::string& words) {
+  const auto at = scene.uncounted(solver, error);
+  if (!at) return {};
+  const Candidate& one = scene.candidates[*at];
+  const bool still = one.refusal == Candidate::Refusal::hardly_moves;
+  return Cell::lacking(still ? Cell::State::hardly_moves : Cell::State::none, words)
+      .with(one.failure);
 }
 
 namespace {
 
-/// One scene of a bench. The candidates are cached, since each of their intervals is a bootstrap.
-struct Timed {
-  SceneBench bench;
-  std::vector<Candidate> candidates;
+/// The cell of a solver that misses the error: `words`, and how near it came ("at best 0.12 %").
+Cell not_reached(const JudgedScene& scene, const std::string& words, const std::string& solver) {
+  if (!scene.has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
+  if (const auto uncounted = only_uncounted(scene, solver, kPricedError, words)) return *uncounted;
+  const Cell cell = Cell::lacking(Cell::State::none, words);
+  const auto at = scene.best({.budget = std::numeric_limits<double>::infinity()}, solver);
+  if (!at) return cell.with("no case completed");
+  return cell.with(
+      "at best " + quantity(kErrorMetric).text(scene.candidates[*at].error) +
+      (scene.bench.searched_to_the_end(solver) ? ", to the end of its accuracy parameters" : ""));
+}
 
-  std::optional<std::size_t> best(const Target& target, const std::string& solver) const {
-    return best_for(target, candidates, solver);
-  }
-  bool has(const std::string& solver) const {
-    return std::ranges::find(candidates, solver, &Candidate::solver) != candidates.end();
-  }
-  bool bounds(std::size_t at) const { return is_upper_bound(bench, candidates, at); }
-  /// The cell of a solver that misses the error: `words`, and how near it came ("at best 0.12 %").
-  Cell not_reached(const std::string& words, const std::string& solver) const {
-    if (!has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
-    if (const auto uncounted = only_uncounted(candidates, solver, kPricedError, words))
-      return *uncounted;
-    const Cell cell = Cell::lacking(Cell::State::none, words);
-    const auto at = best({.budget = std::numeric_limits<double>::infinity()}, solver);
-    if (!at) return cell.with("no case completed");
-    return cell.with(
-        "at best " + quantity(kErrorMetric).text(candidates[*at].error) +
-        (bench.searched_to_the_end(solver) ? ", to the end of its accuracy parameters" : ""));
-  }
-  /// The first cell of its row.
-  Cell head() const {
-    return Cell(bench.scene)
-        .of_scene(bench.cases.empty() ? bench.scene : bench.cases.front().record.scene);
-  }
-};
+/// The first cell of the scene's row.
+Cell head_of(const SceneBench& bench) {
+  return Cell(bench.scene)
+      .of_scene(bench.cases.empty() ? bench.scene : bench.cases.front().record.scene);
+}
 
 using Chosen = std::vector<std::optional<std::size_t>>;  ///< case of each solver
 
-/// Marks the cheapest if it is distinguishable from all others. Nothing is marked against an upper
-/// bound; `bounds`: which costs are one.
-void mark_cheapest(std::vector<Cell>& row, const std::vector<std::vector<Interval>>& over,
-                   const std::vector<bool>& bounds, const Interval& control) {
-  for (std::size_t i = 0; i < over.size(); ++i) {
-    bool any = false, cheapest = true;
-    for (std::size_t j = 0; j < over.size(); ++j) {
-      if (i == j || over[i][j].mid == 0) continue;
-      any = true;
-      cheapest =
-          cheapest && !bounds[j] && over[i][j].mid < 1 && is_difference(judge(over[i][j], control));
-    }
-    row[i + 1].best = any && cheapest;
-  }
+/// Marks the cheapest of these columns if it is told from all others.
+void mark_cheapest(std::vector<Cell>& row, const std::vector<Cost>& costs, const RatioOf& ratio,
+                   const Interval& control) {
+  if (costs.empty()) return;
+  const Cheapest found = cheapest_of(costs, ratio, control);
+  row[found.at + 1].best = found.is_told();
+}
+void mark_cheapest(std::vector<Cell>& row, const JudgedScene& scene, const Chosen& chosen) {
+  std::vector<Cost> costs;
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    if (const auto at = chosen[i])
+      costs.push_back({i, scene.candidates[*at].cost.mid, scene.is_upper_bound(*at)});
+  mark_cheapest(
+      row, costs,
+      [&](std::size_t i, std::size_t j) { return scene.bench.ratio(*chosen[i], *chosen[j]); },
+      scene.bench.control);
+}
+
+/// Geometric mean of ratios; nothing: one of them is missing, or there is none.
+std::optional<Interval> mean_ratio(const std::vector<std::optional<Interval>>& ratios) {
+  if (ratios.empty() || !std::ranges::all_of(ratios, &std::optional<Interval>::has_value))
+    return {};
+  std::vector<Interval> all;
+  for (const auto& ratio : ratios) all.push_back(*ratio);
+  return geometric_mean(all);
 }
 
 class Costs {
@@ -118,9 +101,8 @@ class Costs {
   Costs(const ReportInput& input, const std::vector<Column>& solvers, CaseList& list)
       : solvers_(solvers), list_(list) {
     for (const SceneBench& bench : input.bench->scenes) {
-      const SceneBench shared = with_shared_parameters(bench);
-      all_.push_back({bench, bench.candidates(kErrorMetric)});
-      shared_.push_back({shared, shared.candidates(kErrorMetric)});
+      all_.emplace_back(bench, kErrorMetric);
+      shared_.emplace_back(with_shared_parameters(bench), kErrorMetric);
     }
     list.use(kErrorMetric);
     list.use("cpu.per_second");
@@ -133,7 +115,7 @@ class Costs {
   }
 
  private:
-  Cell cell_of(const Timed& scene, std::size_t at, Cell cell) {
+  Cell cell_of(const JudgedScene& scene, std::size_t at, Cell cell) {
     cell.note = setting_text(scene.bench, at);
     cell.key = list_.key(scene.bench.cases[at].record);
     return cell;
@@ -142,7 +124,7 @@ class Costs {
   /// The least budget within which every solver has a setting on every scene, else the largest.
   double common_budget() const {
     for (const double budget : kFrameBudgets)
-      if (std::ranges::all_of(shared_, [&](const Timed& scene) {
+      if (std::ranges::all_of(shared_, [&](const JudgedScene& scene) {
             return std::ranges::all_of(solvers_of(scene.bench), [&](const std::string& solver) {
               return scene.best({.budget = budget / kFrame}, solver).has_value();
             });
@@ -159,11 +141,12 @@ class Costs {
                 columns_of(solvers_, q.unit),
                 {},
                 std::string(to_string(q.window)) + "; least of the settings timed within " +
-                    significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/60\u00A0s (" +
+                    significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/" +
+                    number_text(1 / kFrame) + "\u00A0s (" +
                     quantity("cpu.per_second").text(budget / kFrame) + " per simulated second), " +
                     kWithoutExtras + orders()};
-    for (const Timed& scene : shared_) {
-      std::vector<Cell> row{scene.head()};
+    for (const JudgedScene& scene : shared_) {
+      std::vector<Cell> row{head_of(scene.bench)};
       for (const Column& solver : solvers_) {
         const auto at = scene.best({.budget = budget / kFrame}, solver.name);
         row.push_back(at ? cell_of(scene, *at, Cell(scene.candidates[*at].error))
@@ -186,22 +169,6 @@ class Costs {
     answer.add(std::move(table));
   }
 
-  /// Ratios of the chosen cases on one scene; mid 0: not both were chosen.
-  std::vector<std::vector<Interval>> ratios_of(const Timed& scene, const Chosen& chosen) const {
-    std::vector<std::vector<Interval>> over(chosen.size(), std::vector<Interval>(chosen.size()));
-    for (std::size_t i = 0; i < chosen.size(); ++i)
-      for (std::size_t j = 0; j < chosen.size(); ++j)
-        if (i != j && chosen[i] && chosen[j])
-          over[i][j] = scene.bench.ratio(*chosen[i], *chosen[j]).value_or(Interval{});
-    return over;
-  }
-
-  static std::vector<bool> bounds_of(const Timed& scene, const Chosen& chosen) {
-    std::vector<bool> bounds;
-    for (const auto& at : chosen) bounds.push_back(at && scene.bounds(*at));
-    return bounds;
-  }
-
   void add_price(Answer& answer) {
     Table table{"price",
                 "CPU time of " + priced(),
@@ -209,48 +176,47 @@ class Costs {
                 {},
                 "per simulated second, 95\u00A0% interval; each at its cheapest setting timed, " +
                     std::string(kWithoutExtras) + orders()};
-    std::vector<std::vector<std::vector<Interval>>> ratios;
-    std::vector<std::vector<bool>> bounds;
-    for (const Timed& scene : shared_) {
-      std::vector<Cell> row{scene.head()};
-      Chosen own;
+    std::vector<Chosen> chosen;  // of each scene
+    bool any_bound = false;
+    for (const JudgedScene& scene : shared_) {
+      std::vector<Cell> row{head_of(scene.bench)};
+      Chosen& own = chosen.emplace_back();
       for (const Column& solver : solvers_) {
         own.push_back(scene.best({.error = kPricedError}, solver.name));
         row.push_back(own.back()
                           ? cell_of(scene, *own.back(), Cell(scene.candidates[*own.back()].cost))
-                          : scene.not_reached("not reached", solver.name));
-        if (own.back() && scene.bounds(*own.back())) row.back().note += kUpperBound;
+                          : not_reached(scene, "not reached", solver.name));
+        if (!own.back() || !scene.is_upper_bound(*own.back())) continue;
+        row.back().note += kUpperBound;
+        any_bound = true;
       }
-      mark_cheapest(row, ratios.emplace_back(ratios_of(scene, own)),
-                    bounds.emplace_back(bounds_of(scene, own)), scene.bench.control);
+      mark_cheapest(row, scene, own);
       table.rows.push_back(std::move(row));
     }
-    const auto any = [](const std::vector<bool>& of_row) {
-      return std::ranges::count(of_row, true) > 0;
-    };
-    if (std::ranges::any_of(bounds, any)) table.caption += std::string("; ") + kUpperBoundMeans;
-    table.rows.push_back(mean_price(table, ratios, bounds));
+    if (any_bound) table.caption += std::string("; ") + kUpperBoundMeans;
+    table.rows.push_back(mean_price(table, chosen));
     answer.add(std::move(table));
   }
 
   /// The order of links of each solver; "": none has one.
   std::string orders() const {
     std::vector<SceneBench> scenes;
-    for (const Timed& scene : shared_) scenes.push_back(scene.bench);
+    for (const JudgedScene& scene : shared_) scenes.push_back(scene.bench);
     const std::string all = link_orders(scenes);
     return all.empty() ? "" : "; links in each solver's own order: " + all;
   }
 
-  static double noise(const std::vector<Timed>& scenes) {
+  static double noise(const std::vector<JudgedScene>& scenes) {
     double most = 0;
-    for (const Timed& scene : scenes) most = std::max(most, spread(scene.bench.control));
+    for (const JudgedScene& scene : scenes) most = std::max(most, spread(scene.bench.control));
     return most;
   }
-  Interval control() const { return {1 / (1 + noise(shared_)), 1, 1 + noise(shared_)}; }
+  static Interval control(const std::vector<JudgedScene>& scenes) {
+    return {1 / (1 + noise(scenes)), 1, 1 + noise(scenes)};
+  }
 
-  std::vector<Cell> mean_price(const Table& table,
-                               const std::vector<std::vector<std::vector<Interval>>>& ratios,
-                               const std::vector<std::vector<bool>>& bounds) {
+  /// `chosen`: the cases in the rows of the table.
+  std::vector<Cell> mean_price(const Table& table, const std::vector<Chosen>& chosen) {
     const Common common = common_of(table, 0);
     std::vector<Cell> last = last_row(table, common, "mean of", [&](std::size_t c) {
       std::vector<Interval> costs;
@@ -258,21 +224,21 @@ class Costs {
         costs.push_back(std::get<Interval>(table.rows[r][c].value));
       return Cell(geometric_mean(costs));
     });
-    const std::size_t n = solvers_.size();
-    std::vector<std::vector<Interval>> over(n, std::vector<Interval>(n));
-    std::vector<bool> bounded(n, false);
+    if (common.rows.empty()) return last;
+    std::vector<Cost> costs;
     for (const std::size_t c : common.columns) {
-      const std::size_t i = c - 1;
-      for (const std::size_t r : common.rows) bounded[i] = bounded[i] || bounds[r][i];
-      if (bounded[i] && common.rows.size() > 1) last[c].note = "at most";
-      for (std::size_t j = 0; j < n && !common.rows.empty(); ++j) {
-        std::vector<Interval> both;
-        for (const std::size_t r : common.rows)
-          if (ratios[r][i][j].mid > 0) both.push_back(ratios[r][i][j]);
-        if (both.size() == common.rows.size()) over[i][j] = geometric_mean(both);
-      }
+      const bool is_bound = std::ranges::any_of(
+          common.rows, [&](std::size_t r) { return shared_[r].is_upper_bound(*chosen[r][c - 1]); });
+      if (is_bound && common.rows.size() > 1) last[c].note = "at most";
+      costs.push_back({c - 1, last[c].number(), is_bound});
     }
-    mark_cheapest(last, over, bounded, control());
+    const auto ratio = [&](std::size_t i, std::size_t j) {
+      std::vector<std::optional<Interval>> all;
+      for (const std::size_t r : common.rows)
+        all.push_back(shared_[r].bench.ratio(*chosen[r][i], *chosen[r][j]));
+      return mean_ratio(all);
+    };
+    mark_cheapest(last, costs, ratio, control(shared_));
     return last;
   }
 
@@ -291,24 +257,24 @@ class Costs {
                 "the cheapest timed that reaches " + priced() +
                     ", accelerators that only one solver has included, and its CPU time per "
                     "simulated second; of all scenes: on most of them, then least geometric mean"};
-    for (const Timed& scene : all_) {
-      std::vector<Cell> row{scene.head()};
+    for (const JudgedScene& scene : all_) {
+      std::vector<Cell> row{head_of(scene.bench)};
       Chosen chosen;
       for (const Column& solver : solvers_) {
         chosen.push_back(scene.best({.error = kPricedError}, solver.name));
         row.push_back(chosen.back() ? setting_cell(scene, *chosen.back(),
                                                    scene.candidates[*chosen.back()].cost.mid,
-                                                   scene.bounds(*chosen.back()), "")
-                                    : scene.not_reached("none", solver.name));
+                                                   scene.is_upper_bound(*chosen.back()), "")
+                                    : not_reached(scene, "none", solver.name));
       }
-      mark_cheapest(row, ratios_of(scene, chosen), bounds_of(scene, chosen), scene.bench.control);
+      mark_cheapest(row, scene, chosen);
       table.rows.push_back(std::move(row));
     }
     table.rows.push_back(overall_setting(table));
     answer.add(std::move(table));
   }
 
-  Cell setting_cell(const Timed& scene, std::size_t at, double cost, bool bound,
+  Cell setting_cell(const JudgedScene& scene, std::size_t at, double cost, bool bound,
                     const std::string& on) {
     Cell cell(setting_text(scene.bench, at));
     cell.key = list_.key(scene.bench.cases[at].record);
@@ -317,11 +283,15 @@ class Costs {
 
   /// A setting of a solver with the cases that reach the error, by scene.
   struct Reached {
+    using Case = std::pair<const std::size_t, std::size_t>;
     std::map<std::size_t, std::size_t> cases;
-    double mean_log_cost(const std::vector<Timed>& all) const {
+    double mean_log_cost(const std::vector<JudgedScene>& all) const {
       double logs = 0;
       for (const auto& [scene, at] : cases) logs += std::log(all[scene].candidates[at].cost.mid);
       return logs / static_cast<double>(cases.size());
+    }
+    bool is_of_same_scenes(const Reached& other) const {
+      return std::ranges::equal(cases, other.cases, {}, &Case::first, &Case::first);
     }
   };
   /// The solver's setting that reaches the error on most scenes; ties go to the cheapest. Without
@@ -343,50 +313,38 @@ class Costs {
     const std::string of = " of " + std::to_string(all_.size());
     std::vector<Cell> last{all_.size() == 1 ? table.rows[0][0] : Cell("on most" + of + " scenes")};
     std::vector<Reached> reached;
-    std::vector<bool> bounds;
+    std::vector<Cost> costs;
     for (std::size_t s = 0; s < solvers_.size(); ++s) {
       const Reached& own = reached.emplace_back(most_reaching(solvers_[s].name));
-      bounds.push_back(std::ranges::any_of(
-          own.cases, [&](const auto& one) { return all_[one.first].bounds(one.second); }));
       if (own.cases.empty()) {
         last.push_back(why_empty(table, s + 1));
         continue;
       }
+      const bool is_bound = std::ranges::any_of(
+          own.cases, [&](const auto& one) { return all_[one.first].is_upper_bound(one.second); });
+      costs.push_back({s, std::exp(own.mean_log_cost(all_)), is_bound});
       const auto& [scene, at] = *own.cases.begin();
       last.push_back(
-          setting_cell(all_[scene], at, std::exp(own.mean_log_cost(all_)), bounds.back(),
+          setting_cell(all_[scene], at, costs.back().mid, is_bound,
                        all_.size() == 1 ? "" : ", " + std::to_string(own.cases.size()) + of));
     }
-    if (const auto over = ratios_of(reached))
-      mark_cheapest(last, *over, bounds, {1 / (1 + noise(all_)), 1, 1 + noise(all_)});
+    const auto alike = [&](const Cost& one) {
+      return reached[one.at].is_of_same_scenes(reached[costs.front().at]);
+    };
+    if (!std::ranges::all_of(costs, alike)) return last;
+    const auto ratio = [&](std::size_t i, std::size_t j) {
+      std::vector<std::optional<Interval>> all;
+      for (const auto& [scene, at] : reached[i].cases)
+        all.push_back(all_[scene].bench.ratio(at, reached[j].cases.at(scene)));
+      return mean_ratio(all);
+    };
+    mark_cheapest(last, costs, ratio, control(all_));
     return last;
-  }
-
-  /// Means over the same scenes; nothing if the solvers reach the error on different ones.
-  std::optional<std::vector<std::vector<Interval>>> ratios_of(
-      const std::vector<Reached>& reached) const {
-    const std::size_t n = reached.size();
-    std::vector<std::vector<Interval>> over(n, std::vector<Interval>(n));
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) {
-        const auto &a = reached[i].cases, &b = reached[j].cases;
-        if (i == j || a.empty() || b.empty()) continue;
-        if (!std::ranges::equal(
-                a, b, {}, [](const auto& one) { return one.first; },
-                [](const auto& one) { return one.first; }))
-          return std::nullopt;
-        std::vector<Interval> both;
-        for (const auto& [scene, at] : a)
-          if (const auto ratio = all_[scene].bench.ratio(at, b.at(scene))) both.push_back(*ratio);
-        if (both.size() != a.size()) return std::nullopt;
-        over[i][j] = geometric_mean(both);
-      }
-    return over;
   }
 
   const std::vector<Column>& solvers_;
   CaseList& list_;
-  std::vector<Timed> all_, shared_;
+  std::vector<JudgedScene> all_, shared_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/report/questions/case_list.hpp"
-#include "experiments/timing/recommendation.hpp"
+#include "experiments/timing/cheapest.hpp"
 
 namespace taut::report {
 
@@ -25,14 +25,10 @@ SceneBench with_shared_parameters(SceneBench);
 std::string setting_text(const SceneBench&, std::size_t at, std::vector<std::string> beside = {});
 
 /// If the settings of a solver that reach the error do not count: a cell of these words, with the
-/// state and the reason, such as "hardly moves: 5 % of the way".
-std::optional<Cell> only_uncounted(const std::vector<Candidate>&, const std::string& solver,
-                                   double error, const std::string& words);
+/// state and the reason of the cheapest, such as "hardly moves: 5 % of the way".
+std::optional<Cell> only_uncounted(const JudgedScene&, const std::string& solver, double error,
+                                   const std::string& words);
 
-/// Whether a cheaper setting of the same solver may reach what case `at` reaches: none was tried,
-/// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is then
-/// an upper bound.
-bool is_upper_bound(const SceneBench&, const std::vector<Candidate>&, std::size_t at);
 /// Behind the setting of an upper bound.
 inline constexpr const char* kUpperBound = "; at most";
 /// What it means.

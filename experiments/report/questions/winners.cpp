@@ -11,6 +11,7 @@
 #include "experiments/report/questions/costs.hpp"
 #include "experiments/report/questions/links.hpp"
 #include "experiments/system/distinct.hpp"
+#include "experiments/timing/cheapest.hpp"
 
 namespace taut::report {
 
@@ -26,14 +27,13 @@ std::string links_text(const Record& r) {
 class SceneWinners {
  public:
   SceneWinners(const SceneBench& bench, const ReportInput& input, CaseList& list)
-      : bench_(with_shared_parameters(bench)), input_(input), list_(list) {
-    candidates_ = bench_.candidates(kErrorMetric);
-  }
+      : scene_(with_shared_parameters(bench), kErrorMetric), input_(input), list_(list) {}
 
   WinnerRow row() {
-    WinnerRow row{bench_.cases.empty() ? bench_.scene : bench_.cases.front().record.scene,
-                  bench_.scene};
-    for (const BenchedCase& c : bench_.cases)
+    const SceneBench& bench = scene_.bench;
+    WinnerRow row{bench.cases.empty() ? bench.scene : bench.cases.front().record.scene,
+                  bench.scene};
+    for (const BenchedCase& c : bench.cases)
       if (const WayGone::By by = way_gone(c.record).by; by != WayGone::By::nothing) row.way = by;
     for (const double level : kErrorLevels) row.cells.push_back(cell(level));
     return row;
@@ -42,77 +42,63 @@ class SceneWinners {
  private:
   /// Its arithmetic and the stiffness of its links stand beside its setting.
   Contender contender(std::size_t at) {
-    const Record& r = bench_.cases[at].record;
+    const Record& r = scene_.bench.cases[at].record;
     const std::string links = links_text(r);
     std::vector<std::string> beside{"precision"};
     if (!links.empty())
       for (const std::string& name : stiffness_parameters(r.solver)) beside.push_back(name);
     return {r.solver,
-            setting_text(bench_, at, beside),
+            setting_text(scene_.bench, at, beside),
             arithmetic_of(r, input_.vectors),
             links,
-            candidates_[at].cost,
-            candidates_[at].error,
+            scene_.candidates[at].cost,
+            scene_.candidates[at].error,
             r.value(std::string(kRmsStretchPeak)),
             list_.key(r),
-            is_upper_bound(bench_, candidates_, at)};
+            scene_.is_upper_bound(at)};
   }
 
   WinnerCell cell(double level) {
     WinnerCell cell;
-    std::vector<std::size_t> best;  // of each solver
-    for (const std::string& solver : solvers_of(bench_))
-      if (const auto at = best_for({.error = level}, candidates_, solver)) best.push_back(*at);
-    std::ranges::sort(best, {}, [&](std::size_t i) { return candidates_[i].cost.mid; });
-    pass_over(cell, level,
-              best.empty() ? std::numeric_limits<double>::infinity()
-                           : candidates_[best.front()].cost.mid);
+    const std::vector<std::size_t> best = scene_.best_of_each({.error = level});
     if (best.empty()) {
+      pass_over(cell, level, std::numeric_limits<double>::infinity());
       cell.why = why_none();
       return cell;
     }
-    const std::size_t first = best.front();
-    for (const std::size_t at : best) {
-      const auto times = at == first ? std::optional(Interval{1, 1, 1}) : bench_.ratio(at, first);
-      const bool told = at != first && times && !is_upper_bound(bench_, candidates_, at) &&
-                        is_difference(judge(*times, bench_.control));
-      if (!told)
-        cell.cheapest.push_back(contender(at));
-      else if (!cell.next) {
-        cell.next = contender(at);
-        cell.times = *times;
+    const Cheapest found = scene_.cheapest(best);
+    pass_over(cell, level, scene_.candidates[found.at].cost.mid);
+    cell.cheapest.push_back(contender(found.at));
+    for (const Rival& rival : found.rivals)
+      if (!rival.is_dearer()) {
+        cell.cheapest.push_back(contender(rival.at));
+      } else if (!cell.next) {
+        cell.next = contender(rival.at);
+        cell.times = *rival.times;
       }
-    }
     return cell;
   }
 
   /// Solvers whose cheaper settings reach the error by what does not count.
   void pass_over(WinnerCell& cell, double level, double cost) const {
-    for (const std::string& solver : solvers_of(bench_)) {
-      std::optional<std::size_t> cheapest;
-      for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        const Candidate& one = candidates_[i];
-        if (one.solver != solver || !(one.hardly_moves || one.not_accepted)) continue;
-        if (!(one.error <= level) || !(one.cost.mid < cost)) continue;
-        if (!cheapest || one.cost.mid < candidates_[*cheapest].cost.mid) cheapest = i;
-      }
-      if (cheapest) cell.passed_over.emplace_back(solver, candidates_[*cheapest].failure);
-    }
+    for (const std::string& solver : solvers_of(scene_.bench))
+      if (const auto at = scene_.uncounted(solver, level);
+          at && scene_.candidates[*at].cost.mid < cost)
+        cell.passed_over.emplace_back(solver, scene_.candidates[*at].failure);
   }
 
   /// "at best 0.12 % (XPBD)"
   std::string why_none() const {
-    const auto at = best_for({.budget = std::numeric_limits<double>::infinity()}, candidates_, "");
-    if (at)
-      return "at best " + quantity(kErrorMetric).text(candidates_[*at].error) + " (" +
-             solver_title(candidates_[*at].solver) + ")";
-    return candidates_.empty() ? "nothing was timed" : candidates_.front().failure;
+    const std::vector<Candidate>& all = scene_.candidates;
+    if (const auto at = scene_.best({.budget = std::numeric_limits<double>::infinity()}))
+      return "at best " + quantity(kErrorMetric).text(all[*at].error) + " (" +
+             solver_title(all[*at].solver) + ")";
+    return all.empty() ? "nothing was timed" : all.front().failure;
   }
 
-  SceneBench bench_;
+  JudgedScene scene_;
   const ReportInput& input_;
   CaseList& list_;
-  std::vector<Candidate> candidates_;
 };
 
 /// Who wins, by solver, and where.
@@ -233,6 +219,44 @@ std::string line_of(const WinnerRow& row, std::size_t level) {
             significant(cell.times.high) + ") times cheaper than " +
             solver_title(cell.next->solver);
   return text;
+}
+
+std::vector<std::string> rules_of(const WinnerMap& map) {
+  const auto titles = [&](WayGone::By way) {
+    std::vector<std::string> all;
+    for (const WinnerRow& row : map.rows)
+      if (row.way == way) all.push_back(row.title);
+    return join(all, ", ");
+  };
+  std::vector<std::string> all{
+      "Each cell names the cheapest solver, how many times cheaper it is than the next one, the "
+      "CPU time of a frame of 1/" +
+          number_text(1 / kFrame) +
+          "\u00A0s, the setting, the arithmetic, and the stiffness of links that are not rigid.",
+      "A setting does not count if it fails, passes through a body or sinks into it by more than " +
+          shown(kShare, kMostDepth, 1) +
+          " of the cloth\u2019s diagonal, or if the cloth travels less than " +
+          shown(kShare, kLeastMotion, 2) + " of its way.",
+      "The way is that of the scene\u2019s reference in motion, from which the cloth may be off "
+      "by " +
+          shown(kShare, kMostMotionError, 2) + " of it.",
+      "Without a reference and without contact, the way is that of exact steps of implicit Euler."};
+  if (const std::string missed = titles(WayGone::By::missed); !missed.empty())
+    all.push_back(
+        "On " + missed +
+        " motion is judged by what the cloth\u2019s own steps miss of exact ones: solvers "
+        "that declare no step (Bullet\u2019s) and contact that does not settle are not "
+        "judged there.");
+  if (const std::string unjudged = titles(WayGone::By::nothing); !unjudged.empty())
+    all.push_back("On " + unjudged +
+                  " motion is not judged; cloth that lags may show little stretch.");
+  all.emplace_back(
+      "The error is that of the last second; a setting that exceeds it at some moment of the run "
+      "says by how much.");
+  all.emplace_back(
+      "Only settings that were timed compete: a solver is absent if no timed setting reaches the "
+      "error.");
+  return all;
 }
 
 std::string certainty_text(double noise) {

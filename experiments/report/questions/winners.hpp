@@ -68,6 +68,8 @@ std::string text_of(const std::vector<Said>&);
 /// "2.3 times cheaper than XPBD", "0.07 ms a frame": of one cell, a line; "" of an empty map.
 std::string line_of(const WinnerRow&, std::size_t level);
 
+/// What a cell of the map says and which settings count, sentence by sentence, for the page.
+std::vector<std::string> rules_of(const WinnerMap&);
 /// How sure a ratio of costs is: one statement for the page.
 std::string certainty_text(double noise);
 

@@ -5,6 +5,7 @@
 
 #include "core/io/document.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 #include "core/model/scene_keys.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -132,8 +133,9 @@ bool of_scene(const std::string& of) { return of.find('.') != std::string::npos;
 }  // namespace
 
 std::string_view to_string(Frontier::Kind kind) {
-  constexpr std::string_view kNames[] = {"bracketed", "all stable", "none stable", "not answered"};
-  return kNames[static_cast<std::size_t>(kind)];
+  constexpr Names<Frontier::Kind::not_answered> kNames{"bracketed", "all stable", "none stable",
+                                                       "not answered"};
+  return kNames[kind];
 }
 
 const Probed* Frontier::at(double value) const {

@@ -1,11 +1,13 @@
 #include "experiments/truths/assertions/assertions.hpp"
 
+#include "core/model/names.hpp"
+
 namespace taut {
 
 std::string_view to_string(AssertionVerdict verdict) {
-  constexpr std::string_view kNames[] = {"holds", "holds under conditions", "does not hold",
-                                         "cannot be tested"};
-  return kNames[static_cast<int>(verdict)];
+  constexpr Names<AssertionVerdict::cannot_be_tested> kNames{"holds", "holds under conditions",
+                                                             "does not hold", "cannot be tested"};
+  return kNames[verdict];
 }
 
 const std::vector<Assertion>& assertions() {

@@ -19,7 +19,7 @@ struct Assertion {
   std::string_view because;  ///< condition, figure, or why it cannot be tested
   /// Name of the truth to which `taut verify` holds the verdict; "": none can.
   std::string_view truth;
-  std::string_view figure = "";  ///< beginning of the truth's number to quote; "": the first
+  std::string_view figure = "";  ///< quantity of the truth to quote; "": the first
 };
 
 /// All assertions, source by source.

@@ -14,14 +14,14 @@ std::string figure_text(const Finding& f) {
                           : formatted(" (%.4g +- %.3g)", f.expected, f.tolerance));
 }
 
-/// The finding to quote for an assertion: one that breaks it, otherwise the first measured one
-/// whose quantity begins with this text.
-const Finding* beginning_with(const std::vector<Finding>& findings, std::string_view begins) {
+/// The finding to quote for an assertion: one that breaks it, otherwise the first measured one, of
+/// this quantity if it has a name.
+const Finding* quoted(const std::vector<Finding>& findings, std::string_view quantity) {
   const Finding* told = nullptr;
   for (const Finding& f : findings) {
     if (f.verdict == TruthVerdict::broken) return &f;
-    const bool quoted = f.quantity.starts_with(begins) && f.verdict != TruthVerdict::not_applicable;
-    if (!told && quoted) told = &f;
+    const bool asked = quantity.empty() || f.quantity == quantity;
+    if (!told && asked && f.verdict != TruthVerdict::not_applicable) told = &f;
   }
   return told;
 }
@@ -37,7 +37,7 @@ std::vector<JudgedAssertion> judge_assertions(const FindingsOf& findings_of) {
     if (!assertion.truth.empty()) {
       const std::vector<Finding>* findings = findings_of(assertion.truth);
       if (!findings) continue;
-      const Finding* told = beginning_with(*findings, assertion.figure);
+      const Finding* told = quoted(*findings, assertion.figure);
       if (!told || told->verdict == TruthVerdict::broken) judged.verdict = "overturned";
       if (told) judged.figure = figure_text(*told);
     }

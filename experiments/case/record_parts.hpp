@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/case/record.hpp"
+#include "experiments/system/json.hpp"
+
+namespace taut {
+
+// What a record's columns hold beside numbers and texts, as JSON and back. The JSON library finds
+// to_json by its name; read_into throws InputError.
+void to_json(Json&, const PassCost&);
+void to_json(Json&, const SceneSetting&);
+void to_json(Json&, const ResolvedSetting&);
+void to_json(Json&, const Status::Kind&);
+void read_into(const JsonReader&, Status::Kind&);
+void read_into(const JsonReader&, std::vector<PassCost>&);
+void read_into(const JsonReader&, SceneSettings&);
+void read_into(const JsonReader&, ResolvedSettings&);
+
+}  // namespace taut

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/timing/study_bench.hpp"
+
+namespace taut {
+
+/// A cost to be compared with others.
+struct Cost {
+  std::size_t at = 0;     ///< whose: the index of a case, of a column
+  double mid = 0;         ///< any unit
+  bool is_bound = false;  ///< the cost is at most that
+};
+
+/// A cost beside another one.
+struct Rival {
+  std::size_t at = 0;
+  std::optional<Interval> times;          ///< over the other one; nothing: they cannot be compared
+  Certainty certainty = Certainty::none;  ///< of these times
+  bool is_bound = false;
+
+  /// Whether it is more than the other one: noise cannot make the difference, nor can a setting
+  /// that nobody tried.
+  bool is_dearer() const;
+};
+
+/// The least of several costs, and the others beside it.
+struct Cheapest {
+  std::size_t at = 0;
+  std::vector<Rival> rivals;  ///< by rising cost
+
+  /// Whether there are others, and all are dearer.
+  bool is_told() const;
+};
+
+/// Cost i over cost j; nothing: not both were timed in turns.
+using RatioOf = std::function<std::optional<Interval>(std::size_t i, std::size_t j)>;
+
+/// Which of these costs is the least, and who cannot be told from it: everything that calls a
+/// setting the cheapest asks here. Precondition: there is one.
+Cheapest cheapest_of(std::vector<Cost>, const RatioOf&, const Interval& control,
+                     double tolerance = kTolerance);
+
+/// A scene of a bench with its cases judged by their error: once, for each of their intervals is a
+/// bootstrap.
+struct JudgedScene {
+  SceneBench bench;
+  std::vector<Candidate> candidates;  ///< of its cases, in their order
+
+  JudgedScene(SceneBench, const std::string& metric);
+  bool has(const std::string& solver) const;
+  /// The case of the solver ("" = any) that serves the target best; nothing: none meets it.
+  std::optional<std::size_t> best(const Target&, const std::string& solver = "") const;
+  /// The same of each solver that meets it, in order of appearance.
+  std::vector<std::size_t> best_of_each(const Target&) const;
+  /// Of the solver's settings that reach the error and do not count, the cheapest.
+  std::optional<std::size_t> uncounted(const std::string& solver, double error) const;
+  /// Whether a cheaper setting of the same solver may reach what the case reaches: none was tried,
+  /// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is
+  /// then an upper bound.
+  bool is_upper_bound(std::size_t at) const;
+  /// A case beside another one.
+  Rival beside(std::size_t at, std::size_t other, double tolerance = kTolerance) const;
+  /// Which of these cases is the cheapest. Precondition: there is one.
+  Cheapest cheapest(const std::vector<std::size_t>& cases) const;
+};
+
+}  // namespace taut
