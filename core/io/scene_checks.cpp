@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kShortestLink = 1e-9;  ///< m
 
-bool is_pinned(const Scene& scene, std::size_t i) {
+bool starts_pinned(const Scene& scene, std::size_t i) {
   return std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i));
 }
 
@@ -67,7 +67,7 @@ void resolve(Scene& scene) {
   std::vector<Shape> shapes;
   for (const Collider& collider : scene.colliders) shapes.push_back(shape_at(collider, 0));
   for (std::size_t i = 0; i < scene.start.x.size(); ++i)
-    if (!is_pinned(scene, i))
+    if (!starts_pinned(scene, i))
       scene.start.x[i] = resolved(shapes, scene.start.x[i], scene.thickness);
 }
 
@@ -80,7 +80,7 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
   std::size_t vertex = 0, count = 0;
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
     const double depth = -surface(shape, scene.start.x[i]).distance;
-    if (is_pinned(scene, i) || depth <= rounding) continue;
+    if (starts_pinned(scene, i) || depth <= rounding) continue;
     ++count;
     if (depth > deepest) {
       deepest = depth;
@@ -105,8 +105,7 @@ void judge_thin(const Value& item, Section& root, const Collider& collider, cons
                             "a 'thickness' in [cloth] above 0");
 }
 
-/// Reports a path that jumps. A motion that takes a time step or longer is like one by `velocity`,
-/// however fast, and is not a jump.
+/// Reports a path that jumps. A motion that lasts a time step or longer is fast, not a jump.
 void judge_path(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
   const auto& path = collider.motion.path;
   for (std::size_t k = 1; k < path.size(); ++k) {

@@ -10,7 +10,8 @@ namespace taut {
 
 /// One component of the second derivative of position over the cloth, sum c_i x_i [1/m], with its
 /// energy k/2 |sum c_i x_i|^2. The coefficients add up to 0 and are the same for the three
-/// coordinates: gradient k c_i g and Hessian k c_i c_j I are linear and constant.
+/// coordinates: with g = sum c_i x_i, the gradient k c_i g is linear and the Hessian k c_i c_j I
+/// constant.
 struct BendingElement {
   std::size_t size = 0;            ///< number of vertices, 3 to 6
   std::array<int, 6> vertex{};     ///< [size]
@@ -44,10 +45,10 @@ struct BendingElement {
 /// sin^2 a)^2.
 ///
 /// The second derivatives at a triangle are those of the quadratic through its vertices and the
-/// ones beyond its edges, unfolded into its plane: exact for quadratic shapes on any mesh. There is
-/// no vertex beyond the cloth's own edges, and the quadratic that bends least is taken: there is no
-/// moment there. (The paper's sum over hinges, 3/(A_1 + A_2) of each, is three times as stiff for a
-/// fold along the lines of a grid.) A grid takes the mean of its two triangulations: second
+/// ones beyond its edges, unfolded into its plane: exact for quadratic shapes on any mesh. At the
+/// cloth's edge, where no vertex lies beyond, the quadratic that bends least is taken, so the edge
+/// carries no moment. (The paper's sum over hinges, 3/(A_1 + A_2) of each, is three times as stiff
+/// for a fold along the lines of a grid.) A grid takes the mean of its two triangulations: second
 /// differences along its lines at every vertex and a twist in every cell. Equal elements are
 /// merged. Empty without scene.bending.
 std::vector<BendingElement> make_bending(const Scene&);

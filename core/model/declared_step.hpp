@@ -15,8 +15,8 @@ using Stiffness = std::array<double, kFamilies.size()>;
 struct DeclaredStep {
   Stiffness stiffness{};         ///< N/m
   int substeps = 1;              ///< substeps of a step
-  std::string of = "a substep";  ///< the interval that is h
-  std::string none = "";  ///< why it is another step, or why none is known; "": it is this one
+  std::string of = "a substep";  ///< the interval of one step of implicit Euler
+  std::string none = "";  ///< why it is not implicit Euler, or why that is not known; "": it is
 };
 
 }  // namespace taut

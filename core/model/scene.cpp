@@ -60,7 +60,7 @@ class Bytes {
     }
     add_motion("collider", c.motion);
     add("collider", c);
-    if (c.frames) add_later(kFramesKey, [&](Bytes& b) { b.add(*c.frames); });
+    if (c.frames) add_later(*find_scene_key(kFramesKey), [&](Bytes& b) { b.add(*c.frames); });
   }
   void add(const BodyFrames& f) { add_each(f.places, f.fps); }
   void add(const Bending& b) {
@@ -90,26 +90,26 @@ class Bytes {
   void add(std::string_view section, const Part& part) {
     const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
       if (!key.added_later()) return add(value);
-      if (key.counts(value, initial)) add_later(key.path, [&](Bytes& b) { b.add(value); });
+      if (key.counts(value, initial)) add_later(key, [&](Bytes& b) { b.add(value); });
     };
     each_key(section, part, visit, keys_);
   }
   /// Adds a key that was added later and is present, with its name and its position among the
   /// others.
   template <class AddValue>
-  void add_later(std::string_view key, const AddValue& add_value) {
+  void add_later(const SceneKey& key, const AddValue& add_value) {
     Bytes bytes(keys_);
     bytes.add(text_.size());
     add_value(bytes);
-    later_.emplace_back(key, bytes.text_);
+    later_.emplace_back(LaterKey{std::string(key.path), key.since}, bytes.text_);
   }
   std::string all() const {
     std::string text = text_;
-    for (const auto& [key, bytes] : later_) text += key + bytes;
+    for (const auto& [key, bytes] : later_) text += key.path + bytes;
     return text;
   }
-  std::vector<std::string> later_keys() const {
-    std::vector<std::string> keys;
+  std::vector<LaterKey> later_keys() const {
+    std::vector<LaterKey> keys;
     for (const auto& [key, bytes] : later_) keys.push_back(key);
     return keys;
   }
@@ -118,7 +118,7 @@ class Bytes {
   std::span<const SceneKey> keys_;
   std::string text_;
   /// Name, and bytes of position and value.
-  std::vector<std::pair<std::string, std::string>> later_;
+  std::vector<std::pair<LaterKey, std::string>> later_;
 };
 
 }  // namespace
@@ -214,9 +214,9 @@ std::string content(const Scene& scene, std::span<const SceneKey> keys) {
 }
 std::string content(const Scene& scene) { return content(scene, scene_keys()); }
 
-std::vector<std::string> later_keys(const Scene& scene, std::span<const SceneKey> keys) {
+std::vector<LaterKey> later_keys(const Scene& scene, std::span<const SceneKey> keys) {
   return bytes_of(scene, keys).later_keys();
 }
-std::vector<std::string> later_keys(const Scene& scene) { return later_keys(scene, scene_keys()); }
+std::vector<LaterKey> later_keys(const Scene& scene) { return later_keys(scene, scene_keys()); }
 
 }  // namespace taut

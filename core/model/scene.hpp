@@ -113,7 +113,12 @@ Vec3 pin_position(const Scene&, int vertex, double t);
 /// Content of a scene as bytes, which are equal exactly if the scenes are the same simulation.
 std::string content(const Scene&);
 
+/// A key that was added to the scene file in this version.
+struct LaterKey {
+  std::string path;
+  int since;
+};
 /// The keys of scene_keys.hpp that were added later and are not at their defaults.
-std::vector<std::string> later_keys(const Scene&);
+std::vector<LaterKey> later_keys(const Scene&);
 
 }  // namespace taut

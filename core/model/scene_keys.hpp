@@ -97,7 +97,7 @@ struct SceneKey {
   }
 
   SceneKey need() const { return with(&SceneKey::needed, true); }
-  SceneKey came_later(int version = 2) const { return with(&SceneKey::since, version); }
+  SceneKey came_later(int version) const { return with(&SceneKey::since, version); }
   SceneKey limited(std::string_view words) const { return with(&SceneKey::limits, words); }
   SceneKey otherwise(std::string_view words) const { return with(&SceneKey::fallback, words); }
   SceneKey left_out_as(std::string_view name) const { return with(&SceneKey::effect, name); }
@@ -129,7 +129,7 @@ const SceneKey* find_scene_key(std::string_view path);
 
 /// content() and later_keys() with another table of keys.
 std::string content(const Scene&, std::span<const SceneKey> keys);
-std::vector<std::string> later_keys(const Scene&, std::span<const SceneKey> keys);
+std::vector<LaterKey> later_keys(const Scene&, std::span<const SceneKey> keys);
 
 /// Calls visit(key, member, default) for every key of the section that is a member of the part.
 template <class Part, class Visit>

@@ -130,8 +130,8 @@ struct AccuracyParameters {
   std::string_view link_order;  ///< parameter that kLinkOrder resolves; "": there is none
   bool all_at_once = false;     ///< an iteration solves for all links at once and is not a sweep
   /// Springs that may be softer or stiffer. Without sweeps, each value needs its own substeps. With
-  /// sweeps, a stiffer value is tried where the default misses the error, and each as an
-  /// alternative.
+  /// sweeps, stiffer values are tried where the default misses the error; then every value is tried
+  /// as an alternative.
   Ladder stiffness;
   std::span<const Ladder> alternatives;  ///< tried one at a time, with the others at their best
   /// All parameters that may vary along a curve of error over cost, in the order in which labels

@@ -6,10 +6,10 @@
 
 namespace taut {
 
-// What of a case is compared with what it was before: by a baseline (experiments/baseline), between
-// two results folders (experiments/report) and from build to build (experiments/history).
+// Comparing a case with an earlier result of it: from a baseline (experiments/baseline), another
+// results folder (experiments/report) or another build (experiments/history).
 
-/// How far a value may move: |a - b| <= absolute + relative * |b|, b what it was.
+/// How far a value may move: |now - before| <= absolute + relative * |before|.
 struct Tolerance {
   double absolute = 0;  ///< in the metric's unit
   double relative = 0;
@@ -24,7 +24,7 @@ class Tolerances {
  public:
   Tolerances() = default;
   explicit Tolerances(std::map<std::string, Tolerance> by_name) : by_name_(std::move(by_name)) {}
-  /// No difference holds, however small.
+  /// Accepts no difference.
   static Tolerances exact();
   /// The most special one; the built-in default (relative 1e-6, absolute 1e-12) if none is given.
   const Tolerance& of(const std::string& value) const;
@@ -49,7 +49,7 @@ struct ComparedValue {
 };
 
 using MetricValues = std::map<std::string, double>;
-/// All values of either but those that are ignored: by name, what is gained last.
+/// All values of either that are not ignored, by name; gained ones come last.
 std::vector<ComparedValue> compare_values(const MetricValues& before, const MetricValues& now,
                                           const Tolerances&);
 

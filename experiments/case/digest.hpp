@@ -14,7 +14,8 @@ std::string sha256(std::string_view bytes);
 /// SHA-256 of content(scene): equal exactly when the scenes are the same simulation.
 std::string digest(const Scene&);
 
-/// SHA-256 of the bits of x and v, -0 and 0 apart: equal exactly when the states are bit-identical.
+/// SHA-256 of the bits of x and v: equal exactly when the states are bit-identical (-0 and 0
+/// differ).
 std::string digest(const State&);
 
 /// The address of a case's result: SHA-256 of canonical JSON (keys in a fixed order, no spaces,

@@ -77,7 +77,8 @@ double legitimate_strain(const Scene&, int substeps = 1);
 std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& step_cost,
                                     int substeps = 1);
 
-/// Judges a run, step by step; never by strain, which a soft solver may rightly bring to 500 %.
+/// Judges a run, step by step. A large strain is no explosion, since soft cloth may rightly have
+/// it.
 ///   error                the solver stored another number of vertices than the scene has
 ///   exploded{nonfinite}  a position or velocity is not finite
 ///   exploded{energy}     kinetic energy above ten times EnergyBudget::available

@@ -57,8 +57,7 @@ struct CaseSpec {
 /// A case that was run: one line of every table. Everything that metrics, plots, reports and checks
 /// need. How it is written and kept: record_columns().
 struct Record {
-  std::string
-      key;  ///< SHA-256 over content, solver, implementation, parameters and metrics version; hex
+  std::string key;      ///< case_key() (experiments/case/digest.hpp)
   std::string id;       ///< for people, unique in a study: "hang dt=1/64 jakobsen:iterations=8"
   std::string setting;  ///< the same without the scene
   CaseSpec spec;

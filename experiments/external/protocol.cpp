@@ -14,7 +14,6 @@
 #include "core/model/scene_keys.hpp"
 #include "core/model/text.hpp"
 #include "core/model/triangle_mesh.hpp"
-#include "experiments/system/distinct.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::external {
@@ -79,12 +78,11 @@ Json json_of(const Collider& collider) {
   return one;
 }
 
-/// Versions of the protocol and of the scene file. Each includes the ones before it; later_parts()
-/// names what each adds.
-constexpr std::string_view kProtocols[] = {"taut-solver/1", "taut-solver/2", "taut-solver/3",
-                                           "taut-solver/4"};
-constexpr std::string_view kFormats[] = {"taut-scene/1", "taut-scene/2", "taut-scene/3",
-                                         "taut-scene/4"};
+/// The newest version of the protocol and of the scene file. Each version includes the ones before
+/// it; later_parts() names what each adds.
+int newest_version() { return std::ranges::max_element(scene_keys(), {}, &SceneKey::since)->since; }
+std::string protocol_name(int version) { return "taut-solver/" + std::to_string(version); }
+
 constexpr double kLargestInteger = 2147483647;
 
 /// Returns read(). An error that `read` finds in an answer is a breach of the protocol.
@@ -210,8 +208,11 @@ std::vector<Later> later_parts(const Scene& scene) {
   if (!scene.releases.empty()) all.push_back({2, "pins that let go"});
   if (std::ranges::any_of(scene.links, is_seam)) all.push_back({2, "a seam"});
   if (is_there<MeshBody>(scene)) all.push_back({3, "a body of triangles"});
-  for (const std::string& key : distinct(later_keys(scene)))
-    all.push_back({find_scene_key(key)->since, key == kFramesKey ? "a body that deforms" : key});
+  for (const LaterKey& key : later_keys(scene)) {
+    const std::string words = key.path == kFramesKey ? "a body that deforms" : key.path;
+    if (std::ranges::find(all, words, &Later::words) == all.end())
+      all.push_back({key.since, words});
+  }
   std::ranges::stable_sort(all, {}, &Later::since);
   return all;
 }
@@ -236,7 +237,7 @@ std::string scene_file(const Scene& scene) {
   const auto& grid = scene.mesh.grid;
   const std::vector<Later> later = later_parts(scene);
   const int version = later.empty() ? 1 : later.back().since;
-  Json file{{"format", kFormats[version - 1]},
+  Json file{{"format", "taut-scene/" + std::to_string(version)},
             {"name", scene.name},
             {"vertices", scene.mesh.size()},
             {"grid", grid ? Json{grid->nu, grid->nv} : Json()},
@@ -279,11 +280,14 @@ static_assert(std::endian::native == std::endian::little, "states are little-end
 std::unique_ptr<const Hello> read_hello(const Json& answer) {
   const JsonReader j = reader(answer, "hello");
   const std::string protocol = j.at("protocol").text();
-  const auto known = std::ranges::find(kProtocols, protocol);
-  if (known == std::end(kProtocols))
-    j.at("protocol").fail("'" + protocol + "' is not one of " + join(kProtocols, ", "));
+  std::vector<std::string> known;
+  for (int version = 1; version <= newest_version(); ++version)
+    known.push_back(protocol_name(version));
+  const auto spoken = std::ranges::find(known, protocol);
+  if (spoken == known.end())
+    j.at("protocol").fail("'" + protocol + "' is not one of " + join(known, ", "));
   auto hello = std::make_unique<Hello>();
-  hello->version_spoken = static_cast<int>(known - std::begin(kProtocols)) + 1;
+  hello->version_spoken = static_cast<int>(spoken - known.begin()) + 1;
   hello->name = j.at("name").text();
   hello->version = j.at("version").text();
   hello->summary = text_or(j, "summary", hello->name);
@@ -296,7 +300,7 @@ std::unique_ptr<const Hello> read_hello(const Json& answer) {
 }
 
 std::unique_ptr<const Hello> say_hello(Connection& connection) {
-  const Json answer = connection.ask({{"op", "hello"}, {"protocol", kProtocols[0]}});
+  const Json answer = connection.ask({{"op", "hello"}, {"protocol", protocol_name(1)}});
   return judged(connection, [&] { return read_hello(answer); });
 }
 

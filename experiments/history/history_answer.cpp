@@ -101,7 +101,7 @@ Table table_of_builds(const History& history) {
                {"steps"},
                {"gap"}},
               {},
-              "A case that two builds share has one result, for all that it depends on is equal."};
+              "Two builds share a result if nothing that it depends on changed between them."};
   for (std::size_t i = 0; i < history.builds.size(); ++i) {
     const Build& build = history.builds[i];
     const auto cases = std::ranges::count_if(

@@ -85,8 +85,8 @@ inline constexpr std::string_view kStrainFloor = "strain.floor";
 
 /// A number that a metric returns.
 struct ValueSpec {
-  /// Limit below which a value says nothing about the solver: another value of the case, and its
-  /// meaning.
+  /// Limit below which a value says nothing about the solver: another value or a resolved setting
+  /// of the case, and its meaning.
   struct Floor {
     std::string_view value, text;
   };

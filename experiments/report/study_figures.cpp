@@ -32,7 +32,7 @@ std::optional<double> exponent(const std::string& text) {
 std::string hold_other(const PlotSpec& spec, Records& records, const std::string& scene,
                        const Remark& remark) {
   const std::string held = spec.x == "dt" ? kSweeps : "dt";
-  const Slice slice = hold(records, held, held == "dt" ? 1.0 / 64 : 8);
+  const Slice slice = hold(records, held);
   const std::size_t left_out = records.size() - slice.records.size();
   records = slice.records;
   if (left_out == 0) return "";

@@ -9,7 +9,7 @@ namespace taut {
 
 struct Rounds {
   int count = 1;
-  /// A round is not started if, taking as long as the longest so far, it would not end by then.
+  /// No round is started that would end after this if it took 1.5 times as long as the longest.
   SteadyClock::time_point deadline = SteadyClock::time_point::max();
   /// Called after each round, if set.
   std::function<void(std::size_t done, std::size_t all)> progress;

@@ -46,6 +46,10 @@ class Clock {
 StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall / steps}; }
 
 /// Start of a worker's answer that is an error instead of a time.
+// The worker's side of a session: kReady, then an answer to each line of a request.
+constexpr std::string_view kReady = "ready 2";  ///< with the version of what follows
+constexpr std::string_view kPilotRun = "pilot_run", kSample = "time", kRemark = "remark",
+                           kMemory = "memory";
 constexpr std::string_view kRefusal = "! ";
 
 std::vector<std::string> worker_command(const CaseSpec& spec,
@@ -92,24 +96,29 @@ int serve_timing(const Scene& scene, const SolverChoice& choice) {
     bind_to_cores(choice.params.has("threads") ? std::max(1, choice.params.integer("threads")) : 1);
   const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
   std::cout.precision(17);
-  std::cout << "ready" << std::endl;
+  std::cout << kReady << std::endl;
   std::optional<CheckpointedRun> run;
-  std::string word;
+  std::string line;
   const auto answer = [&](const StepTime& time) {
     if (std::isnan(time.cpu)) throw std::runtime_error(solver->time_remark());
     std::cout << time.cpu << ' ' << time.wall << std::endl;
   };
-  while (std::cin >> word) try {
+  while (std::getline(std::cin, line)) try {
+      std::istringstream request(line);
+      std::string word;
       int steps = 0;
-      if (word == "pilot_run" && std::cin >> steps) {
-        run.emplace(scene, *solver, std::max(1, steps));
+      request >> word >> steps;
+      if (word == kPilotRun && steps > 0) {
+        run.emplace(scene, *solver, steps);
         answer(run->whole());
-      } else if (word == "time" && run && std::cin >> steps) {
+      } else if (word == kSample && steps > 0 && run) {
         answer(run->sample(*solver, steps));
-      } else if (word == "remark") {
+      } else if (word == kRemark) {
         std::cout << solver->time_remark() << std::endl;
-      } else {
+      } else if (word == kMemory) {
         std::cout << solver->peak_bytes() << std::endl;
+      } else {
+        throw std::runtime_error("the timing worker cannot do '" + line + "'");
       }
     } catch (const std::runtime_error& error) {
       std::cout << kRefusal << error.what() << std::endl;
@@ -128,10 +137,11 @@ TimingWorker::TimingWorker(const CaseSpec& spec, const std::filesystem::path& pr
     : process_(worker_command(spec, program), {.input = ProcessOptions::Stream::piped,
                                                .output = ProcessOptions::Stream::piped,
                                                .errors = ProcessOptions::Stream::inherited}) {
+  const std::string who = "the timing worker of " + spec.scene + " " + spec.solver;
   std::string line;
-  if (!process_.read_line(line) || line != "ready")
-    throw std::runtime_error("the timing worker of " + spec.scene + " " + spec.solver +
-                             " did not start");
+  if (!process_.read_line(line)) throw std::runtime_error(who + " did not start");
+  if (line != kReady)
+    throw std::runtime_error(who + " is of a build that cannot be timed beside this one");
 }
 
 std::string TimingWorker::ask(const std::string& request) {
@@ -149,19 +159,22 @@ std::string TimingWorker::ask(const std::string& request) {
 StepTime TimingWorker::ask_time(const std::string& line) {
   std::istringstream answer(ask(line));
   StepTime time;
-  answer >> time.cpu >> time.wall;
+  if (!(answer >> time.cpu >> time.wall))
+    throw std::runtime_error("the timing worker answered '" + answer.str() + "'");
   return time;
 }
 
 StepTime TimingWorker::pilot_run(int steps) {
-  return ask_time("pilot_run " + std::to_string(steps));
+  return ask_time(std::string(kPilotRun) + " " + std::to_string(steps));
 }
 
-StepTime TimingWorker::sample(int steps) { return ask_time("time " + std::to_string(steps)); }
+StepTime TimingWorker::sample(int steps) {
+  return ask_time(std::string(kSample) + " " + std::to_string(steps));
+}
 
-std::size_t TimingWorker::peak_bytes() { return std::stoull(ask("memory")); }
+std::size_t TimingWorker::peak_bytes() { return std::stoull(ask(std::string(kMemory))); }
 
-std::string TimingWorker::remark() { return ask("remark"); }
+std::string TimingWorker::remark() { return ask(std::string(kRemark)); }
 
 namespace {
 

@@ -98,7 +98,7 @@ TEST(VerdictBorders, AStrainOfTwoIsExtremeBesideSoftRelaxation) {
   EXPECT_EQ(strained(scene, 2.01 * truth).kind, Status::Kind::extreme);
 
   scene.dt = 10;
-  EXPECT_EQ(legitimate_strain(scene), 30) << "no scene asks for more without a mark";
+  EXPECT_EQ(legitimate_strain(scene), 30) << "the bound never exceeds 30";
   scene = chain();
   for (Vec3& x : scene.start.x) x *= 12;
   DivergenceDetector verdict(scene, {});
@@ -151,7 +151,8 @@ TEST(VerdictBorders, WhatIsExtremeAndDoesNotSettleIsNoStableProbe) {
   }
 }
 
-// e^-4 of the fastest ever seen is what five settling times leave of a decaying swing.
+// The last of five settling times begins after four: by then a decaying swing is down to e^-4 of
+// its fastest.
 TEST(VerdictBorders, ASwingThatDecaysAsTheorySaysIsSettled) {
   Scene scene = chain();
   const std::vector<PassCost> step_cost = sweeps(64);
@@ -168,8 +169,8 @@ TEST(VerdictBorders, ASwingThatDecaysAsTheorySaysIsSettled) {
 }
 
 // A weightless spring, stretched by 4 % and let go: Verlet bounds its swing below dt = 2/w, to
-// 1/sqrt(1 - (w dt/2)^2) of the stretch, and lets it grow above. What it may swing out to is in
-// what the start stores.
+// 1/sqrt(1 - (w dt/2)^2) of the stretch, and lets it grow above. The energy stored at the start
+// allows for that swing.
 TEST(StoredEnergy, ASpringExplodesAboveTheStabilityLimitAlone) {
   constexpr double kMass = 0.1, kStiffness = 20;  // kg, N/m
   Scene scene = hanging_sheet(1, 2, {true, false, false}, Lumping::equal);

@@ -113,7 +113,7 @@ TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
   for (std::size_t k = 0; k < known.size(); ++k) {
     std::vector<SceneKey> before = known, now = known;
     before.erase(before.begin() + static_cast<std::ptrdiff_t>(k));
-    now[k] = known[k].came_later();
+    now[k] = known[k].came_later(5);
     EXPECT_EQ(content(initial, now), content(initial, before)) << known[k].path;
     EXPECT_TRUE(later_keys(initial, now).empty()) << known[k].path;
     if (content(initial) == content(initial, before)) continue;  // no member of a scene
@@ -130,7 +130,10 @@ TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
     });
     ASSERT_TRUE(moved) << known[k].path;
     EXPECT_NE(content(scene, now), content(initial, now)) << known[k].path;
-    EXPECT_EQ(later_keys(scene, now), std::vector<std::string>{std::string(known[k].path)});
+    const std::vector<LaterKey> found = later_keys(scene, now);
+    ASSERT_EQ(found.size(), 1u) << known[k].path;
+    EXPECT_EQ(found[0].path, known[k].path);
+    EXPECT_EQ(found[0].since, 5) << "of this row, whatever other rows of that name say";
     EXPECT_TRUE(later_keys(scene).empty()) << "none of this program's keys came later";
     ++later;
   }
@@ -141,7 +144,7 @@ TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
 TEST(SceneKeys, OneThatCameLaterCountsWithItsPlace) {
   std::vector<SceneKey> keys(scene_keys().begin(), scene_keys().end());
   for (SceneKey& key : keys)
-    if (key.path == "collider.friction" || key.path == "forces.damping") key = key.came_later();
+    if (key.path == "collider.friction" || key.path == "forces.damping") key = key.came_later(5);
   std::set<std::string> contents;
   for (std::size_t c = 0; c < 4; ++c) {
     Scene scene = scene_of_all();

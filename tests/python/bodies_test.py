@@ -112,7 +112,7 @@ class Body:
 
 
 def passages_of_vertices(body, thin, frames):
-    """[steps + 1, n, 3] in the body's frame."""
+    """Passages of vertices; frames: [steps + 1, n, 3] in the body's frame."""
     events = 0
     for way in frames.transpose(1, 0, 2):
         inside, entry = False, None
@@ -142,7 +142,7 @@ def boxes_meet(low, high, others_low, others_high):
 
 
 def moving(pieces, was, now, low, high):
-    """Those whose box, while they go, meets that of the body."""
+    """Those whose swept box meets the body's box."""
     corners = np.concatenate([was[pieces], now[pieces]], axis=1)
     return boxes_meet(low, high, corners.min(1), corners.max(1))
 

@@ -1,4 +1,4 @@
-// How far an answer is from the exact step, told without it, against the exact step.
+// The estimated distance from the exact step, compared with the distance itself.
 #include "core/reference/step_error.hpp"
 
 #include <gtest/gtest.h>
@@ -103,7 +103,7 @@ TEST(StepError, OfRigidLinksIsTheDistanceFromTheNearest) {
   EXPECT_LT(error.of(scene.start, 0, scene.dt, exact.x).distance, 1e-7);
 }
 
-/// Bending has no exact step but that of `implicit`, which has been held to one.
+/// With bending only `implicit` computes an exact step; other tests check it.
 TEST(StepError, OfABentClothKnowsItsBending) {
   Scene scene = hanging_sheet(6, 6);
   scene.stiffness = {1e3, 1e3, 10};
@@ -119,7 +119,7 @@ TEST(StepError, OfABentClothKnowsItsBending) {
               0.05);
 }
 
-/// A particle on a slope: what the exact step is, is known.
+/// A particle on a slope, whose exact step has a closed form.
 TEST(StepError, InContactHoldsWhatPushesAndRubsWhatSlips) {
   Scene scene;
   scene.name = "slope";
@@ -256,7 +256,8 @@ Scene swinging() {
   return scene;
 }
 
-/// The same where nobody computes the path of exact steps: what steps miss has to do.
+/// The same in a scene without a path of exact steps, so that the estimate from missed steps is
+/// used.
 Scene swinging_in_still_air() {
   Scene scene = swinging();
   scene.wind.emplace();
@@ -324,7 +325,7 @@ TEST(ExactPath, IsThatOfTheExactSolver) {
   EXPECT_TRUE(reference::exact_path(bent, {1}).empty());
 }
 
-// A plate that falls on a ball goes most of its way; of what cloth does there, nothing.
+// A stiff plate that falls on a ball falls nearly as far as cloth, but does not drape.
 TEST(StepErrorMetric, LeavesTheFallOfTheWholeOut) {
   Scene scene = swinging();
   scene.pins.clear();
@@ -337,8 +338,8 @@ TEST(StepErrorMetric, LeavesTheFallOfTheWholeOut) {
   EXPECT_GT(measured(scene, "implicit").values.at("step.share"), 0.99);
 }
 
-/// Both go all of the way. In single precision gravity of a substep is rounded to a whole number of
-/// units in the last place of x: with 224 substeps by a seventh of it.
+/// Both go all of the way. In single precision the gravity of a substep is rounded to a whole
+/// number of units in the last place of x. With 224 substeps this rounding is a seventh of gravity.
 TEST(StepErrorMetric, TakesNoRoundingForAWayThatIsMissed) {
   const auto share = [](const char* scene, const std::string& solver) {
     const Case one = make_case(
@@ -353,7 +354,7 @@ TEST(StepErrorMetric, TakesNoRoundingForAWayThatIsMissed) {
     EXPECT_TRUE(std::isnan(share("swing", solver + "substeps=224")));
   }
   EXPECT_TRUE(std::isnan(share("ball", "jakobsen:iterations=1,substeps=224")));
-  // of a finer sheet rounding in contact is far more than that of its places
+  // On a finer sheet, contact rounds far more than positions do.
   const Case fine = make_case({"box", {"time.duration=0.6"}, "jakobsen"});
   const Measured of = measured(*fine.scene, "jakobsen:iterations=1,substeps=224,order=coloured");
   EXPECT_TRUE(std::isnan(of.values.at("step.share")));

@@ -56,8 +56,7 @@ std::unique_ptr<PositionReader> positions_in(std::span<const double>, std::size_
                                              const std::string& name);
 
 /// Appends frames to a new file or sequence. Frames that were written stay valid if the program is
-/// killed. They are float32 where the format has nothing else; coordinates of .npy and .obj come
-/// back bit for bit.
+/// killed. A .pc2 file rounds to float32; .npy and .obj keep every bit.
 class PositionWriter {
  public:
   virtual ~PositionWriter() = default;
@@ -69,9 +68,9 @@ class PositionWriter {
 /// Throws InputError if no format has this extension.
 void check_positions_name(const std::filesystem::path&);
 
-/// Creates a file or sequence, replacing what is there. Frames of a sequence are NAME_00000.obj and
-/// on, with the triangles; .obj also has material coordinates, and a line for a chain. Throws
-/// InputError for another extension, or if it cannot be written.
+/// Creates a file or sequence, replacing what is there. Frames of a sequence are NAME_00000.obj,
+/// NAME_00001.obj, ..., each with triangles and material coordinates; a chain is written as one
+/// line. Throws InputError for another extension, or if it cannot be written.
 std::unique_ptr<PositionWriter> create_positions(const std::filesystem::path&, const Mesh&);
 
 }  // namespace taut

@@ -13,8 +13,9 @@
 namespace taut {
 
 /// The vertices that move, divided for sweeps that move one vertex at a time while all others are
-/// held. No two vertices of a colour are linked or in one bending element. Colours are divided into
-/// groups of kLanes, whatever lanes the machine has, and the particles of a group lie side by side.
+/// held. If coloured, no two vertices of a colour are linked or in one bending element. Colours are
+/// divided into groups of kLanes, whatever lanes the machine has, and the particles of a group lie
+/// side by side.
 class VertexGroups {
  public:
   VertexGroups() = default;
@@ -27,7 +28,7 @@ class VertexGroups {
 
   const Layout& layout() const { return layout_; }
   std::size_t colours() const { return colour_.size() - 1; }
-  /// First group of a colour; the number of groups for colours().
+  /// First group of a colour; first_group(colours()) is the number of groups.
   std::size_t first_group(std::size_t colour) const { return colour_[colour]; }
   std::size_t size() const { return groups_.size(); }
   std::size_t vertices() const { return vertices_; }

@@ -17,7 +17,7 @@ inline constexpr double kFilmSeconds = 3;  ///< of video
 struct Film {
   RunRequest request;
   double speed = 1;    ///< simulated seconds per second of video
-  int panels = 1;      ///< that the page has room for: the runs', and those of who refuses
+  int panels = 1;      ///< panels of the page: those of the runs and of solvers that refuse
   bool small = false;  ///< less wide and high
   bool still = false;  ///< a picture is enough
 };

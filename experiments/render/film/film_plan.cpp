@@ -72,7 +72,8 @@ PlannedFilm of_other(const report::ComparedSolvers& compared, const OtherScene& 
   film.small = true;
   film.speed = watchable_speed(scene);
   film.request.scene = other.name;
-  if (scene.duration() > kFilmSeconds)
+  const double shown = kFilmSeconds * film.speed;
+  if (scene.duration() > shown)
     film.request.settings.emplace_back("time.duration", std::to_string(kFilmSeconds));
   for (const report::ComparedSolver& solver : compared.all) {
     const auto quoted = std::ranges::find_if(

@@ -52,9 +52,9 @@ FilmResult film_of(const JsonReader& json, const std::filesystem::path& file) {
   footage.columns = json.at("columns").integer();
   footage.type = json.at("type").text();
   footage.poster_type = json.at("poster_type").text();
-  footage.bytes = picture(picture_of(file, "", footage.type), json.at("bytes"));
+  footage.bytes = picture(picture_of(file, "", footage.type), json.at("digest_of_film"));
   footage.poster =
-      picture(picture_of(file, "-poster", footage.poster_type), json.at("poster_bytes"));
+      picture(picture_of(file, "-poster", footage.poster_type), json.at("digest_of_poster"));
   footage.alt = json.at("alt").text();
   const JsonReader bar = json.at("bar");
   footage.bar.title = bar.at("title").text();
@@ -78,8 +78,8 @@ void keep_film(const std::filesystem::path& file, const FilmResult& film) {
             {"poster_t", footage.poster_t},
             {"columns", footage.columns},
             {"type", footage.type},
-            {"bytes", sha256(footage.bytes)},
-            {"poster_bytes", sha256(footage.poster)},
+            {"digest_of_film", sha256(footage.bytes)},
+            {"digest_of_poster", sha256(footage.poster)},
             {"poster_type", footage.poster_type},
             {"alt", footage.alt}};
   json["bar"] = {{"title", bar.title}, {"stops", bar.stops}};

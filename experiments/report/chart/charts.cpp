@@ -352,7 +352,7 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
   const auto add = [&](const std::string& id, const std::string& kind, const std::string& x,
                        const std::string& y, const std::string& caption) {
     const std::string held = x == "dt" ? kSweeps : "dt";
-    const Slice slice = hold(records_along(input, scene, x, y), held, held == "dt" ? 1.0 / 64 : 16);
+    const Slice slice = hold(records_along(input, scene, x, y), held);
     try {
       Chart chart = make_chart(kind, slice.records, x, y, x);
       chart.id = scene + "-" + id;

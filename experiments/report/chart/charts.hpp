@@ -44,7 +44,12 @@ struct Slice {
   Records records;
   double value = 0;
 };
+/// A time step of 1/64 s, 16 sweeps.
+inline double preferred(const std::string& setting) { return setting == "dt" ? 1.0 / 64 : 16; }
 Slice hold(const Records&, const std::string& setting, double preferred);
+inline Slice hold(const Records& records, const std::string& setting) {
+  return hold(records, setting, preferred(setting));
+}
 
 /// Curves over two quantities, in SI units: what a page or a plot draws.
 struct Chart {

@@ -38,7 +38,7 @@ const frameCost = {
 };
 
 /**
- * A setting that reaches the error: its solver, how much cheaper it is than which other one, its
+ * A setting that reaches the error: its solver, the factor by which it beats the next solver, its
  * cost, its parameters, arithmetic and links, and its largest error during the run if that exceeds
  * `level`.
  */
