@@ -159,9 +159,10 @@ CaseSpec FrontierQuestion::at(double value) const {
   const std::string text = shortest(setting(value));
   for (const std::string& name : parts_of(of))
     if (name == "dt")
-      spec.settings = replaced(std::move(spec.settings), {{"time.dt", '"' + text + '"'}});
+      spec.settings =
+          replaced(std::move(spec.settings), {SceneSetting("time.dt", '"' + text + '"')});
     else if (of_scene(name))
-      spec.settings = replaced(std::move(spec.settings), {{name, text}});
+      spec.settings = replaced(std::move(spec.settings), {SceneSetting(name, text)});
     else
       spec.solver = parse_solver(spec.solver).with(name, text).brief();
   return spec;
