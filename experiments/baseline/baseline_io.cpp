@@ -8,6 +8,7 @@
 #include "experiments/baseline/baseline.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/case/record_parts.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 
@@ -65,7 +66,7 @@ FrontierQuestion question_of(Section& section) {
   section.need({"scene", "solver", "of", "from", "to"});
   FrontierQuestion question;
   question.base = {section.string("scene").value_or(""),
-                   section.strings("set").value_or(std::vector<std::string>()),
+                   scene_settings(section.strings("set").value_or(std::vector<std::string>())),
                    section.string("solver").value_or("")};
   question.of = section.string("of").value_or("dt");
   const double from = section.number("from", {-1e9, 1e9}, 0);

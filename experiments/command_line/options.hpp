@@ -114,7 +114,7 @@ class SceneChanges {
 
  private:
   std::string dt_, duration_;
-  std::vector<std::string> settings_;
+  SceneSettings settings_;
 };
 
 /// Options that name one case: SCENE, SOLVER and changes to the scene.

@@ -154,7 +154,7 @@ std::map<std::string, T*> by_question(std::vector<T>& all, const Names& known, R
   for (T& one : all) {
     const Record& r = std::invoke(record_of, one);
     std::string name = r.scene + "\n" + r.solver;
-    for (const SceneSetting& one : r.spec.settings) name += "\n" + one.text();
+    for (const SceneSetting& setting : r.spec.settings) name += "\n" + setting.text();
     const auto names = known.find(r.solver);
     for (const auto& [param, value] : r.params)
       if (names != known.end() && names->second.contains(param)) name += "\n" + param + "=" + value;

@@ -103,7 +103,7 @@ void Draft::set_parameter(const std::string& name, const std::string& value) {
 CaseSpec Draft::write(const fs::path& folder, const std::string& name,
                       const std::string& comment) const {
   SolverChoice choice = parse_solver(spec_.solver);
-  for (const auto& [name, value] : changed_) choice = choice.with(name, value);
+  for (const auto& [parameter, value] : changed_) choice = choice.with(parameter, value);
   const std::string solver = choice.canonical();
   if (!scene_changed_ && comment.empty()) return {spec_.scene, spec_.settings, solver};
   Value root = without_empty(scene_.root);

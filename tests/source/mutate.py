@@ -12,8 +12,8 @@ Usage: mutate.py BUILD [--sample N] [--layers N] [--minutes M] [--seed S] [--lay
 3. A check is a unit test, a truth of `taut verify` or a test of the command line. For each error, the checks in the layer's own
    folder of tests run first, then the others, quick ones before slow ones (by their time when ctest last ran them in BUILD, or in a
    run here), until one is red or they took --limit seconds of CPU. Every run records which functions with errors it reaches, and
-   checks that do not reach a function are not run for its errors. A check also counts as red if it takes more than four times its
-   usual CPU time. A check that is red without the error as well does not count.
+   checks that do not reach a function are not run for its errors. A check also counts as red if it takes more than four times the
+   CPU time that it takes without an error. A check that is red without the error as well does not count.
 
 Survivors are printed as differences. Errors that change no result are listed in equivalent_mutants.txt with the reason, and are not
 drawn. Places outside functions or in constexpr ones, and headers that are included by layers which were not drawn, are left out and
@@ -297,7 +297,15 @@ class Batch:
     def __init__(self, checks):
         self.checks, self.folder = checks, checks[0].folder
         self.seconds = sum(check.seconds for check in checks) / len(checks)  # mean time of a check
+        self.unharmed = None  # CPU seconds in the program with the errors, with none of them chosen; None: not run yet
         self.reached = None  # by number of an error: whether the checks run its function; None: unknown
+
+    def unharmed_seconds(self, program):
+        """The program with the errors is slower than BUILD's, by how much depends on where they are."""
+        if self.unharmed is None:
+            with scratch() as where:
+                _, self.unharmed = run(self.checks, program, where, 60 + 20 * sum(check.seconds for check in self.checks))
+        return self.unharmed
 
 
 def batches_of(checks):
@@ -320,7 +328,8 @@ def judge(mutant, batches, programs, limit, sound):
     for batch in sorted(batches, key=lambda batch: (batch.folder != own, batch.seconds)):
         while batch.checks and (batch.reached is None or batch.reached[mutant.number]):
             checks = batch.checks
-            program, allowed = programs / checks[0].program, 5 + 4 * sum(check.seconds for check in checks)
+            program = programs / checks[0].program
+            allowed = 5 + 4 * batch.unharmed_seconds(program)
             with scratch() as where:
                 reached = pathlib.Path(where, "reached")
                 reached.write_bytes(bytes(MOST))

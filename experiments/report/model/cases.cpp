@@ -8,6 +8,7 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/case/record_parts.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"

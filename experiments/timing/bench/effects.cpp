@@ -26,7 +26,7 @@ std::optional<Scene> scene_of(const std::string& name, int side) {
   if (side == 0) return scene;
   if (!scene.mesh.grid || std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) < 2) return {};
   const std::string n = std::to_string(side);
-  std::vector<std::string> changes{"cloth.grid=[" + n + "," + n + "]"};
+  SceneSettings changes{"cloth.grid=[" + n + "," + n + "]"};
   const double finer = (std::min(scene.mesh.grid->nu, scene.mesh.grid->nv) - 1.0) / (side - 1);
   if (!scene.colliders.empty() || scene.self_collision)
     changes.push_back("cloth.thickness=" + shortest(scene.thickness * finer));
