@@ -27,8 +27,8 @@ struct Subject {
 Scene load(const Subject& s) {
   const double spacing = 0.8 / (s.side - 1);
   const std::string n = std::to_string(s.side);
-  std::vector<std::string> changes{"cloth.grid=[" + n + "," + n + "]",
-                                   "cloth.thickness=" + std::to_string(0.4 * spacing)};
+  SceneSettings changes{"cloth.grid=[" + n + "," + n + "]",
+                        "cloth.thickness=" + std::to_string(0.4 * spacing)};
   if (s.scene == "crumple")
     for (const std::string& change : {"self_collision.radius=" + std::to_string(0.48 * spacing),
                                       "time.dt=" + std::to_string(spacing / 6.4)})

@@ -18,7 +18,7 @@ Scene load(const std::string& name, int side) {
   const Scene shipped = load_scene(find_scene(name));
   const std::string n = std::to_string(side);
   const double finer = (shipped.mesh.grid->nu - 1.0) / (side - 1);
-  std::vector<std::string> changes{"cloth.grid=[" + n + "," + n + "]"};
+  SceneSettings changes{"cloth.grid=[" + n + "," + n + "]"};
   if (shipped.self_collision)
     for (const auto& [key, value] :
          {std::pair("self_collision.radius", shipped.self_collision->radius),

@@ -139,6 +139,8 @@ void fill(Value& value, int n) {
     value = {{"a", text}};
   else if constexpr (std::is_same_v<Value, RecordColumn::Numbers>)
     value = {{"a", n / 7.0}};
+  else if constexpr (std::is_same_v<Value, SceneSettings>)
+    value = {"a=" + text};
   else if constexpr (std::is_same_v<Value, ResolvedSettings>)
     value = {{"a", text, "token", n / 7.0}, {"b", "c"}};
   else
