@@ -12,7 +12,7 @@ const RecordColumn kColumns[] = {
     {"key", "key", &Record::key, "SHA-256 of everything that decides the result"},
     {"id", "id", &Record::id, "the case for people"},
     {"setting", "setting", &Record::setting,
-     "settings of the scene and the solver's text: `id` without the scene"},
+     "settings of the scene and the solver's text: `id` without the scene", !kResult, kMayLack},
     {"spec.scene", "scene_file", &CaseSpec::scene, "the scene as it was asked for"},
     {"spec.overrides", "settings", &CaseSpec::settings, "settings of the scene, in their order"},
     {"spec.solver", "solver_text", &CaseSpec::solver, "the solver with all its parameters"},

@@ -135,11 +135,11 @@ TEST(ClaimFigures, AreOfTheQuantityThatTheClaimQuotes) {
     if (claim.figure.empty()) continue;
     const std::string own(claim.figure);
     const std::vector<Finding> findings{finding("not " + own, 0.5), finding(own + " of it", 0.75),
-                                        finding(own, 1.25)};
+                                        finding(own, 1.25), finding(own, 1.4)};
     for (const JudgedAssertion& one : judge_assertions(
              [&](std::string_view truth) { return truth == claim.truth ? &findings : nullptr; })) {
       if (one.source != claim.source || one.assertion != claim.assertion) continue;
-      EXPECT_EQ(one.figure, "bullet: " + own + " of it 0.75 (1 +- 0.5)") << "the first that is";
+      EXPECT_EQ(one.figure, "bullet: " + own + " 1.25 (1 +- 0.5)") << "the first of that name";
       EXPECT_EQ(one.verdict, to_string(claim.verdict));
       ++quoted;
     }

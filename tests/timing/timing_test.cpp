@@ -101,7 +101,7 @@ const CaseSpec kSpec{"hang", {"cloth.grid=[4, 4]", "time.duration=0.5"}, "script
 /// pilot run 0.002 s.
 const std::string kWorker = R"(w=$(ls $folder | wc -l); : >$folder/w.$w
 echo "$*" >>$folder/w.$w
-echo ready
+echo ready 2
 k=0
 while read word n; do
   echo "$w $word $n" >>$folder/.log
@@ -140,16 +140,22 @@ TEST(TimingWorkers, AreAskedLineByLine) {
 }
 
 TEST(TimingWorkers, WhatTheyRefuseAndThatTheyDieIsSaid) {
-  Scripted scripted("echo ready; read a; echo '! it has no clock'; read a; exit 1");
+  Scripted scripted("echo ready 2; read a; echo '! it has no clock'; read a; exit 1");
   TimingWorker worker(kSpec);
   EXPECT_EQ(failure([&] { worker.pilot_run(3); }), "it has no clock");
   EXPECT_EQ(failure([&] { worker.sample(3); }), "the timing worker died");
-  for (const char* script : {"exit 0", "echo reddy; sleep 1000"}) {
+  const std::string who = "the timing worker of hang scripted:iterations=2 ";
+  scripted.write("exit 0");
+  EXPECT_EQ(failure([] { TimingWorker{kSpec}; }), who + "did not start");
+  for (const char* script : {"echo ready; sleep 1000", "echo ready 1; sleep 1000"}) {
     scripted.write(script);
     EXPECT_EQ(failure([] { TimingWorker{kSpec}; }),
-              "the timing worker of hang scripted:iterations=2 did not start");
+              who + "is of a build that cannot be timed beside this one");
   }
-  scripted.write("echo ready; exec sleep 1000");
+  scripted.write("echo ready 2; read a; echo 4096; sleep 1000");
+  TimingWorker odd(kSpec);
+  EXPECT_EQ(failure([&] { odd.pilot_run(3); }), "the timing worker answered '4096'");
+  scripted.write("echo ready 2; exec sleep 1000");
   TimingWorker silent(kSpec);
   const auto start = SteadyClock::now();
   silent.give_up_at(in_seconds(0.15));
@@ -213,7 +219,8 @@ TEST(Benches, GoForthAndBackAndTheFirstCaseIsItsOwnControl) {
 
 TEST(Benches, AFailureCostsItsOwnCaseAlone) {
   const Scripted scripted(
-      "case $4 in *iterations=2*) echo ready; read a; echo '! no clock'; cat >/dev/null;; *) :; " +
+      "case $4 in *iterations=2*) echo ready 2; read a; echo '! no clock'; cat >/dev/null;; *) "
+      ":; " +
       kWorker + " esac");
   CaseSpec other = kSpec;
   other.solver = "scripted:iterations=9";
@@ -236,8 +243,8 @@ TEST(Benches, TheOrderOfCasesDecidesNothing) {
   third.solver = "scripted:iterations=7";
   // iterations=2 is refused from the start; iterations=7 from its third sample on.
   const Scripted scripted(
-      "case $4 in *iterations=2*) echo ready; read a; echo '! no clock'; cat "
-      ">/dev/null;; *iterations=7*) echo ready; n=0; while read a b; do n=$((n + "
+      "case $4 in *iterations=2*) echo ready 2; read a; echo '! no clock'; cat "
+      ">/dev/null;; *iterations=7*) echo ready 2; n=0; while read a b; do n=$((n + "
       "1)); if [ $n -gt 3 ]; then echo '! broke'; else echo 0.003 0.004; fi; "
       "done;; *) :; " +
       kWorker + " esac");
@@ -258,7 +265,7 @@ TEST(Benches, TheOrderOfCasesDecidesNothing) {
 // another of that length, but not for one that takes half as long again.
 TEST(Benches, NoRoundBeginsThatMayNotEnd) {
   const Scripted scripted(
-      "echo ready; while read word n; do [ $word = time ] && sleep 0.05; echo 1 1; done\n");
+      "echo ready 2; while read word n; do [ $word = time ] && sleep 0.05; echo 1 1; done\n");
   const auto rounds = [](double seconds) {
     const auto bench =
         time_cases({{kSpec, 9}}, {.rounds = 3, .deadline = in_seconds(seconds)}).timings[0];
