@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Checks that everything that documents and comments refer to exists: links, headings, files, and verbs if a program is given.
+"""Checks that everything that documents, comments and sources refer to exists: links, headings, files; if a program is given also
+verbs, and values of metrics.
 
 Usage: documents_test.py [PROGRAM]     PROGRAM: a built taut, whose verbs the documents may name"""
 
+import json
 import pathlib
 import re
 import subprocess
@@ -44,15 +46,33 @@ def verbs(program):
                           re.MULTILINE))
 
 
+def values(program):
+    """Names of the values that metrics have."""
+    listed = subprocess.run([program, "list", "metrics", "--json"], check=True, capture_output=True, text=True).stdout
+    table = json.loads(listed)["tables"]["values"]
+    at = [column["name"] for column in table["columns"]].index("name")
+    return {row[at] for row in table["rows"]}
+
+
+def wrong_values(file, known):
+    """A name that no metric has would be NaN for ever, and every comparison with it false."""
+    for name in re.findall(r'\b(?:value|now|add)\("([a-z_]+(?:\.[a-z0-9_]+)+)"', file.read_text()):
+        if name not in known and not name.startswith(("cpu.", "wall.")):  # costs are no values of a metric
+            yield f"asks for the value {name}, which no metric has"
+
+
 def main():
     files = [file for folder in (*FOLDERS, ".") for file in ROOT.glob("*" if folder == "." else f"{folder}/**/*")
              if file.suffix in (".md", ".hpp", ".cpp", ".py", ".sh", ".cmake", ".txt") and "runs" not in file.parts]
     documents = [file for file in files if file.suffix == ".md"]
     assert len(documents) > 10 and len(files) > 300, "the tree is not where it is looked for"
     known = verbs(sys.argv[1]) if len(sys.argv) > 1 else None
+    of_metrics = values(sys.argv[1]) if len(sys.argv) > 1 else None
     wrong = []
     for file in files:
         found = list(wrong_files(file)) if file.name != "CHANGELOG.md" else []
+        if of_metrics and file.suffix == ".cpp" and file.is_relative_to(ROOT / "experiments"):
+            found += wrong_values(file, of_metrics)
         if file in documents:
             found += wrong_links(file)
         if file in documents and known and file.name != "CHANGELOG.md":

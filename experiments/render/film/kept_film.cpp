@@ -12,6 +12,15 @@ namespace {
 
 constexpr const char* kSchema = "taut-film-5";
 
+using report::ColourBar, report::Footage;
+/// What is kept as JSON; pictures are files, and ticks are pairs.
+constexpr std::tuple kFootage{
+    Field{"type", &Footage::type},         Field{"poster_type", &Footage::poster_type},
+    Field{"alt", &Footage::alt},           Field{"columns", &Footage::columns},
+    Field{"duration", &Footage::duration}, Field{"speed", &Footage::speed},
+    Field{"frame", &Footage::frame},       Field{"poster_t", &Footage::poster_t}};
+constexpr std::tuple kBar{Field{"title", &ColourBar::title}, Field{"stops", &ColourBar::stops}};
+
 /// Beside the file of its numbers: KEY.mp4, KEY-poster.jpg.
 std::filesystem::path picture_of(const std::filesystem::path& file, const char* what,
                                  const std::string& type) {
@@ -44,21 +53,13 @@ std::string digest_of(Json numbers) {
 FilmResult film_of(const JsonReader& json, const std::filesystem::path& file) {
   json.require_schema(kSchema);
   FilmResult film;
-  report::Footage& footage = film.footage;
-  footage.duration = json.at("duration").number();
-  footage.speed = json.at("speed").number();
-  footage.frame = json.at("frame").number();
-  footage.poster_t = json.at("poster_t").number();
-  footage.columns = json.at("columns").integer();
-  footage.type = json.at("type").text();
-  footage.poster_type = json.at("poster_type").text();
+  Footage& footage = film.footage;
+  read_into(json, footage, kFootage);
   footage.bytes = picture(picture_of(file, "", footage.type), json.at("digest_of_film"));
   footage.poster =
       picture(picture_of(file, "-poster", footage.poster_type), json.at("digest_of_poster"));
-  footage.alt = json.at("alt").text();
   const JsonReader bar = json.at("bar");
-  footage.bar.title = bar.at("title").text();
-  for (const JsonReader& stop : bar.at("stops").items()) footage.bar.stops.push_back(stop.text());
+  read_into(bar, footage.bar, kBar);
   for (const JsonReader& tick : bar.at("ticks").items())
     footage.bar.ticks.emplace_back(tick.at("at").number(), tick.at("text").text());
   for (const JsonReader& table : json.at("series").items())
@@ -69,20 +70,13 @@ FilmResult film_of(const JsonReader& json, const std::filesystem::path& file) {
 }  // namespace
 
 void keep_film(const std::filesystem::path& file, const FilmResult& film) {
-  const report::Footage& footage = film.footage;
-  const report::ColourBar& bar = footage.bar;
-  Json json{{"schema", kSchema},
-            {"duration", footage.duration},
-            {"speed", footage.speed},
-            {"frame", footage.frame},
-            {"poster_t", footage.poster_t},
-            {"columns", footage.columns},
-            {"type", footage.type},
-            {"digest_of_film", sha256(footage.bytes)},
-            {"digest_of_poster", sha256(footage.poster)},
-            {"poster_type", footage.poster_type},
-            {"alt", footage.alt}};
-  json["bar"] = {{"title", bar.title}, {"stops", bar.stops}};
+  const Footage& footage = film.footage;
+  const ColourBar& bar = footage.bar;
+  Json json = json_of(footage, kFootage);
+  json["schema"] = kSchema;
+  json["digest_of_film"] = sha256(footage.bytes);
+  json["digest_of_poster"] = sha256(footage.poster);
+  json["bar"] = json_of(bar, kBar);
   json["bar"]["ticks"] = json_array(bar.ticks, [](const auto& tick) {
     return Json{{"at", tick.first}, {"text", tick.second}};
   });
