@@ -61,9 +61,20 @@ class StagedSolver final : public Solver {
   double earlier_ = 0;          ///< s, of earlier stages
 };
 
+/// Eigen divides large products by the sizes of the machine's caches, and the division decides the
+/// order of their sums. These sizes everywhere give the same bits on every machine.
+void fix_blocks_of_products() {
+  static const bool fixed = [] {
+    Eigen::setCpuCacheSizes(48 << 10, 1280 << 10, 48 << 20);
+    return true;
+  }();
+  (void)fixed;
+}
+
 }  // namespace
 
 std::unique_ptr<Solver> MakeSolver::operator()(const Scene& scene, const Params& params) const {
+  fix_blocks_of_products();
   if (whole_ || scene.releases.empty()) return bare_(scene, params);
   return std::make_unique<StagedSolver>(scene, params, bare_);
 }

@@ -264,5 +264,11 @@ TEST(LinearTheory, OfSpringsKnowsTheirFamiliesAndTheirDrag) {
   EXPECT_FALSE((LinearStability{1.00001, 1, ""}).stable());
 }
 
+TEST(Settings, ProductsAreDividedAlikeOnEveryMachine) {
+  const SolverChoice choice = parse_solver("jakobsen");
+  choice.entry->make(hanging_sheet(3, 3), choice.params);
+  EXPECT_EQ(Eigen::l1CacheSize(), 48 << 10) << "a box under `admm` had other bits with 32 KiB";
+}
+
 }  // namespace
 }  // namespace taut::solver_settings_test

@@ -259,7 +259,7 @@ class Bench(Cluster):
     def cores_of_a_worker(self, solver, **environment):
         worker = self.start("bench", "--worker", "./small.toml", solver, stdin=subprocess.PIPE, env={**os.environ, **environment})
         self.addCleanup(worker.communicate)
-        self.assertEqual(worker.stdout.readline(), "ready\n")
+        self.assertEqual(worker.stdout.readline(), "ready 2\n")
         return os.sched_getaffinity(worker.pid)
 
     def test_in_a_slurm_job_a_sample_stays_on_a_core_for_each_thread(self):
