@@ -284,8 +284,8 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
                     small = (scratch.path() / "small.toml").string();
   write_file(small, cloth + "pins = [0]\n[time]\ndt = \"1/64\"\nduration = 0.25\n");
   const double size = extent(*make_case({small, {}, "jakobsen"}).scene);
-  /// Speeds [sizes of the cloth per second] and expected speeds of the film, in which the cloth needs
-  /// at least half a second to cross its own size: at this limit, and just above it.
+  /// Speeds [sizes of the cloth per second] and expected speeds of the film, in which the cloth
+  /// needs at least half a second to cross its own size: at this limit, and just above it.
   const std::pair<double, double> thrown[] = {{4, 0.5}, {2, 1}, {4.01, 0.25}, {8.01, 0.125}};
   std::vector<OtherScene> others;
   for (const auto& [speed, expected] : thrown) {
