@@ -270,7 +270,8 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   EXPECT_FALSE(found().rest || !found().motion.empty());
 }
 
-// The order of settings does not affect the task; the length of a step counts once, in the record.
+// A task depends neither on the order of settings nor on a setting of time.dt: the record's step
+// counts.
 TEST(Tasks, AreTheSameInAnyOrderOfTheirSettings) {
   const auto asked = [](SceneSettings settings, double dt = 0.01) {
     Record record;

@@ -449,8 +449,8 @@ TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
   EXPECT_FALSE(measure(scene, motion).contains("reference.rms"));
 }
 
-/// Elastic cloth has references, too: springs integrated explicitly by another program, springs
-/// that are 2 % softer, and a scene without reference.
+/// Elastic cloth has references of its own: springs that another program integrates explicitly
+/// reproduce them, and springs that are 2 % softer do not.
 TEST(ReferenceMotion, OfElasticClothIsThatOfItsStiffness) {
   const auto error = [](const std::string& solver) {
     const Scene scene =

@@ -340,7 +340,8 @@ double tolerance(const std::string& solver, const Change& c) {
 /// iteration which vertices touch, stick and slip; before convergence rounding takes that decision
 /// sooner or later, and at once where two colliders hold a vertex.
 constexpr int kStepsInContact = 3;
-constexpr double kWithinSeveral = 1e-3;  ///< m
+/// Tolerance of positions where several colliders can hold a vertex [m].
+constexpr double kWithinSeveral = 1e-3;
 bool decides_who_touches(const std::string& solver) {
   return std::ranges::any_of(std::array{"implicit", "pd", "admm", "vbd", "avbd"},
                              [&](auto name) { return solver_name(solver) == name; });

@@ -11,8 +11,8 @@
 
 namespace {
 
-/// "case SCENE SOLVER --into FOLDER [--set KEY=VALUE]... [--frames N]", "bench --worker SCENE
-/// SOLVER [--set KEY=VALUE]..."
+/// Runs one of the verbs "case SCENE SOLVER --into FOLDER [--set KEY=VALUE]... [--frames N]",
+/// "bench --worker SCENE SOLVER [--set KEY=VALUE]..."
 int serve(std::vector<std::string> words) try {
   taut::CaseSpec spec;
   std::string folder, frames = "0";

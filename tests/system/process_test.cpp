@@ -356,7 +356,7 @@ TEST(Clocks, AFutureIsNeverBeforeItsStart) {
     clock_gettime(CLOCK_MONOTONIC, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
   };
-  for (int i = 0; i < 20; ++i, usleep(10000)) {  // over a fifth of a second
+  for (int i = 0; i < 20; ++i, usleep(10000)) {  // lasts a fifth of a second
     const double before = shown(), between = seconds_of(CLOCK_MONOTONIC), now = shown();
     EXPECT_LE(before, between);
     EXPECT_LE(between, now);

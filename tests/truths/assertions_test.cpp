@@ -25,7 +25,7 @@ TEST(Assertions, EachIsHeldByATruthUnlessItCannotBeTested) {
   EXPECT_EQ(verdicts.size(), 4u) << "publications that are right, or wrong, in everything";
 }
 
-#ifdef TAUT_SANITIZED  // without sanitizers `taut truths` checks them
+#ifdef TAUT_SANITIZED  // without sanitizers `taut verify` checks them
 TEST(Assertions, TheTruthsBehindBoxesAndOctreesHold) {
   for (const TruthEntry* truth : truths()) {
     if (truth->section != 8 || truth->row < 6 || truth->row > 16 ||
