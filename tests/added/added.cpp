@@ -1,5 +1,5 @@
-// Adding is one file: a program with a metric and a solver more, each a file that is named nowhere
-// else, shows both on the page's model as it shows its own.
+// Adding takes one file: a program with one more metric and one more solver, each in a file that is
+// named nowhere else, shows both in the page's model like its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ CaseRun run(const std::string& solver, const std::string& dt) {
                   {.series_rows = 20});
 }
 
-/// Both solvers at the same work on a small sheet; their costs are made up: a sweep of the new one
-/// costs three times as much, and half of that with its accelerator.
+/// Model of a page with both solvers at the same work on a small sheet. Costs are made up: a sweep
+/// of the new solver costs three times as much, and half of that with its accelerator.
 Json model() {
   StudyResult study{"sweeps", "?", {}, 0, {{"hang", -1}}};
   StudyBench bench{"sweeps", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
@@ -109,7 +109,7 @@ TEST(Added, AValueThatIsKeptIsAnAnswer) {
   EXPECT_EQ(std::ranges::count(kept, "sag.peak"), 0);
 }
 
-/// x of the points that a solver has in a chart.
+/// x coordinates of a solver's points in a chart.
 std::set<double> points_of(const std::string& chart, const std::string& solver) {
   std::set<double> all;
   for (const Json& series : by_id("charts", chart)["series"])

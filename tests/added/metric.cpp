@@ -1,4 +1,4 @@
-// A metric that nothing else in the program knows of.
+// A metric that the rest of the program does not know.
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -34,7 +34,7 @@ class Sag final : public Metric {
   }
 
  private:
-  /// Mean square [m^2] and largest [m].
+  /// Mean square distance from the start [m^2] and largest distance [m].
   std::pair<double, double> way(const Snapshot& m) const {
     double sum = 0, most = 0;
     for (std::size_t i = 0; i < start_.size(); ++i) {

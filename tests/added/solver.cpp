@@ -1,4 +1,4 @@
-// A solver that nothing else in the program knows of, whose parameters have names of their own.
+// A solver that the rest of the program does not know, whose parameters have names of their own.
 #include "core/model/solver.hpp"
 
 #include "core/model/index.hpp"

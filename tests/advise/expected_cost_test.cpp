@@ -1,4 +1,4 @@
-// What taut advise tries first: solvers by what they were seen to cost, else by theory.
+// Order in which taut advise tries solvers: by their measured cost, otherwise by theory.
 #include "experiments/advise/expected_cost.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// A case of `hang` that took so long a step [s].
+/// Case of `hang` that took `seconds` per step [s].
 BenchedCase timed(const std::string& solver, double seconds, char key) {
   BenchedCase c;
   c.record.solver = solver;

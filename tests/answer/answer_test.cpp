@@ -1,4 +1,4 @@
-// Answers: what a terminal, JSON, CSV and Markdown say of the same one agrees.
+// Answers: terminal, JSON, CSV and Markdown output of an answer agree.
 #include "experiments/answer/answer.hpp"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ class MadeUp {
   std::mt19937 random_;
 };
 
-/// The fields of a CSV text, by RFC 4180.
+/// Fields of a CSV text by RFC 4180.
 Rows csv_rows(const std::string& text) {
   Rows rows(1, {""});
   bool quoted = false;
@@ -101,7 +101,7 @@ Rows csv_rows(const std::string& text) {
   return rows;
 }
 
-/// The field of a text, as a spreadsheet and a line want it.
+/// The text as a CSV field: without control characters, and safe in a spreadsheet.
 std::string field(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
@@ -133,7 +133,7 @@ void expect_csv(const Json& table, const Rows& csv) {
   }
 }
 
-/// The cells of the tables of a Markdown text, without what escapes signs.
+/// Cells of the tables in a Markdown text, with escapes removed.
 std::vector<Rows> markdown_tables(const std::string& text) {
   std::vector<Rows> tables;
   std::istringstream lines(text);

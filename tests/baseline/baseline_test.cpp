@@ -1,4 +1,4 @@
-// Regressions: every way in which a run may differ from its baseline has a name, and none passes.
+// Regressions: every way in which a run can differ from its baseline has a name and fails.
 #include "experiments/baseline/baseline.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ std::vector<Kind> kinds(const Comparison& comparison) {
   return all;
 }
 
-/// What comparing with a changed copy finds.
+/// Comparison with a changed copy of the baseline.
 template <class Change>
 Comparison after(const Change& change) {
   Baseline now = two();
@@ -131,13 +131,13 @@ TEST(Baseline, TheMostSpecialToleranceHolds) {
 TEST(Baseline, AnUpdateRewritesOnlyValuesThatMoved) {
   const Tolerances t({{"default", {0, 0.01, false, "a hundredth"}}});
   Baseline now = two();
-  now[0].values["stretch.max"] = 0.503;       // within
-  now[1].values["stretch.max"] = 0.31415926;  // beyond
+  now[0].values["stretch.max"] = 0.503;       // within the tolerance
+  now[1].values["stretch.max"] = 0.31415926;  // beyond the tolerance
   now[0].values["new.value"] = 1.0 / 3;
   const Baseline result = updated(two(), now, t);
   EXPECT_EQ(result[0].values.at("stretch.max"), 0.5);
   EXPECT_EQ(result[0].values.at("new.value"), 0.3333);
-  EXPECT_EQ(result[1].values.at("stretch.max"), 0.31416);  // rounded to 1e-4 of itself
+  EXPECT_EQ(result[1].values.at("stretch.max"), 0.31416);  // rounded to a relative 1e-4
   EXPECT_TRUE(compare(result, now, t).findings.empty());
 }
 

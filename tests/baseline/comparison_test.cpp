@@ -1,5 +1,5 @@
-// Comparisons with a baseline: every finding's fields and words, tolerances at their borders, what
-// an update writes.
+// Comparisons with a baseline: fields and words of every finding, tolerances at their limits, and
+// the rows that an update writes.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Frontiers that belong to a baseline: questions from a file, rows from what was found.
+// Frontiers in a baseline: questions from a file, rows from results.
 #include <gtest/gtest.h>
 
 #include "core/model/input_error.hpp"
@@ -104,7 +104,7 @@ TEST(ClaimFigures, AreTheNumberThatSpeaksForTheClaim) {
     return Finding{
         "jakobsen:iterations=3", quantity, unit, measured, expected, tolerance, 0, verdict, ""};
   };
-  /// Verdict and figure of the claim that the truth of this name holds, from these findings.
+  /// Verdict and number of the claim that this truth supports, given these findings.
   const auto judged = [](const std::vector<Finding>& findings) {
     const Assertion& claim = *std::ranges::find_if(
         assertions(), [](const auto& c) { return !c.truth.empty() && c.figure.empty(); });

@@ -1,4 +1,5 @@
-// Ten planted regressions on a study of time steps and sweeps: each is caught; nothing is no alarm.
+// Ten planted regressions in a study of time steps and sweeps: each is caught, and no change raises
+// no alarm.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +10,7 @@
 namespace taut::planted_regressions_test {
 namespace {
 
-/// hang under two solvers, dt x iterations; whatever is beyond dt/k = 1/60 explodes.
+/// hang under two solvers over dt x iterations; cases with dt/k above 1/60 explode.
 Baseline study() {
   Baseline rows;
   for (const std::string solver : {"bullet", "jakobsen"})
@@ -34,7 +35,7 @@ Baseline study() {
 struct Plant {
   const char* name;
   std::function<void(Baseline&)> change;
-  bool mismatch = false;  ///< not the same question, rather than another answer
+  bool mismatch = false;  ///< the question differs, not the answer
 };
 
 TEST(PlantedRegressions, EachOfTenIsCaughtAndANoOpIsNot) {

@@ -1,4 +1,4 @@
-// What moved, by solver and value.
+// Summary of moved values by solver and value.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ Change moved(const char* solver, const char* value, double before, double now) {
   return c;
 }
 
-/// Values that begin alike are one group.
+/// Moved values, grouped by the part of the name before the first dot.
 std::vector<MovedValue> rolled(const Comparison& comparison) {
   return roll_up(comparison,
                  [](const std::string& value) { return value.substr(0, value.find('.')); });

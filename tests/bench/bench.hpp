@@ -13,7 +13,8 @@ inline std::unique_ptr<Solver> make(const Scene& scene, const std::string& text)
   return choice.entry->make(scene, choice.params);
 }
 
-/// Seconds of one step, of `steps` from this state on. CLOCK_THREAD_CPUTIME_ID: of this thread.
+/// Seconds per step, measured over `steps` steps from this state. CLOCK_THREAD_CPUTIME_ID counts
+/// this thread only.
 inline double time_of(Solver& solver, const State& start, int steps, double dt,
                       clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
   solver.load(start);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every micro-benchmark runs, and what it measures lies where it can: bench_test.py PROGRAM"""
+"""Every micro-benchmark runs, and its measurements are plausible: bench_test.py PROGRAM"""
 import json
 import math
 import subprocess

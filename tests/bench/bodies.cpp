@@ -1,5 +1,4 @@
-// What a body of triangles costs: to be read, to be made, to be refitted, and to be asked where a
-// point or a path meets it.
+// Cost of a body of triangles: reading, building, refitting, and queries with points and paths.
 #include "tests/support/bodies.hpp"
 
 #include <benchmark/benchmark.h>
@@ -17,8 +16,8 @@ namespace taut::bench {
 
 namespace {
 
-/// Ten thousand points within 1 cm of the surface of a ball of 1 m, and as many in a cube around
-/// it.
+/// Ten thousand points within 1 cm of the surface of a ball of 1 m, and ten thousand in a cube
+/// around the ball.
 struct Questions {
   std::vector<Vec3> near, anywhere;
   Questions() {
@@ -56,7 +55,7 @@ std::string as_obj(const Triangles& body) {
   return text;
 }
 
-/// A body whose vertices go a few centimetres a second.
+/// Body whose vertices move a few centimetres per second.
 Collider leaning(const Triangles& body) {
   auto frames = std::make_shared<BodyFrames>();
   frames->fps = 1;

@@ -1,5 +1,5 @@
-// contact/SIDE/SCENE/SETTING: what contact costs beside the structural links of the same cloth,
-// from a state in which it lies on what it fell on.
+// contact/SIDE/SCENE/SETTING: cost of contact in addition to the structural links of the same
+// cloth, from a state in which the cloth lies on its obstacle.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -17,13 +17,13 @@ constexpr int kSweeps[] = {2, 18};
 struct Subject {
   std::string scene;
   int side = 0;
-  double seconds = 0;  ///< after which the cloth lies
+  double seconds = 0;  ///< time until the cloth lies
   std::string setting;
-  int steps = 4;  ///< timed in one go from that state
+  int steps = 4;  ///< steps timed in a row from that state
 };
 
-/// Thickness and radius shrink with the spacing, as far as they have to, and for self-collision so
-/// does the time step: a particle moves as many of its diameters in a step whatever their number.
+/// Loads the scene with thickness and radius scaled to the spacing. With self-collision the time
+/// step scales as well, so that a particle moves the same number of diameters per step.
 Scene load(const Subject& s) {
   const double spacing = 0.8 / (s.side - 1);
   const std::string n = std::to_string(s.side);
@@ -48,8 +48,9 @@ State settled(const Scene& scene, double seconds) {
   return state;
 }
 
-/// Counters [s a particle]: `sweep` over the structural links; contact `in_sweep` and, besides,
-/// `in_step`. `touching`: the share of the particles in contact with a collider at the start.
+/// Counters [s per particle]: `sweep` over the structural links; contact `in_sweep`, and `in_step`
+/// for the rest of the step. `touching`: share of particles in contact with a collider at the
+/// start.
 void run(benchmark::State& state, const Subject& s) {
   Scene scene = load(s);
   const State start = settled(scene, s.seconds);
@@ -57,7 +58,7 @@ void run(benchmark::State& state, const Subject& s) {
   Scene bare = scene;
   bare.colliders.clear();
   bare.self_collision.reset();
-  std::unique_ptr<Solver> solvers[4];  // without contact, with it; few sweeps, many
+  std::unique_ptr<Solver> solvers[4];  // without and with contact, each with few and many sweeps
   for (std::size_t i = 0; i < 4; ++i)
     solvers[i] = make(i < 2 ? bare : scene, with_sweeps(kSweeps[i % 2], s.setting));
   double time[4] = {};
@@ -100,7 +101,7 @@ void register_contact() {
         for (const char* order : {"mesh", "coloured"})
           add({scene, side, 0.75, std::string("contact=") + response + ",order=" + order});
     for (const double seconds : {0.3, 0.6})
-      for (const int steps : {1, 8})  // a step that begins afresh has to search for pairs
+      for (const int steps : {1, 8})  // the first step after loading has to search for pairs
         for (const char* order : {"mesh", "coloured"})
           add({"crumple", side, seconds, std::string("self=grid,order=") + order, steps});
   }

@@ -1,5 +1,5 @@
-// iteration/SIDE/SOLVER: what one iteration of each solver costs for each vertex of a square sheet
-// with structural and shear links, beside a sweep of Jakobsen's in float, in turns.
+// iteration/SIDE/SOLVER: cost of one iteration per vertex of each solver on a square sheet with
+// structural and shear links, measured alternately with a sweep of Jakobsen's in float.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -24,14 +24,15 @@ Scene net(int side) {
   return scene;
 }
 
-/// What is repeated, `by` a parameter, few times and many times.
+/// Parameter `by` that sets the number of repetitions, and two values of it.
 struct Repeated {
   std::string solver, by;
   int few = 2, many = 18;
   std::string with(int times) const { return solver + ',' + by + '=' + std::to_string(times); }
 };
 
-/// The difference between steps of many and of few iterations for each of them and each vertex.
+/// Cost per iteration and vertex, from the difference between steps with many and with few
+/// iterations.
 class Iterations {
  public:
   Iterations(const Scene& scene, const Repeated& what)
@@ -50,7 +51,7 @@ class Iterations {
   double share_;
 };
 
-/// Counters: `iteration` [s], and `sweeps`, over one of Jakobsen's.
+/// Counters: `iteration` [s], and `sweeps`, its ratio to a sweep of Jakobsen's.
 void measure(benchmark::State& state, int side, const Repeated& what) {
   const Scene scene = net(side);
   const Iterations own(scene, what);
@@ -65,8 +66,8 @@ void measure(benchmark::State& state, int side, const Repeated& what) {
   state.counters["sweeps"] = time / sweep;
 }
 
-/// In both precisions if it has them, with what is repeated once a substep. Newton's iterations end
-/// where nothing is left to do.
+/// Rows of a solver in both precisions if it has them, with one substep. Newton's iterations stop
+/// at convergence, so that their number stays low.
 std::vector<Repeated> rows_of(const SolverEntry& entry) {
   const auto has = [&](std::string_view name) {
     return std::ranges::any_of(entry.params, [&](const ParamSpec& p) { return p.name == name; });
@@ -87,7 +88,8 @@ std::vector<Repeated> rows_of(const SolverEntry& entry) {
       one.solver += std::string(one.solver.back() == ':' ? "" : ",") + "precision=" + precision;
   }
   if (!has("precision")) rows.pop_back();
-  if (entry.name.starts_with("bullet")) rows.erase(rows.begin());  // float is another program's
+  // the float version is another program
+  if (entry.name.starts_with("bullet")) rows.erase(rows.begin());
   return rows;
 }
 

@@ -1,6 +1,6 @@
-// projection/SIDE/SOLVER: what one projection costs on a square sheet with structural, shear and
-// bend links, and what bounds it: projections of particles that stay in registers, and particles
-// that are loaded and stored with an addition in the place of the projection.
+// projection/SIDE/SOLVER: cost of one projection on a square sheet with structural, shear and bend
+// links, and its lower bounds: projections of particles that stay in registers, and particles that
+// are loaded and stored with an addition in place of the projection.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ Scene sheet(int side) {
   return scene;
 }
 
-/// Counters: `projection` [s], the difference between steps of many and of few sweeps over that of
-/// their projections; `step` [s], a step of no sweep.
+/// Counters: `projection` [s], the difference between steps with many and with few sweeps per
+/// projection; `step` [s], a step without sweeps.
 void of_solver(benchmark::State& state, int side, const std::string& text) {
   const Scene scene = sheet(side);
   std::unique_ptr<Solver> solvers[3];
@@ -67,7 +67,7 @@ void in_registers(benchmark::State& state) {
       projections, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// Colour batches, in their order.
+/// Colour batches in their order.
 template <class Real>
 void load_and_store(benchmark::State& state, int side) {
   const Scene scene = sheet(side);

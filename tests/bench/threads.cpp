@@ -1,5 +1,5 @@
-// threads/SIDE/SCENE: what two threads on one sheet are worth, beside two sheets that know nothing
-// of each other, a thread each: as fast as so many single threads, wall time.
+// threads/SIDE/SCENE: speed of two threads on one sheet, compared with two independent sheets of
+// one thread each, in multiples of a single thread's speed (wall time).
 #include <benchmark/benchmark.h>
 
 #include <thread>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSteps = 4;
 
-/// Radius and thickness of a cloth that meets itself shrink with the spacing.
+/// Loads the scene; with self-collision, radius and thickness scale with the spacing.
 Scene load(const std::string& name, int side) {
   const Scene shipped = load_scene(find_scene(name));
   const std::string n = std::to_string(side);
@@ -27,8 +27,8 @@ Scene load(const std::string& name, int side) {
   return load_scene(find_scene(name), changes);
 }
 
-/// Counters: `two_threads` and `unrelated`, in single threads. No time is in both ratios, or a slow
-/// single thread would flatter both.
+/// Counters: `two_threads` and `unrelated`, in multiples of a single thread. The ratios share no
+/// measured time: a slow single thread would otherwise flatter both.
 void run(benchmark::State& state, const std::string& name, int side) {
   const Scene scene = load(name, side);
   const std::string setting = "jakobsen:iterations=1,substeps=15";

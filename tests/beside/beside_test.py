@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`bench --beside`: each adapter is built against stand-ins of our own with the names that it uses, and runs.
+"""`bench --beside`: each adapter builds against our stand-ins, which have the names that it uses, and runs.
 
 Usage: beside_test.py BUILD_FOLDER"""
 

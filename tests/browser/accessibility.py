@@ -1,10 +1,10 @@
-"""What a page must not do to its readers: the serious rules of axe-core written out (axe-core is no package of Debian 12),
-contrast, texts that lie on each other or are cut off. Each script returns a list of what breaks it."""
+"""Rules of accessibility: the serious rules of axe-core, written out because Debian 12 does not package axe-core; contrast; and
+texts that overlap or are cut off. Each script returns a list of violations."""
 
 import os
 import subprocess
 
-# Texts whose contrast with the background behind them is below WCAG AA, as "text: ratio".
+# Texts whose contrast with their background is below WCAG AA, as "text: ratio".
 CONTRAST = r"""
 (() => {
   const parse = c => {
@@ -90,7 +90,7 @@ RULES = r"""
 })()
 """
 
-# Texts of one chart that share an area or leave their chart.
+# Texts of a chart that overlap or extend beyond the chart.
 CROWDED = r"""
 [...document.querySelectorAll('.plot svg')].filter(svg => svg.checkVisibility()).flatMap(svg => {
   const frame = svg.getBoundingClientRect(), name = svg.getAttribute('aria-label').slice(0, 60);
@@ -110,7 +110,7 @@ AXE = """axe.run(document, {resultTypes: ['violations']}).then(r => r.violations
 
 
 def axe_core():
-    """The text of axe.min.js if the machine has it ($AXE_CORE, or installed for npm), else None."""
+    """The text of axe.min.js if this machine has it ($AXE_CORE, or installed by npm), otherwise None."""
     places = [os.environ.get("AXE_CORE", "")]
     try:
         root = subprocess.run(["npm", "root", "-g"], capture_output=True, text=True, timeout=20).stdout

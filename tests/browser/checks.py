@@ -1,4 +1,4 @@
-"""What the browser's tests share: a page that is opened, findings that are counted, what a page requests and logs."""
+"""Shared by the browser's tests: opens pages, counts findings, and lists what a page requests and logs."""
 
 import json
 import os
@@ -9,20 +9,20 @@ SCENES = VISIBLE + "('.scene').map(s => s.ariaLabel)"
 
 
 class Checks:
-    """A browser, a folder for its pages, the report that is used, and what failed."""
+    """A browser, a folder for its pages, the report under test, and the failures."""
 
     def __init__(self, browser, out, report):
         self.browser, self.out, self.report, self.failures = browser, out, report, []
 
     def model(self):
-        """The model in the report, and the page without it: before and behind."""
+        """The model in the report, and the parts of the page before and after it."""
         with open(self.report, encoding="utf-8") as read:
             before, rest = read.read().split('id="model">', 1)
         model, behind = rest.split("</script>", 1)
         return json.loads(model), before + 'id="model">', "</script>" + behind
 
     def open(self, model=None, address="", width=1280):
-        """Anew at `#address`: the report, or its page with another model."""
+        """Opens the report, or its page with another model, anew at `#address`."""
         self.browser.size(width, 900)
         self.file = self.report
         if model:
@@ -52,7 +52,7 @@ class Checks:
 
 
 def logged(events):
-    """Requests that left the page, and what was logged as error or warning."""
+    """Requests that left the page, and errors and warnings in its log."""
     requests, errors = [], []
     for event in events:
         kind, params = event.get("method"), event.get("params", {})

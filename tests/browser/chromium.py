@@ -1,4 +1,4 @@
-"""Drives a headless Chromium over its debugging pipe; needs nothing but Python's standard library."""
+"""Drives a headless Chromium over its debugging pipe; needs only Python's standard library."""
 
 import base64
 import json
@@ -83,7 +83,7 @@ class Browser:
             self.events.append(self.receive())
 
     def open(self, path):
-        """A file, or an address."""
+        """Opens a file or an address."""
         self.events.clear()
         self.call("Page.navigate", url=path if ":" in path else "file://" + os.path.abspath(path))
         self.wait("Page.loadEventFired")
@@ -105,11 +105,11 @@ class Browser:
             file.write(base64.b64decode(shot["data"]))
 
     def settle(self):
-        """Waits until layout, observers and events of the last action are done."""
+        """Waits until the layout, observers and events of the last action have finished."""
         self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30))))")
 
     def press(self, *keys):
-        """Keys one after the other, as a keyboard sends them."""
+        """Presses keys one after another, as a keyboard sends them."""
         for key in keys:
             text = {"Enter": "\r", " ": " "}.get(key, key if len(key) == 1 else None)
             code = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Tab": 9, "Enter": 13, "Escape": 27,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A real run, small enough for a test, ends in a report; the browser then uses it as report.py does.
 
-    real_run.py BINARIES OUT        exit 0: all is well; 1: it is not; 77: there is no Chromium
+    real_run.py BINARIES OUT        exit 0: all checks pass; 1: a check fails; 77: Chromium is missing
 """
 
 import json

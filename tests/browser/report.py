@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Uses a report that taut wrote, without a network, as a reader would: what holds of every report.
+"""Uses a report that taut wrote as a reader would, without a network; every report must pass these checks.
 
-    report.py REPORT.html OUT [CHECK...]        exit 0: all is well; 1: it is not; 77: there is no Chromium
+    report.py REPORT.html OUT [CHECK...]        exit 0: all checks pass; 1: a check fails; 77: Chromium is missing
 """
 
 import bisect
@@ -21,9 +21,9 @@ HEIGHT, WIDTH = "document.documentElement.scrollHeight", "document.documentEleme
 
 
 def drawn(checks):
-    """From a file, without a network: small, quickly there, whole, and it asks for nothing."""
+    """Opened from a file without a network, the page is small, fast and complete, and requests nothing."""
     page = checks.browser
-    page.call("Performance.enable", timeDomain="threadTicks")  # CPU time: others may use the machine
+    page.call("Performance.enable", timeDomain="threadTicks")  # CPU time, as others may use the machine
     page = checks.open()
     spent = {m["name"]: m["value"] for m in page.call("Performance.getMetrics")["metrics"]}["TaskDuration"]
     page.call("Performance.disable")
@@ -38,8 +38,8 @@ def drawn(checks):
 
 
 def layout(checks):
-    """On a desk, a tablet and a phone: one scene at a time, nothing overlaps, is empty, is cut or leaves the window; both
-    themes have contrast and break no serious rule of accessibility."""
+    """On a desktop, a tablet and a phone the page shows one scene at a time; nothing overlaps, is empty, is cut off or leaves the
+    window. Both themes have enough contrast and break no serious rule of accessibility."""
     page = checks.open()
     titles = page.run("model.scenes.map(scene => [scene.id, scene.title])")
     for width in (1280, 768, 390):
@@ -74,7 +74,7 @@ def layout(checks):
 
 
 def permalinks(checks):
-    """An address brings back the scene, the case, the section or chart and the solvers that it names."""
+    """An address restores the scene, the case, the section or chart, and the solvers that it names."""
     page = checks.open()
     studied = page.run("""model.scenes.filter(s => s.studied).map(s => {
         const one = model.cases.findLast(c => c.scene === s.id); return [s.id, s.title, s.charts?.[0], one.key, one.command]; })""")
@@ -95,7 +95,7 @@ def permalinks(checks):
 
 
 def table(checks):
-    """Of one scene and one status, sorted by a value at a click: that, in that order, with every digit, is downloaded."""
+    """The table, filtered by scene and status and sorted by a click, is downloaded with these rows in this order with all digits."""
     page = checks.open()
     every = page.run("model.cases")
     pick = max(every, key=lambda c: len(c["values"]))
@@ -109,14 +109,14 @@ def table(checks):
         page.run(f"[...document.querySelectorAll('#cases .chooser label')][caseColumns.filter(c => c.extra).findIndex(c => c.name === {metric!r})].click()")
         page.settle()
     checks.true(page.run(f"!!{head}"), f"the column {metric} is shown when it is chosen")
-    for _ in range(2):  # rising, falling
+    for _ in range(2):  # ascending, descending
         page.run(head + ".click()")
         page.settle()
     page.settle()
     wanted = [c for c in every if c["scene"] == scene and c["status"] == status]
     said = page.run("document.querySelector('#cases [role=status]').innerText")
     checks.true(said.startswith(f"{len(wanted)} of {len(every)} case"), f"the table says how many of {scene} are {status}", said)
-    page.run("document.querySelector('#cases .tall + button').click()")  # all of them
+    page.run("document.querySelector('#cases .tall + button').click()")  # shows all rows
     shown = page.run("[...document.querySelectorAll('#cases tbody tr')].map(tr => tr.dataset.key)")
     values = {c["key"]: c["values"].get(metric) for c in wanted}
     falling = [values[key] for key in shown if values.get(key) is not None]
@@ -143,7 +143,7 @@ def table(checks):
 
 
 def switches(checks):
-    """A solver that is switched off leaves charts, maps and table; the others stay; switched on it is back."""
+    """A solver that is switched off disappears from charts, maps and table, while others stay; switched on it reappears."""
     page = checks.open()
     solvers = page.run("""model.solvers.map(solver => [solver.id,
         model.charts.find(c => c.kind !== 'series' && c.series.some(s => s.solver === solver.id))?.scene])""")
@@ -170,7 +170,7 @@ def switches(checks):
 
 
 def keyboard(checks):
-    """The first Tab offers to skip to the results; Tab reaches every control that is shown."""
+    """The first Tab offers to skip to the results; Tab reaches every visible control."""
     page = checks.open()
     page.press("Tab")
     skip = page.run("document.activeElement.className")
@@ -187,7 +187,7 @@ def keyboard(checks):
 
 
 def films(checks):
-    """Play and pause by click and keys; arrows step after a click; the cursor and the values follow."""
+    """A film plays and pauses by click and by keys; arrows step after a click; cursor and values follow."""
     page = checks.open()
     list_ = page.run("(model.films ?? []).filter(f => f.src && f.type.startsWith('video/')).map(({src, poster, ...film}) => film)")
     if not list_:
@@ -209,7 +209,7 @@ def films(checks):
             page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
     def moving():
-        """Where the film is once it plays; null if it does not within five seconds."""
+        """Position of the film once it plays; null if it does not play within five seconds."""
         return page.run(f"""new Promise(done => {{
             const end = Date.now() + 5000, look = () => {video}.currentTime > 0 && !{video}.paused ? done({video}.currentTime)
                 : Date.now() > end ? done(null) : setTimeout(look, 10);
@@ -228,7 +228,7 @@ def films(checks):
     checks.true(page.run(f"{video}.paused"), "another one stops it")
     drag(0.3 * film["duration"])
     click()
-    click()  # the focus is where a click puts it
+    click()  # moves the focus to the film
     page.settle()
     start, frame = page.run(now), film["frame"]
     page.press("ArrowRight", "ArrowRight", "ArrowRight")
@@ -262,7 +262,7 @@ def films(checks):
 
 
 def prints(checks):
-    """On paper what was chosen: every scene, every question with its scenes, what is folded; afterwards as it was."""
+    """Paper shows the selection with every scene, every question with its scenes, and folded parts. The screen is unchanged afterwards."""
     page = checks.open()
     titles = page.run("model.scenes.map(s => s.title)")
     page.media("print")
@@ -290,8 +290,8 @@ def prints(checks):
 
 
 def answer(checks):
-    """The first screen: every question with all its cells within 1280 x 800 and, without their notes, on a phone, where a map has
-    its first scene and is as wide as the screen; a click unfolds its scenes; a number leads to its case and its command."""
+    """The first screen shows every question with all its cells within 1280 x 800. On a phone it shows them without notes, and a map
+    is as wide as the screen and has its first scene. A click unfolds its scenes; a number leads to its case and its command."""
     page = checks.open()
     tables = checks.model()[0]["answer"]["tables"]
     page.size(1280, 800)
@@ -358,8 +358,8 @@ def answer(checks):
 
 
 def winners(checks):
-    """The map says of each scene and error who is cheapest, by how much, at what cost and setting, or why nobody is; each number of
-    its sentences leads somewhere."""
+    """For each scene and error the map names the cheapest solver, its lead, cost and setting, or the reason why no solver is cheapest.
+    Each number in its sentences is a link."""
     page = checks.open()
     model = checks.model()[0]
     if "winners" not in model:
@@ -390,7 +390,7 @@ def winners(checks):
 
 
 def charts(checks):
-    """Of each quantity a figure with a panel for each scene, all on the same axes."""
+    """Each quantity has a figure with a panel for each scene, all on the same axes."""
     page = checks.open()
     specs = [c for c in page.run("model.charts.map(({id, kind, scene, x, y, zeros}) => ({id, kind, scene, zeros, x: x.metric, y: y.metric}))")
              if c["kind"] not in ("series", "step")]
@@ -409,7 +409,7 @@ def charts(checks):
 
 
 def points(checks):
-    """A chart's points say value, status and case, arrows move between them, Enter opens the case; so do cells of maps."""
+    """Points of a chart state value, status and case; arrows move between them, and Enter opens the case. Cells of maps do the same."""
     page = checks.open()
     spec = page.run("(c => ({id: c.id, scene: c.scene, series: c.series}))(model.charts.find(c => c.kind === 'convergence'))")
     page.run(f"state.set({{scene: {spec['scene']!r}}})")
@@ -444,7 +444,7 @@ HOSTILE = ["<img src=x onerror='window.harmed = 1'>", "</script><script>window.h
 
 
 def hostile(checks):
-    """Texts of users stay texts and do not break the layout."""
+    """Texts from users stay texts and do not break the layout."""
     model = checks.model()[0]
     for i, case in enumerate(model["cases"]):
         case.update(brief=HOSTILE[i % 5], reason=HOSTILE[(i + 1) % 5])
@@ -467,7 +467,7 @@ def hostile(checks):
 
 
 def without_script(checks):
-    """Without JavaScript the answer is there, and what is missing is said."""
+    """Without JavaScript the page shows the answer and says what is missing."""
     page = checks.browser
     page.call("Emulation.setScriptExecutionDisabled", value=True)
     page.open(checks.report)
@@ -480,7 +480,7 @@ def without_script(checks):
 
 
 def compared(checks):
-    """Heads say in what arithmetic a solver computes; a film says who is not in it; of two folders what differs comes first."""
+    """Column heads state a solver's precision, a film names the solvers that it lacks, and differences come first for two folders."""
     model, _, _ = checks.model()
     solver = model["solvers"][0]
     page = checks.open()
@@ -508,7 +508,7 @@ ALL = {f.__name__: f for f in (drawn, answer, winners, compared, charts, layout,
 
 
 def use(report, out, every, names=()):
-    """Runs checks (all of `every` without names) on a report; the exit code."""
+    """Runs the named checks on a report, or all of `every`; returns the exit code."""
     program = chromium.find()
     if program is None:
         print("SKIPPED: no chromium on this machine")

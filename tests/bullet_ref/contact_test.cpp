@@ -1,5 +1,5 @@
-// btSoftBody against rigid colliders: every collider is where the scene puts it, at every time, and
-// the cloth keeps the distance that Bullet's contact rule leaves: thickness + g h^2 on a plane.
+// btSoftBody against rigid colliders. Every collider is at the scene's place at every time, and
+// cloth keeps the distance of Bullet's contact rule: thickness + g h^2 on a plane.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kThickness = 0.02;  // m
 
-/// A sheet of half a metre on (or just above) a collider's top; u and v span it.
+/// Sheet of half a metre on (or just above) a collider's top, spanned by u and v.
 Scene sheet_above(const Collider& collider, const Vec3& middle, const Vec3& u, const Vec3& v) {
   Scene scene;
   scene.mesh = make_sheet({.nu = 11,
@@ -52,7 +52,7 @@ Range distances(const Solver& solver, const Scene& scene, double t) {
   return range;
 }
 
-/// Distances from the surface at the end of the scene.
+/// Range of distances from the surface at the end of the scene.
 Range settle(const Scene& scene, const std::string& text) {
   const SolverChoice choice = parse_solver(text);
   EXPECT_EQ(choice.entry->unsupported(scene, choice.params), std::vector<std::string>{});
@@ -62,7 +62,7 @@ Range settle(const Scene& scene, const std::string& text) {
   return distances(*solver, scene, scene.duration());
 }
 
-/// Axes along a plane: level, and down the slope.
+/// Axes of a plane: horizontal, and down the slope.
 std::pair<Vec3, Vec3> axes(const Vec3& normal) {
   const Vec3 level = normal.cross(Vec3::UnitY()).normalized();
   return {level, normal.cross(level)};
@@ -82,15 +82,15 @@ TEST(BulletContact, ClothRestsAtThicknessPlusTheFallOfOneStep) {
     }
 }
 
-/// The law of bullet_ref/README.md for a vertex alone on a slope [rad], in its own words: ways in
-/// one substep along the slope and out of it, the height above the distance at which contact
-/// begins.
+/// The law in bullet_ref/README.md for a single vertex on a slope [rad], implemented independently.
+/// State: distances moved in one substep along the slope and out of it, and the height above the
+/// distance at which contact begins.
 struct LawOfFriction {
   double slope, mu, hardness;
   int passes;
   double h;  ///< s
   double height = 0, along = 0;
-  double way_out = 0, way_along = 0;  ///< of the last substep [m]
+  double way_out = 0, way_along = 0;  ///< in the last substep [m]
   void substep() {
     way_out -= 9.81 * std::cos(slope) * h * h;
     way_along += 9.81 * std::sin(slope) * h * h;
@@ -107,7 +107,7 @@ struct LawOfFriction {
   }
 };
 
-/// How far the middle of a sheet slides down a slope in one second [m].
+/// Distance that the middle of a sheet slides down a slope in one second [m].
 double slide(double slope, double mu, const std::string& bullet, double start_height,
              Range* range) {
   const Vec3 normal(std::sin(slope), std::cos(slope), 0);
@@ -131,8 +131,8 @@ TEST(BulletFriction, IsTheLawThatTheReadmeStates) {
   for (const double mu : {0.0, 0.1, 0.3, 0.32, 0.335, 0.345, 0.35, 0.7, 1.0})
     for (const double hardness : {0.05, 0.1, 0.3, 1.0})
       for (const int passes : {1, 3}) {
-        // Away from ties, which rounding decides: at 0 a hard contact lands on the surface, and the
-        // others come to rest just touching it, but not within 64 steps.
+        // Avoids ties, which rounding decides: from height 0 a hard contact lands on the surface.
+        // Softer ones come to rest just touching it, but not within 64 steps.
         const double start = hardness == 0.1 ? 0 : 0.3 * 9.81 * h * h;
         LawOfFriction law{slope, mu, hardness, passes, h, start};
         for (int n = 0; n < 64; ++n) law.substep();
@@ -143,8 +143,8 @@ TEST(BulletFriction, IsTheLawThatTheReadmeStates) {
       }
 }
 
-// tan(17 degrees) = 0.306: Coulomb's law holds the sheet from there on, Bullet's from
-// tan/(1 - hardness) = 0.3397 on if it lies at the distance at which contact begins.
+// tan(17 degrees) = 0.306. Coulomb's law holds the sheet from this friction on. Bullet's law does
+// so from tan/(1 - hardness) = 0.3397 on if the sheet lies at the distance at which contact begins.
 TEST(BulletFriction, HoldsAboveATangentThatHardnessRaises) {
   const double slope = 17 * std::numbers::pi / 180;
   const double threshold = std::tan(slope) / (1 - 0.1);
@@ -166,7 +166,7 @@ TEST(BulletContact, AMovingPlaneCarriesTheCloth) {
   EXPECT_LT(d.most, kThickness + 2 * 9.81 * scene.dt * scene.dt);
 }
 
-// Friction sees the velocity of what moves: with mu = 1 nothing of the slip is kept.
+// Friction acts on the relative velocity: with mu = 1 it removes all slip.
 TEST(BulletContact, AFloorThatRunsTakesTheClothAlong) {
   const Vec3 runs(0.3, 0, -0.2);
   const Scene scene =
@@ -202,7 +202,7 @@ TEST(BulletContact, OnAThinBoxTheClothRestsAsOnAPlane) {
   EXPECT_NEAR(d.most, kThickness + 9.81 * scene.dt * scene.dt, 1e-4);
 }
 
-/// Two bodies as one: the second one's vertices and triangles behind the first one's.
+/// Two bodies as one: vertices and triangles of the second follow those of the first.
 Triangles both(Triangles one, const Triangles& other) {
   const auto first = static_cast<int>(one.vertices.size());
   one.vertices.insert(one.vertices.end(), other.vertices.begin(), other.vertices.end());
@@ -227,7 +227,7 @@ TEST(BulletContact, OnAConvexBodyOfTrianglesItRestsAsOnTheBox) {
     EXPECT_NEAR(convex.least, above, 3e-3) << text;
     EXPECT_NEAR(convex.most, above, 3e-3) << text;
   }
-  // 0.06 m above, and its margin more if a fall of a substep does not go through that
+  // rests 0.06 m higher; with substeps, higher by the margin that a substep's fall does not cross
   for (const MeshBody& other : {MeshBody{both(box, apart).mesh()},
                                 MeshBody{.mesh = box.mesh(), .sides = MeshBody::Sides::both}}) {
     EXPECT_TRUE(is_met_by_triangles({.shape = other}));
@@ -241,7 +241,7 @@ TEST(BulletContact, OnAConvexBodyOfTrianglesItRestsAsOnTheBox) {
   EXPECT_FALSE(is_met_by_triangles({.shape = Ball{}}));
 }
 
-// Across its axis a capsule is what a ball is; along it, the top is level.
+// Across its axis a capsule acts like a ball; along the axis its top is level.
 TEST(BulletContact, AFinerDistanceFieldLetsClothSinkLess) {
   const Scene scene = sheet_above({.shape = Capsule{{0, 0, -0.5}, {0, 0, 0.5}, 0.3}, .friction = 1},
                                   {0, 0.33, 0}, Vec3::UnitX(), Vec3::UnitZ());
@@ -260,12 +260,12 @@ TEST(BulletContact, AFinerDistanceFieldLetsTheClothLessIntoABall) {
   EXPECT_GT(fine, 0);
 }
 
-/// A box that moves by frames, or as a whole, for a second.
+/// Scene of a box that moves for a second, by frames or as a rigid body.
 Scene on_a_box(const Vec3& velocity, bool deforms) {
   const Triangles box = box_of_triangles({2, 0.2, 2});
   Collider body{
       .shape = MeshBody{.mesh = box.mesh(), .center = {0, -0.2, 0}, .sides = MeshBody::Sides::both},
-      .friction = 1};  // met by its triangles whether it deforms or not
+      .friction = 1};  // contact uses its triangles in both cases
   if (deforms) {
     auto frames = std::make_shared<BodyFrames>();
     frames->fps = 1;
@@ -285,8 +285,8 @@ Vec3 middle_after_a_second(const Scene& scene, const std::string& solver) {
   return sum / static_cast<double>(state.x.size());
 }
 
-// Bullet's own contact would not know that it moves: it would not carry the cloth along, and at
-// 0.3 m/s upwards go through it.
+// Bullet's own contact does not know about motion by frames: it would not carry the cloth along,
+// and at 0.3 m/s upwards the body would pass through it.
 TEST(BulletContact, ABodyThatFramesMoveCarriesAndLiftsAsOneThatMovesAsAWhole) {
   for (const char* solver :
        {"bullet:iterations=10", "bullet-deformable:implicit=false,substeps=70"})
@@ -300,7 +300,7 @@ TEST(BulletContact, ABodyThatFramesMoveCarriesAndLiftsAsOneThatMovesAsAWhole) {
 }
 
 TEST(BulletContact, RestartingGivesTheSameBits) {
-  // Touching a ball that moves: a collider's old place would give it a false velocity.
+  // A moving ball in contact: with the collider's old place its velocity would be wrong.
   const Scene scene =
       sheet_above({.shape = Ball{{0, 0, 0}, 0.3}, .motion = {.velocity = {0, 0.5, 0.5}}},
                   {0, 0.31, 0}, Vec3::UnitX(), Vec3::UnitZ());

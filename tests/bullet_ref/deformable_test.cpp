@@ -55,8 +55,8 @@ TEST(BulletDeformable, AHangingChainStretchesByTheWeightBelow) {
   EXPECT_NEAR(tip, kMass * 9.81 * kLinks * (kLinks + 1) / (2 * kStiffness), 1e-7);
 }
 
-// An input that fuzzing found: pulled apart until a vertex is beyond the cells of the colliders'
-// distance fields, where Bullet reads memory that is not its own.
+// Found by fuzzing: a vertex is pulled beyond the cells of the colliders' distance fields, where
+// Bullet would read out of bounds.
 TEST(BulletDeformable, AVertexBeyondDistanceFieldsEndsTheCase) {
   const Scene scene = load_scene(TAUT_SOURCE_DIR "/tests/fuzz/corpus/scene/good-flies-apart.toml");
   const Status status =
@@ -73,8 +73,8 @@ TEST(BulletDeformable, AVertexBeyondDistanceFieldsEndsTheCase) {
   }
 }
 
-// Without springs both schemes are symplectic Euler, so wind, damping, gravity and moving pins can
-// be held against ours to rounding.
+// Without springs both schemes are symplectic Euler, so that wind, damping, gravity and moving pins
+// can be compared with our solver up to rounding.
 TEST(BulletDeformable, WithoutSpringsItMovesLikeOurs) {
   Scene scene = sheet({.nu = 6, .nv = 5, .width = 1, .height = 1, .mass = 0.2}, {false});
   scene.wind = Wind{.velocity = {1, 0.3, 2}, .strength = 0.1};

@@ -9,10 +9,10 @@
 #include "core/model/scene.hpp"
 #include "core/model/triangle_mesh.hpp"
 
-/// What was asked for against what an engine holds.
+/// Comparison of a requested scene with the one that an engine holds.
 namespace taut {
 
-/// Collects what differs, each under the name of the member it was found in.
+/// Collects differences, each under the name of the member in which it was found.
 class SceneComparison {
  public:
   explicit SceneComparison(double tolerance) : tolerance_(tolerance) {}
@@ -27,7 +27,7 @@ class SceneComparison {
   void same(const std::string& what, bool equal) {
     if (!equal) found_.push_back(what + " differs");
   }
-  /// Sizes, then element by element with compare(name, a, b).
+  /// Compares sizes, then elements one by one with compare(name, a, b).
   template <class T, class Compare>
   void each(const std::string& what, const std::vector<T>& a, const std::vector<T>& b,
             Compare compare) {
@@ -101,7 +101,8 @@ class SceneComparison {
 
 inline void compare_mesh(SceneComparison& c, const Mesh& asked, const Mesh& held,
                          const std::vector<int>& pins) {
-  const auto& [rest, triangles, mass, grid, welded] = asked;  // what a file calls vertices
+  // "welded" concerns the vertices of a file
+  const auto& [rest, triangles, mass, grid, welded] = asked;
   c.vectors("mesh.rest", rest, held.rest);
   c.same("mesh.welded", welded.empty() || held.welded.empty());
   c.same("mesh.triangles", triangles == held.triangles);
@@ -121,19 +122,19 @@ inline void compare_wind(SceneComparison& c, const std::optional<Wind>& asked,
   c.same("wind.law", law == held->law);
 }
 
-/// Where `held` is not the simulation that `asked` describes, a sentence each; empty: the same.
-/// Numbers agree if they differ by no more than `tolerance` relative to the larger of 1 and their
-/// size. Not compared, for Bullet has no place for them: the labels, the mesh's grid, the
+/// Differences between the simulation that `asked` describes and `held`, a sentence each; empty if
+/// they are the same. Numbers agree if they differ by at most `tolerance` relative to the larger of
+/// 1 and their size. Not compared, as Bullet does not store them: the labels, the mesh's grid, the
 /// masses of pinned vertices, and the stiffness of links and of bending.
 inline std::vector<std::string> differences(const Scene& asked, const Scene& held,
                                             double tolerance) {
-  // Every member is named here: a new one does not compile until it has an answer.
+  // Names every member, so that a new one does not compile until it is handled.
   const auto& [name, summary, mesh, start, pins, pin_motions, releases, links, stiffness, bending,
                colliders, wind, self_collision, gravity, damping, thickness, dt, steps] = asked;
   SceneComparison c(tolerance);
   compare_mesh(c, mesh, held.mesh, pins);
   c.vectors("start.x", start.x, held.start.x);
-  // A velocity is a difference of two rounded positions over one step.
+  // A velocity is the difference of two rounded positions over one step.
   SceneComparison speeds(tolerance * std::max(1.0, extent(asked)) / dt);
   speeds.vectors("start.v", start.v, held.start.v);
   c.same("pins", pins == held.pins);
@@ -142,7 +143,8 @@ inline std::vector<std::string> differences(const Scene& asked, const Scene& hel
            c.same(what + ".vertices", a.vertices == b.vertices);
            c.motion(what, a.motion, b.motion);
          });
-  c.same("releases", releases.empty() && held.releases.empty());  // each has a stage alone
+  // the scene between two releases is a stage of its own
+  c.same("releases", releases.empty() && held.releases.empty());
   c.each("links", links, held.links,
          [&](const std::string& what, const Link& a, const Link& b) { c.link(what, a, b); });
   c.each("colliders", colliders, held.colliders,

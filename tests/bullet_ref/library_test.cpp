@@ -1,5 +1,5 @@
-// What has to hold for each build of Bullet: this file is compiled into taut_tests (double) and
-// into taut_tests_f32 (float).
+// Requirements on each build of Bullet: this file is compiled into taut_tests (double) and into
+// taut_tests_f32 (float).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Bullet is given the scene that we are given: whatever it holds, read from its own objects after
-// the scene was built, is what was asked for.
+// Bullet simulates the same scene as our solvers: the scene is read back from Bullet's own objects
+// after construction and compared with the requested one.
 #include "bullet_ref/read_back.hpp"
 
 #include <gtest/gtest.h>
@@ -26,15 +26,15 @@ Scene sheet(int nu, int nv) {
   return scene;
 }
 
-/// Everything that a scene can have and btSoftBody can do, all values unlike Bullet's defaults.
+/// Scene with every feature that btSoftBody supports; no value equals Bullet's default.
 Scene everything() {
   Scene scene = sheet(9, 7);
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
     scene.mesh.mass[i] *= 1 + 20 * static_cast<double>(i);      // from grams to kilograms
-    scene.start.x[i] = 1.1 * scene.start.x[i] + Vec3(0, 2, 0);  // a stretched start
+    scene.start.x[i] = 1.1 * scene.start.x[i] + Vec3(0, 2, 0);  // stretched at the start
     scene.start.v[i] = {0.1, -0.2, 0.01 * static_cast<double>(i)};
   }
-  for (Link& link : scene.links) link.rest *= 0.9;  // tighter than the rest shape
+  for (Link& link : scene.links) link.rest *= 0.9;  // shorter than in the rest shape
   scene.pin_motions = {{{0}, {.velocity = {0, 0, 1}}}};
   const Vec3 tilted = Vec3(1, 2, 3).normalized();
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.7, tilted));
@@ -109,7 +109,7 @@ TEST(BulletReadBack, WithoutFacesItHoldsAllElse) {
   EXPECT_EQ(differences(scene, held, 1e-13), std::vector<std::string>{});
 }
 
-/// The links that each vertex belongs to, in order.
+/// Links of each vertex, in order.
 std::vector<std::vector<std::array<int, 2>>> links_of_vertices(const Scene& scene) {
   std::vector<std::vector<std::array<int, 2>>> lists(scene.mesh.rest.size());
   for (const Link& link : scene.links)
@@ -165,8 +165,8 @@ TEST(BulletReadBack, StillHoldsTheMaterialAfterAHundredSteps) {
   solver->load(scene.start);
   solver->step(0, scene.dt);
   Scene held = read_back(*solver);
-  held.start = scene.start;          // has moved on
-  held.colliders = scene.colliders;  // so have these
+  held.start = scene.start;          // has changed during the steps
+  held.colliders = scene.colliders;  // have moved as well
   EXPECT_EQ(differences(scene, held, 1e-13), std::vector<std::string>{});
 }
 

@@ -1,5 +1,5 @@
-// What the two of Bullet's cloths say of a scene, line by line; what they refuse; how far out a
-// vertex may be, and how wide a plane is.
+// Settings that Bullet's two cloths report about a scene, line by line; their refusals; the largest
+// allowed distance of a vertex; and the width of a plane.
 #include "tests/support/settings.hpp"
 
 #include <gtest/gtest.h>
@@ -143,7 +143,7 @@ TEST(BulletRefusals, AreTheseSentences) {
   EXPECT_TRUE(refused(scene, "bullet:iterations=0").empty());
 }
 
-/// Whether a step ends because vertex 8 of a sheet, which starts there and so fast, is too far out.
+/// Whether a step ends because vertex 8 of a sheet, with this place and velocity, is too far out.
 bool too_far(const std::string& solver, const Vec3& at, const Vec3& velocity = Vec3::Zero(),
              bool collider = true) {
   Scene scene = hanging_sheet(3, 3);
@@ -172,14 +172,14 @@ TEST(BulletWorld, EndsAMillionMetresOutAlongEveryAxis) {
         EXPECT_TRUE(too_far(solver, 1.001e6 * out)) << solver << axis;
         EXPECT_FALSE(too_far(solver, 0.999e6 * out)) << solver << axis;
       }
-  const Vec3 way = 64 * 2e4 * Vec3::UnitZ();  // m/s, 20 km in a step
+  const Vec3 way = 64 * 2e4 * Vec3::UnitZ();  // m/s; 20 km in a step
   EXPECT_TRUE(too_far("bullet", Vec3(0, 0, 0.99e6), way)) << "where it goes";
   EXPECT_TRUE(too_far("bullet", Vec3(0, 0, 1.01e6), -way)) << "and whence it comes";
   EXPECT_FALSE(too_far("bullet", Vec3(0, 0, 0.97e6), way));
   EXPECT_FALSE(too_far("bullet", Vec3(0, 0, 1e9), Vec3::Zero(), false)) << "nothing to touch";
 }
 
-// Single vertices, without links: the slab is twice as wide as the cloth, whatever that is.
+// Single vertices without links: the slab is twice as wide as any cloth.
 TEST(BulletWorld, APlaneReachesFartherThanTheCloth) {
   Scene scene = hanging_sheet(3, 3);
   scene.links.clear();
@@ -198,7 +198,8 @@ TEST(BulletWorld, APlaneReachesFartherThanTheCloth) {
   }
 }
 
-// 160 m along a frictionless belt and along a floor, and on to one from 120 m in long steps.
+// The cloth moves 160 m along a frictionless belt and along a floor; it also falls on to a floor
+// from 120 m in long steps.
 TEST(BulletWorld, APlaneFollowsTheCloth) {
   Scene scene = hanging_sheet(4, 4);
   scene.pins.clear();

@@ -1,6 +1,6 @@
-// btSoftBody's Positions solver is Jakobsen's algorithm: without contact, with the square-root-free
-// projection and the same link order, two independent programs take the same path. The strongest
-// proof there is that both are given the same scene.
+// btSoftBody's Positions solver is Jakobsen's algorithm. Without contact, with the square-root-free
+// projection and the same order of links, two independent programs take the same path. This is the
+// strongest evidence that both simulate the same scene.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,7 @@ namespace {
 
 struct Cloth {
   int nu, nv;
-  bool unequal;  ///< some masses 5 times, some 0.2 times their share
+  bool unequal;  ///< some masses are 5 times, some 0.2 times their share
 };
 
 std::string name_of(const testing::TestParamInfo<Cloth>& info) {
@@ -21,7 +21,7 @@ std::string name_of(const testing::TestParamInfo<Cloth>& info) {
          (info.param.unequal ? "UnequalMasses" : "");
 }
 
-/// A sheet of one metre by one, held by two corners; it starts flat, hanging straight down along v.
+/// Sheet of one metre by one on two corners. It starts flat and hangs straight along v.
 Scene hang(const Cloth& cloth, const Vec3& v) {
   Scene scene;
   scene.name = "hang";
@@ -56,7 +56,7 @@ double distance(const Solver& a, const Solver& b) {
   return largest;
 }
 
-/// Largest distance [m] between the two after each of the steps 1, 2, ..., last.
+/// Largest distance [m] between both solvers after each of the steps 1, 2, ..., last.
 std::vector<double> distances(const Scene& scene, int last, const std::string& more = "") {
   const std::string common = "precision=double,iterations=8" + more;
   const auto ours = solver(listing("projection=sqrt-free," + common), scene);
@@ -78,15 +78,15 @@ TEST_P(Twin, HangingBulletAndJakobsenTakeTheSamePath) {
   EXPECT_LE(apart.back(), 1e-8) << "m after 600 steps";
 }
 
-// Dropped from level, the cloth swings through and crumples: rounding is amplified a hundredfold a
-// second, so this bound is set after one second.
+// Released from level, the cloth swings through and crumples. Rounding errors grow a hundredfold
+// per second, so that this bound applies after one second.
 TEST_P(Twin, FallingFromLevelTheyDoSoUntilChaosSetsIn) {
   const auto apart = distances(hang(GetParam(), Vec3::UnitZ()), 64);
   EXPECT_LE(apart.front(), 1e-14) << "m after one step";
   EXPECT_LE(apart.back(), 1e-8) << "m after 64 steps";
 }
 
-// Everything that a scene can ask for short of contact is mapped to the same physics.
+// Everything that a scene can request except contact maps to the same physics.
 TEST_P(Twin, WindDampingMovingPinsAndSubstepsAreTheSame) {
   Scene scene = hang(GetParam(), -Vec3::UnitY());
   for (const Wind::Law law : {Wind::Law::relative, Wind::Law::literal}) {
@@ -101,8 +101,8 @@ TEST_P(Twin, WindDampingMovingPinsAndSubstepsAreTheSame) {
   }
 }
 
-// ReoptimizeLinkOrder moves links only past links that they share no vertex with, so that no sum is
-// taken in another order: the path is that of our mesh order, bit for bit that of Bullet's own.
+// ReoptimizeLinkOrder moves links only past links without a common vertex, so that every sum keeps
+// its order. The path follows our mesh order and equals, bit for bit, that of Bullet's own order.
 TEST_P(Twin, ReorderedLinksTakeTheSamePathBitForBit) {
   const Scene scene = hang(GetParam(), Vec3::UnitZ());
   const auto plain = solver("bullet:iterations=8", scene),

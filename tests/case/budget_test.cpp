@@ -1,5 +1,5 @@
-// The energy that a scene can put into a cloth, part by part as divergence.hpp lists them, and how
-// long a cloth takes to settle.
+// Upper bound of the energy that a scene can put into a cloth, part by part as in divergence.hpp,
+// and the time that a cloth takes to settle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,21 +16,23 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// Four links of 0.25 m between vertices of 0.04 kg, hung from the first; dt = 1/64 s, no gravity.
+/// Chain of four links of 0.25 m between vertices of 0.04 kg, hung from the first; dt = 1/64 s, no
+/// gravity.
 Scene chain(const Vec3& gravity = Vec3::Zero()) {
   Scene scene = hanging_sheet(1, 5, {true, false, false}, Lumping::equal);
   scene.gravity = gravity;
   return scene;
 }
 
-/// What the second scene has more at time t [J].
+/// Energy budget of the second scene at time t beyond that of the first [J].
 double more(const Scene& plain, const Scene& scene, double t) {
   return EnergyBudget(scene).available(t) - EnergyBudget(plain).available(t);
 }
 
 TEST(Budget, AtRestThereIsNothingButRounding) {
   Scene scene = chain();
-  for (Vec3& x : scene.start.x) x += Vec3(300, 401, 0);  // the farthest is the first, 500.8 m away
+  // the first vertex is farthest from the origin, 500.8 m
+  for (Vec3& x : scene.start.x) x += Vec3(300, 401, 0);
   const double off = 1e-6 * (std::hypot(300, 401) + 1) * 64;
   EXPECT_NEAR(EnergyBudget(scene).available(3), 0.16 / 2 * off * off, 1e-12);
 }
@@ -71,10 +73,11 @@ TEST(Budget, AHungPieceFallsAtMostTwiceItsLength) {
   const Scene scene = chain(down);
   const double dt = scene.dt, fall = kG * 0.1 * (0.1 + dt) / 2;
   EXPECT_NEAR(more(chain(), scene, 0.1), 0.16 * kG * fall, 1e-12);
-  // Cut j carries the 5 - j masses below it and yields with w = 1/m, the first, or 2/m.
+  // Cut j carries the 5 - j masses below it and yields with w = 1/m for the first cut, otherwise
+  // 2/m.
   const double stretch = (4 + 2 * (3 + 2 + 1)) * kG * dt * dt;
   EXPECT_NEAR(more(chain(), scene, 100), 0.16 * kG * 2 * (1 + stretch), 1e-12);
-  Scene cut = scene;  // the lower two fall on
+  Scene cut = scene;  // the lower two vertices fall freely
   cut.links.erase(cut.links.begin() + 2);
   const double rest = (2 + 2 * 1) * kG * dt * dt, far = kG * 100 * (100 + dt) / 2;
   EXPECT_NEAR(more(chain(), cut, 100), kG * (0.08 * far + 0.08 * 2 * (0.5 + rest)), 1e-6);
@@ -82,7 +85,7 @@ TEST(Budget, AHungPieceFallsAtMostTwiceItsLength) {
   EXPECT_NEAR(more(chain(), cut, 0.1) / (0.2 * kG * fall), 1, 1e-6) << "and without a pin all do";
 }
 
-// Two columns: both links of a cut share what hangs below them.
+// Two columns: both links of a cut share the load below them.
 TEST(Budget, ManyLinksOfACutShareTheirLoad) {
   Scene scene = hanging_sheet(2, 3, {true, false, false}, Lumping::equal), weightless = scene;
   weightless.gravity.setZero();
@@ -96,7 +99,7 @@ TEST(Budget, WindBlowsByItsLaw) {
   plain.pins.clear();
   plain.gravity.setZero();
   Scene scene = plain;
-  scene.wind = Wind{.velocity = {2, 3, 6}, .strength = 0.5};  // 7 m/s on 0.5 m^2
+  scene.wind = Wind{.velocity = {2, 3, 6}, .strength = 0.5};  // wind of 7 m/s on 0.5 m^2
   EXPECT_NEAR(more(plain, scene, 3), 0.5 * 0.5 * 49 / 4 * 3, 1e-12);
   scene.wind->law = Wind::Law::literal;
   const double lightest = 0.2 / 8, speed = 0.5 * 0.5 * 7 / lightest * 3;
@@ -115,14 +118,14 @@ TEST(Budget, EveryChangeOfAPrescribedVelocityCounts) {
   const auto of = [](const Motion& motion) {
     Scene scene = chain();
     scene.pin_motions = {{{0}, motion}};
-    return std::sqrt(more(chain(), scene, 1) / (0.16 / 2)) / 2;  // the sum of speeds
+    return std::sqrt(more(chain(), scene, 1) / (0.16 / 2)) / 2;  // sum of speeds
   };
   EXPECT_NEAR(of({.velocity = {2, 3, 6}}), 7, 1e-9);
   EXPECT_NEAR(of({.path = {{0, {0, 0, 0}}, {1, {2, 0, 0}}, {3, {2, 0, 6}}}}),
               2 + std::sqrt(2 * 2 + 3 * 3) + 3, 1e-9);
   EXPECT_NEAR(of({.velocity = {1, 0, 0}, .path = {{0, {0, 0, 0}}, {0.5, {0, 2, 0}}}}), 1 + 4 + 4,
               1e-9);
-  // Nothing is farther from a pivot than the farthest start and both sizes of the cloth.
+  // The distance from a pivot is bounded by the farthest start plus both sizes of the cloth.
   EXPECT_NEAR(of({.spin = {0, 0, 2}, .pivot = {3, 0, 0}}), 2 * (std::hypot(3, 1) + 2), 1e-9);
   Scene scene = chain();
   scene.pin_motions = {{{0}, {.velocity = {1, 0, 0}}}};
@@ -131,20 +134,21 @@ TEST(Budget, EveryChangeOfAPrescribedVelocityCounts) {
 }
 
 TEST(Budget, ABrokenStartIsRepairedInOneStep) {
-  const double unit = 0.16 / 2 * 64 * 64;  // J for a metre in a step
+  const double unit = 0.16 / 2 * 64 * 64;  // J for one metre per step
   Scene scene = chain();
   scene.thickness = 0.125;
   scene.colliders = {{.shape = Plane{Vec3::UnitY(), -0.75}}, {.shape = Ball{{9, 0, 0}, 1}}};
   EXPECT_NEAR(more(chain(), scene, 1), unit * 0.375 * 0.375, 1e-9);
   scene.self_collision = SelfCollision{0.0625};
   EXPECT_NEAR(more(chain(), scene, 1), unit * 0.5 * 0.5, 1e-9);
-  Scene longer = chain();  // the last link by 0.75 m: repaired, and stored as a spring holds it
+  // the last link is 0.75 m too long: projections repair it, springs store it
+  Scene longer = chain();
   longer.start.x[4].y() -= 0.75;
   const double stored = 2 * 0.75 * 0.75 / (2 / 0.04) * 64 * 64, steps = 2 * 10 + 1;
   Scene same = chain();
   EXPECT_NEAR(more(same, longer, 10.0 / 64), unit * 0.75 * 0.75 + steps * steps * stored, 1e-4);
   // Links that are 40 m and 40.5 m too long move no vertex by more than the cloth's sizes, 1 m at
-  // rest and 40.75 m.
+  // rest and 40.75 m at the start.
   Scene apart = chain();
   apart.start.x[3].y() += 40.5;
   const double held = 0.04 * (40 * 40 + 40.5 * 40.5) * 64 * 64;
@@ -168,7 +172,7 @@ TEST(Budget, TheWorldEndsATensOfItsWaysAway) {
   EXPECT_EQ(EnergyBudget(scene).farthest(1e6), 1e6);
 }
 
-// The link with the largest opening for its length decides: here a short one below the middle.
+// The link with the largest opening for its length decides: here a short link below the middle.
 TEST(LegitimateStrain, IsTwiceThatOfTheWorstCut) {
   Scene scene = hanging_sheet(1, 9, {true, false, false}, Lumping::equal);
   scene.links[5].rest /= 4;  // carries 3 of 8 vertices

@@ -1,4 +1,5 @@
-// What a solver computed and what is said of its positions alone: the same, from memory or a file.
+// A solver's own motion and a motion given by positions alone get the same judgement, from memory
+// and from a file.
 #include "experiments/case/computed_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -21,11 +22,11 @@ const SceneSettings kSmall{"cloth.grid=[8, 8]", "time.duration=0.5"};
 
 Scene small(const SceneSettings& more = {}) {
   SceneSettings all = kSmall;
-  all.insert(all.end(), more.begin(), more.end());  // the last of a key counts
+  all.insert(all.end(), more.begin(), more.end());  // the last setting of a key counts
   return load_scene(find_scene("hang"), all);
 }
 
-/// A run in double, and all of its positions one after the other.
+/// Run in double, and all of its positions in sequence.
 struct Computed {
   CaseRun run;
   std::vector<double> x;

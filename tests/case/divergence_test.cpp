@@ -1,4 +1,4 @@
-// Verdicts at their borders: a hair below is legitimate, a hair above is not.
+// Verdicts at their thresholds: slightly below is legitimate, slightly above is not.
 #include "experiments/case/divergence.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::vector<PassCost> sweeps(std::size_t k) {
   return {{.pass = "structural", .repeats = k, .projections = true}};
 }
 
-/// Vertex 5 moves at `speed` [m/s]; the kinetic energy is m speed^2/2.
+/// State in which vertex 5 moves at `speed` [m/s]; the kinetic energy is m speed^2/2.
 State moving(const Scene& scene, double speed) {
   State state = scene.start;
   state.v[5] = {speed, 0, 0};
@@ -55,7 +55,7 @@ TEST(VerdictBorders, PinsHaveNoEnergyButMustBeFinite) {
 TEST(VerdictBorders, TheEndOfTheWorld) {
   const Scene scene = chain();
   const double bound = EnergyBudget(scene).farthest(scene.dt);
-  EXPECT_GT(bound, 1e3);  // a metre of chain that falls for a step
+  EXPECT_GT(bound, 1e3);  // a chain of 1 m that falls for one step
   EXPECT_LT(bound, 1e5);
   for (const double side : {-bound, bound}) {
     State state = scene.start;
@@ -69,7 +69,7 @@ TEST(VerdictBorders, TheEndOfTheWorld) {
   }
 }
 
-/// A link from vertex 4 to vertex 5 that is strained by `strain`, seen at step 7.
+/// Status after step 7 if the link from vertex 4 to vertex 5 has the strain `strain`.
 Status strained(const Scene& scene, double strain) {
   State state = scene.start;
   for (std::size_t i = 5; i < state.x.size(); ++i) state.x[i].y() -= strain * scene.links[4].rest;
@@ -115,7 +115,7 @@ TEST(VerdictBorders, ABendLinkAndOneBetweenPinsAreNeverExtreme) {
   EXPECT_EQ(strained(scene, 50).kind, Status::Kind::ok);
 }
 
-/// The verdict on a run of `times` settling times in which a vertex never slows down.
+/// Verdict on a run of `times` settling times in which a vertex never slows down.
 Status restless(double speed, double times, double strain = 0) {
   Scene scene = chain();
   const std::vector<PassCost> step_cost = sweeps(64);
@@ -123,7 +123,7 @@ Status restless(double speed, double times, double strain = 0) {
   DivergenceDetector verdict(scene, step_cost);
   State state = moving(scene, speed);
   for (std::size_t i = 5; i < state.x.size(); ++i) state.x[i].y() -= strain * scene.links[4].rest;
-  for (int n = 1; n <= scene.steps; ++n)  // at the very start there is no energy to be had
+  for (int n = 1; n <= scene.steps; ++n)  // at the start no energy is available
     EXPECT_TRUE(verdict.observe(n, n * scene.dt, state));
   verdict.finish();
   return verdict.status();
@@ -151,8 +151,8 @@ TEST(VerdictBorders, WhatIsExtremeAndDoesNotSettleIsNoStableProbe) {
   }
 }
 
-// The last of five settling times begins after four: by then a decaying swing is down to e^-4 of
-// its fastest.
+// The last of five settling times begins after four. By then a decaying swing is down to e^-4 of
+// its largest speed.
 TEST(VerdictBorders, ASwingThatDecaysAsTheorySaysIsSettled) {
   Scene scene = chain();
   const std::vector<PassCost> step_cost = sweeps(64);
@@ -168,9 +168,9 @@ TEST(VerdictBorders, ASwingThatDecaysAsTheorySaysIsSettled) {
   }
 }
 
-// A weightless spring, stretched by 4 % and let go: Verlet bounds its swing below dt = 2/w, to
-// 1/sqrt(1 - (w dt/2)^2) of the stretch, and lets it grow above. The energy stored at the start
-// allows for that swing.
+// Weightless spring, stretched by 4 % and released. Below dt = 2/w Verlet bounds its swing to
+// 1/sqrt(1 - (w dt/2)^2) of the initial stretch; above, the swing grows. The energy stored at the
+// start allows for the bounded swing.
 TEST(StoredEnergy, ASpringExplodesAboveTheStabilityLimitAlone) {
   constexpr double kMass = 0.1, kStiffness = 20;  // kg, N/m
   Scene scene = hanging_sheet(1, 2, {true, false, false}, Lumping::equal);
@@ -197,7 +197,8 @@ TEST(StoredEnergy, IsThatOfTheStiffestSpringThatAStepCanHold) {
   scene.gravity.setZero();
   const double before = EnergyBudget(scene).available(scene.dt);
   scene.start.x[1] *= 1.04;
-  // (2n + 1)^2 of m (2/dt)^2 e^2/2 after n = 1 step, and (e/dt)^2 m/2 for a projection's jump.
+  // (2n + 1)^2 of m (2/dt)^2 e^2/2 after n = 1 step, plus (e/dt)^2 m/2 for the jump of a
+  // projection.
   const double e = 0.04 * scene.links[0].rest, m = scene.mesh.mass[1];
   EXPECT_NEAR(EnergyBudget(scene).available(scene.dt) - before,
               (9 * 4 + 1) * m / 2 * e * e / scene.dt / scene.dt, 1e-9);

@@ -1,4 +1,4 @@
-// What is kept of a case: its name and address, its text, its values over time, its end.
+// Contents of a case's record: name and address, text, values over time, end.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -261,7 +261,7 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   scene.gravity.x() = 1;
   EXPECT_FALSE(found().rest || !found().motion.empty());
   scene.gravity.x() = 0;
-  scene.mesh.mass[1] *= 2;  // another scene of that name
+  scene.mesh.mass[1] *= 2;  // another scene with the same name
   write_reference(reference("static", 0), scratch.path() / "small");
   EXPECT_TRUE(found().rest);
   scene.mesh.mass[1] /= 2;
@@ -270,7 +270,8 @@ TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   EXPECT_FALSE(found().rest || !found().motion.empty());
 }
 
-// In which order settings are given, and how long a step is, makes it no other task.
+// A task depends neither on the order of settings nor on a setting of time.dt: the record's step
+// counts.
 TEST(Tasks, AreTheSameInAnyOrderOfTheirSettings) {
   const auto asked = [](SceneSettings settings, double dt = 0.01) {
     Record record;
@@ -286,7 +287,8 @@ TEST(Tasks, AreTheSameInAnyOrderOfTheirSettings) {
   EXPECT_EQ(title_among(one, {one, asked({"wind.strength=2"})}), "hang (cloth.grid=[4, 4])");
 }
 
-// Committed ones come first; what they lack is taken from one's own, each kind by itself.
+// Committed references come first. Kinds that are missing there are taken from the user's own, each
+// kind separately.
 TEST(ReferenceFiles, OnesOwnStandInForEachKindThatIsNotCommitted) {
   Scene scene = hanging_sheet(2, 2);
   scene.name = "small";

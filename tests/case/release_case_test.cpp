@@ -1,4 +1,4 @@
-// What is judged of a cloth whose pins let go.
+// Judgement of a cloth whose pins are released.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ Scene dropped() {
   return scene;
 }
 
-/// The pins' reach would call it exploded: in 9 s it falls 400 m.
+/// Judged by the pins' reach this cloth would count as exploded: it falls 400 m in 9 s.
 TEST(ReleasedCloth, FallsWithoutExploding) {
   for (const char* solver : {"jakobsen", "bullet", "avbd", "pd"}) {
     const Record record = run_case(dropped(), parse_solver(solver)).record;
@@ -47,7 +47,7 @@ TEST(ReleasedCloth, HasNoSettlingTimeAndNoReference) {
   EXPECT_EQ(std::ranges::count(moving, "its pins let go"), 1);
 }
 
-/// Of each step from the pins that hold in it: none is far from the exact one.
+/// Each step is compared with the exact step for the pins that still hold; none is far from it.
 TEST(ReleasedCloth, StepsAreJudgedByThePinsThatHold) {
   Scene scene = dropped();
   scene.steps = 160;
@@ -55,13 +55,14 @@ TEST(ReleasedCloth, StepsAreJudgedByThePinsThatHold) {
   EXPECT_LT(record.values.at("step.error.peak"), 1e-5);
 }
 
-/// What a seam leaves open is a length, and no strain.
+/// An open seam is measured as a length, not as a strain.
 TEST(SewnCloth, IsMeasuredInMetres) {
   Scene scene = hanging_sheet(8, 8, {true, true, false});
   scene.steps = 320;
   scene.pins = {3, 4};
   scene.damping = 1;
-  const double radius = 1 / (14 * std::sin(std::numbers::pi / 8));  // a tube but for its last link
+  // a tube that lacks its last link
+  const double radius = 1 / (14 * std::sin(std::numbers::pi / 8));
   for (std::size_t i = 0; i < 64; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i % 8) / 8;
     scene.start.x[i].x() = radius * std::cos(angle);
@@ -77,7 +78,7 @@ TEST(SewnCloth, IsMeasuredInMetres) {
   }
 }
 
-/// Two pieces of one OBJ file that share no vertex, the first hung by two corners.
+/// Two pieces of one OBJ file without a common vertex; the first hangs by two corners.
 Scene two_pieces() {
   const std::filesystem::path folder = testing::TempDir();
   std::ofstream obj(folder / "pieces.obj");
@@ -107,13 +108,13 @@ TEST(TwoPieces, OneHangsAsIfItWereAloneAndOneFalls) {
        {"jakobsen:precision=double", "bullet", "xpbd:precision=double", "pd", "implicit"}) {
     const Record record = run_case(scene, parse_solver(solver)).record;
     EXPECT_EQ(record.status.kind, Status::Kind::ok) << solver << ": " << record.status.reason;
-    Scene alone = scene;  // its second piece is held where it is
+    Scene alone = scene;  // its second piece stays in place
     for (int i = 16; i < 32; ++i) alone.pins.push_back(i);
     const State whole = simulate(scene, solver, 64), held = simulate(alone, solver, 64);
     double apart = 0;
     for (std::size_t i = 0; i < 16; ++i) apart = std::max(apart, (whole.x[i] - held.x[i]).norm());
     EXPECT_LT(apart, 1e-9) << solver;
-    const double fallen = 9.81 / 2;  // in 1 s, plus g h/2 for substeps of h
+    const double fallen = 9.81 / 2;  // fallen in 1 s; substeps of h add g h/2
     for (std::size_t i = 16; i < 32; ++i)
       EXPECT_NEAR(whole.x[i].y(), scene.start.x[i].y() - fallen, 9.81 / 64 / 2 + 1e-9) << solver;
   }

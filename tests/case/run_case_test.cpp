@@ -1,4 +1,4 @@
-// One case in one process: what is a blow-up and what is legitimate, what a record says.
+// One case in one process: explosions against legitimate extremes, and the contents of a record.
 #include "experiments/case/run_case.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Scene at_rest(const SheetShape& shape) {
   return scene;
 }
 
-/// A chain that hangs from its first vertex.
+/// Chain that hangs from its first vertex.
 Scene chain(int links, double dt) {
   Scene scene =
       at_rest({.nu = 1, .nv = links + 1, .height = 1, .mass = 0.1, .lumping = Lumping::equal});
@@ -62,7 +62,7 @@ TEST(DivergenceDetector, TheSameMotionHasTheSameStatusInAnySteps) {
             Status::Kind::exploded);
 }
 
-/// A solver that is told what the state is after each step.
+/// Solver with a prescribed state after each step.
 struct Scripted final : Solver {
   explicit Scripted(const Scene& scene) : state(scene.start) {}
   void load(const State& s) override { state = s; }
@@ -127,10 +127,10 @@ TEST(DivergenceDetector, FreeFallIsNoExplosionHoweverLong) {
   EXPECT_EQ(verdict_on(scene, listing("precision=double")).kind, Status::Kind::ok);
 }
 
-// One sweep at dt = 1/10 s stretches the top link to dozens of its rest length: soft, not unstable,
-// and extreme where truth 5.5 has a peak above 30. In long chains at short steps, where theory has
-// strains below 1, the square-root-free projection pumps (core/README.md, "Orders") to a strain
-// above 10: that is extreme, and no explosion either.
+// One sweep at dt = 1/10 s stretches the top link to dozens of its rest length. This is soft, not
+// unstable, and extreme where truth 5.5 has a peak above 30. In long chains at short steps, where
+// theory has strains below 1, the square-root-free projection pumps (core/README.md, "Orders") to a
+// strain above 10: this is extreme as well, and no explosion.
 TEST(DivergenceDetector, LegitimateStrainIsNoExplosion) {
   for (const int links : {16, 64, 128})
     for (const double dt : {1.0 / 10, 1.0 / 30, 1.0 / 60, 1.0 / 480})

@@ -1,4 +1,4 @@
-// The digest of a scene is the address of every result that was kept of it: it stays what it was.
+// A scene's digest is the address of all its stored results, so it must never change.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 const fs::path kRecorded = fs::path(TAUT_SOURCE_DIR) / "tests/case/scene_digests.txt";
 
-/// Scene files made up of every key, each present in about half of them; the same in every run.
+/// Random scene files. Each key is present in about half of them; every run makes the same files.
 class MadeUp {
  public:
   explicit MadeUp(unsigned seed) : random_(seed) {}
@@ -87,7 +87,8 @@ class MadeUp {
       maybe("tilt", number(-90, 90));
     }
     maybe("origin", vec(2));
-    if (coin()) {  // one after the other, whatever the compiler: so everywhere below
+    // in separate statements, as compilers evaluate arguments in any order; so everywhere below
+    if (coin()) {
       const std::string mass = number(0.1, 2);
       const bool whole = coin();
       if (!fabric_) line(whole ? "mass" : "area_density", mass);
@@ -141,7 +142,7 @@ class MadeUp {
           "[{ t = 0, displacement = [0, 0, 0] }, { t = 2, displacement = " + vec(0.1) + " }]");
   }
 
-  /// Far below the cloth, so that it starts outside.
+  /// Collider far below the cloth, so that the cloth starts outside.
   void collider(const std::string& type) {
     section("[collider]");
     line("type", "\"" + type + "\"");
@@ -170,7 +171,7 @@ class MadeUp {
 
   std::mt19937 random_;
   std::string text_;
-  bool fabric_ = false;  ///< which leaves no mass and no stiffness to the scene
+  bool fabric_ = false;  ///< fabric sets the mass and the stiffness, so that the scene must not
 };
 
 std::map<std::string, std::string> digests() {
@@ -186,8 +187,8 @@ std::map<std::string, std::string> digests() {
   return all;
 }
 
-/// TAUT_WRITE_DIGESTS=1 in the environment records them anew: what was kept of such scenes is then
-/// found no more.
+/// TAUT_WRITE_DIGESTS=1 in the environment records the digests anew. Results stored for such scenes
+/// are then no longer found.
 TEST(SceneDigests, AreTheRecordedOnes) {
   const auto now = digests();
   if (std::getenv("TAUT_WRITE_DIGESTS")) {

@@ -1,4 +1,4 @@
-// A motion as results keep it.
+// Motions in the format in which results store them.
 #include "experiments/case/trajectory.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(Frames, AreWrittenAsDocumented) {
             bytes("000000000000e03f 0000803f 00000040 00004040"));
 }
 
-// A writer that is killed leaves any part of them.
+// A killed writer may leave any part of the last frames: only whole frames are read.
 TEST(Frames, OfAnyPartTheWholeOnesAreRead) {
   const std::string all = frame_bytes(frame(0, 1)) + frame_bytes(frame(1, 1));
   for (std::size_t size = 0; size <= all.size(); ++size)

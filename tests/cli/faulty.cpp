@@ -1,4 +1,4 @@
-// Solvers that misbehave, for the tests of the harness: in the program taut-faulty alone.
+// Solvers that misbehave, for the tests of the harness; only the program taut-faulty contains them.
 #include <unistd.h>
 
 #include <csignal>
@@ -27,7 +27,7 @@ constexpr ParamSpec kParams[] = {
     ParamSpec::integer("variant", "0", 0, 1e6, "makes cases differ"),
 };
 
-/// Free fall, until it misbehaves.
+/// Falls freely until it misbehaves.
 class Faulty final : public Solver {
  public:
   Faulty(const Scene& scene, const Params& params)
@@ -37,7 +37,7 @@ class Faulty final : public Solver {
     state = state_;
     if (mode_ == "fewer" && step_ >= at_) state.x.resize(2);
   }
-  std::vector<PassCost> step_cost() const override {  // with sweeps it would have to settle
+  std::vector<PassCost> step_cost() const override {  // a solver with sweeps would have to settle
     if (mode_ != "restless") return {};
     return {{.pass = "links", .items = 1, .repeats = 1000, .projections = true}};
   }
@@ -75,7 +75,7 @@ class Faulty final : public Solver {
     while (mode_ == "memory") hoard_.emplace_back(std::size_t{1} << 20, 'x');
   }
 
-  /// A process that does not end, in this one's group or in a session of its own.
+  /// Starts a process that does not end, in the process group of this one or in its own session.
   void leave_behind() const {
     const pid_t child = fork();
     if (child == 0) {
@@ -86,7 +86,8 @@ class Faulty final : public Solver {
     std::ofstream("left-by-" + mode_) << child;
   }
 
-  /// A whole record, in the place of the case's own, of an address that leads out of the store.
+  /// Writes a complete record in place of the case's own, with an address that leads out of the
+  /// store.
   [[noreturn]] static void forge() {
     std::ifstream in("/proc/self/cmdline", std::ios::binary);
     std::string word, before;

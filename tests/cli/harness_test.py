@@ -39,7 +39,7 @@ class FaultySolvers(CommandLine):
         self.assertIn("SIGSEGV", status["crash"]["reason"])
         self.assertIn("SIGABRT", status["abort"]["reason"])
         self.assertEqual(status["hang"]["reason"], "wall time")
-        self.assertIn(status["spin"]["reason"], ("CPU time", "wall time"))  # a machine may be too busy for the first
+        self.assertIn(status["spin"]["reason"], ("CPU time", "wall time"))  # the machine may be too busy for the first attempt
         self.assertEqual(status["throw"]["reason"], "faulty: threw as told")
         self.assertEqual(status["refuse"]["reason"], "refuses, as told")
         for mode in ["crash", "abort", "hang", "spin", "exit"]:

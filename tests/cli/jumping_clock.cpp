@@ -1,5 +1,5 @@
-// Preloaded, it makes the time of day jump to and fro by more than a year, and farther at every
-// look.
+// Preloaded library that makes the time of day jump back and forth by more than a year, farther at
+// every reading.
 #include <sys/syscall.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// Preloaded into a program: every file system is NFS, and the host is called $HOST_NAME.
+// Preloaded library that makes every file system look like NFS and the host be called $HOST_NAME.
 #include <sys/vfs.h>
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Answers of a program that speaks taut-solver/1, and commands that call one: what is read, what is
-// refused.
+// Answers of programs that speak taut-solver/1, and commands that start such programs: what is
+// accepted and what is refused.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -22,7 +22,7 @@
 namespace taut::external::answers_test {
 namespace {
 
-/// What the reader says against the answer; "": nothing.
+/// Message with which the reader refuses the answer; "" if it accepts it.
 template <class Read>
 std::string refusal(const Read& read) {
   try {
@@ -348,8 +348,8 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   EXPECT_TRUE(file["self_collision"].is_null() && file["grid"].is_null());
 }
 
-/// Exact free fall with pins, by symplectic Euler, off in some respects by the values of
-/// parameters.
+/// Program that computes exact free fall with pins by symplectic Euler; parameters introduce
+/// errors.
 constexpr const char* kSlightlyWrong = R"(
 import sys
 sys.path.insert(0, sys.argv[1])
@@ -384,9 +384,9 @@ class Slightly:
 taut_solver.serve(Slightly)
 )";
 
-// |g| is 9.75 m/s^2 and t 0.5 s: a velocity may be off by (1.05 / 2n + 0.001) g t, 0.0848 m/s in 32
-// steps and 0.0449 m/s in 64; a way by (1.05 / n + 0.001) g t^2 / 2, of which the integrator takes
-// 1 / n.
+// |g| is 9.75 m/s^2 and t is 0.5 s. The tolerance of a velocity is (1.05 / 2n + 0.001) g t, or
+// 0.0848 m/s in 32 steps and 0.0449 m/s in 64. The tolerance of a distance is (1.05 / n + 0.001) g
+// t^2 / 2, of which the integrator uses 1 / n.
 TEST(Probe, DrawsEveryLineWhereItSaysItDoes) {
   const Scratch scratch;
   write_file(scratch.path() / "slightly.py", kSlightlyWrong);
@@ -417,7 +417,7 @@ TEST(Probe, DrawsEveryLineWhereItSaysItDoes) {
   EXPECT_EQ(failed({{"gravity", 3.6e-3}}), "free fall, time step, ");
 }
 
-/// No new file can be opened while this lives.
+/// While it exists no file can be opened.
 class NoMoreFiles {
  public:
   NoMoreFiles() {
@@ -433,7 +433,8 @@ class NoMoreFiles {
   rlimit before_{};
 };
 
-// How long it may take belongs to the program: one that was too slow once may be fast enough.
+// The timeout is part of a program's identity: a program that was once too slow may be fast enough
+// with more time.
 TEST(Programs, OfOneCommandAreOthersWithAnotherTimeout) {
   const std::string cmd = R"(external:cmd='sh -c "read x; sleep 1; echo {}; read x"',timeout=)";
   enable();
@@ -462,7 +463,8 @@ TEST(Probe, IsMadeAgainIfItCouldNotBeMade) {
   set_solver_source({});
 }
 
-/// Answers every line with what it has used so far; starts a process if it is asked to.
+/// Program that answers every line with the resources it has used so far, and starts a process on
+/// request.
 constexpr const char* kTells = R"(
 import json, os, subprocess, sys, time
 held = bytearray(40_000_000)

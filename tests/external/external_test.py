@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Programs as solvers: the SDKs' toys give what jakobsen gives; hostile programs cost their own case and leave no process;
-the probe names what is wrong.
+"""Programs as solvers: the SDKs' toys give jakobsen's results, hostile programs cost only their own case and leave no process,
+and the probe names errors.
 
 Usage: external_test.py FOLDER_OF_TAUT [TEST ...]"""
 
@@ -36,7 +36,7 @@ os.environ.update([MARK.split("=")])
 
 
 def alive(word):
-    """Processes that this test started, or what it started, and whose command line has the word: other tests run beside it."""
+    """Processes with this word in their command line that carry this test's mark, as other tests run at the same time."""
     found = []
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
@@ -163,7 +163,7 @@ class Toys(Programs):
 
 
 class Everywhere(Programs):
-    """A program and a file of positions wherever a solver may stand."""
+    """A program, and a file of positions, are accepted wherever a solver is."""
 
     def report(self, study):
         model = json.loads(self.taut("report", study, "--no-media", "--json").out)
@@ -228,7 +228,7 @@ class Everywhere(Programs):
         self.assertEqual(len(set(stretch.values())), 2, "the same program twice, and another")
 
     def test_a_solver_written_from_the_document_runs_beside_bullet(self):
-        """In Perl, without an SDK; it has sweeps and no substeps: its steps are one."""
+        """A program in Perl without an SDK; it has sweeps but no substeps, so that each step is one substep."""
         if not shutil.which("perl"):
             self.skipTest("perl is not here")
         perl = f"""external:cmd='perl "{HERE}/relax.pl"'"""
@@ -315,7 +315,7 @@ class Everywhere(Programs):
 
 
 class Engines(Programs):
-    """Not downloaded by tests: external/README.md says how to come by each."""
+    """Programs that tests do not download; external/README.md explains how to obtain each."""
 
     def engine(self, name):
         home = os.environ.get("XDG_CONFIG_HOME") or pathlib.Path.home() / ".config"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A program that passes the probe and misbehaves in the fifth step of any other scene, as MODE says; MODE hello-*: at once;
-MODE random SEED: one of its answers is damaged."""
+"""A program that passes the probe and misbehaves in the fifth step of any other scene, as MODE says; MODE hello-* misbehaves
+at once, and MODE random SEED damages one of its answers."""
 
 import array
 import json
@@ -29,7 +29,7 @@ def answer(told, more=b""):
     OUT.flush()
 
 
-real = True  # the scene is not one of the probe's
+real = True  # a scene that is not part of the probe
 
 
 def spin(seconds):

@@ -1,5 +1,6 @@
-// order=jolt is the order in which Jolt's soft body visits its edges, and with it the same float32
-// arithmetic gives Jolt's bits. experiments/external/README.md says how to register Jolt itself.
+// order=jolt is the order in which Jolt's soft body visits its edges. In this order float32
+// arithmetic reproduces Jolt's bits. experiments/external/README.md explains how to register Jolt
+// itself.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -27,7 +28,7 @@ Scene hanging(int side) {
   return scene_of("hang", {"cloth.grid=[" + n + "," + n + "]"});
 }
 
-/// The digests are of mEdgeConstraints of npm's jolt-physics 1.1.0 after Optimize().
+/// The digests were taken of mEdgeConstraints in npm's jolt-physics 1.1.0 after Optimize().
 TEST(JoltOrder, IsWhatJoltSays) {
   const auto read = [](const Scene& scene) {
     std::string text;
@@ -35,19 +36,19 @@ TEST(JoltOrder, IsWhatJoltSays) {
       text += std::to_string(link.a) + " " + std::to_string(link.b) + "\n";
     return sha256(text).substr(0, 16);
   };
-  EXPECT_EQ(read(hanging(16)), "0b90c17e351d0451");  // less than two batches
+  EXPECT_EQ(read(hanging(16)), "0b90c17e351d0451");  // less than two batches of links
   EXPECT_EQ(read(hanging(32)), "2084215cb497754b");
   EXPECT_EQ(read(scene_of("hang", {"cloth.grid=[40, 37]"})), "c829ed698aac19f3");
   EXPECT_EQ(read(scene_of("drape")), "108c5f04af1ea90d");
   EXPECT_EQ(read(scene_of("swing")), "a00e262e3856403e");
-  EXPECT_EQ(read(scene_of("fall")), "4a17ff3901fc92bb");  // no pins
+  EXPECT_EQ(read(scene_of("fall")), "4a17ff3901fc92bb");  // a scene without pins
   EXPECT_EQ(read(scene_of("chain")), "1d9341fd8bf25c37");
-  EXPECT_EQ(read(scene_of("disc")), "6b233fbdf59012e7");  // no grid
+  EXPECT_EQ(read(scene_of("disc")), "6b233fbdf59012e7");  // a mesh that is not a grid
 }
 
 using Point = std::array<float, 3>;
 
-/// Jolt's step in float32: substeps of one sweep, no compliance.
+/// Jolt's step in float32, written out: substeps with one sweep and no compliance.
 std::vector<Point> listing(const Scene& scene, int substeps, int steps) {
   std::vector<Point> x, v(scene.start.x.size());
   std::vector<float> w;
@@ -118,12 +119,12 @@ TEST_F(JoltTwin, BitForBitInFloat32) {
     EXPECT_EQ(differ, 0) << side;
     EXPECT_GT(rms_stretch(scene, theirs), 1e-4) << "it does not move";
     if (side == 32) {
-      EXPECT_NEAR(rms_stretch(scene, theirs), 0.439, 0.001);  // as experiments/external says
+      EXPECT_NEAR(rms_stretch(scene, theirs), 0.439, 0.001);  // as stated in experiments/external
     }
   }
 }
 
-/// Verlet with positions instead of velocities: the same sweeps, other rounding.
+/// Verlet stores positions instead of velocities: the sweeps are the same, the rounding is not.
 TEST_F(JoltTwin, JakobsenInItsOrderIsItsTwin) {
   const Scene scene = hanging(16);
   const std::vector<Vec3> theirs = run_jolt(scene, 15, 8);

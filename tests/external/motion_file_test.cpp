@@ -1,5 +1,5 @@
-// Positions from a file as a motion of the scene's cloth: place, order, time, and what rounding
-// costs.
+// Positions from a file as a motion of the scene's cloth: place, order of vertices, time, and the
+// error of rounding.
 #include "experiments/external/motion_file.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class MotionFiles : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Frame k of the scene's cloth on its way down, as `place` puts it into a file.
+  /// Writes frames of the falling cloth as `place` maps their vertices into the file.
   template <class Place>
   MotionOptions write(const char* name, const Scene& scene, const Place& place,
                       int frames = 4) const {
@@ -143,7 +143,7 @@ TEST_F(MotionFiles, AVertexThatLeavesItsPinRefusesTheFile) {
             std::string::npos);
 }
 
-// FILES.md: a coordinate that is not finite is a result, of a pin too.
+// FILES.md: a non-finite coordinate is a result, also for a pin.
 TEST_F(MotionFiles, WhatIsNotFiniteExplodesWhereItStands) {
   Scene scene = sheet();
   scene.pins = {0, 8};
@@ -167,7 +167,7 @@ TEST_F(MotionFiles, WhatIsNotFiniteExplodesWhereItStands) {
     }
 }
 
-/// A scene that does not start at rest, in a file that does not begin with its start.
+/// The scene starts crumpled, and the file does not begin at the scene's start.
 TEST_F(MotionFiles, TheOrderMayComeFromARestShape) {
   Scene scene = sheet();
   std::vector<Vec3> crumpled;
@@ -199,7 +199,7 @@ double strain_rms(const Scene& scene, const std::vector<Vec3>& x) {
   return std::sqrt(sum / static_cast<double>(scene.links.size()));
 }
 
-/// A rigid motion has no strain: what a file shows of it is its rounding alone.
+/// A rigid motion has no strain, so that strain in its file is rounding alone.
 TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
   const Scene scene = sheet();
   const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
@@ -232,7 +232,7 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
   EXPECT_LT(seen, floor * 2);
 }
 
-/// The value of a line of the settings.
+/// Value of a setting by its name.
 std::string setting(const Scene& scene, const MotionOptions& options, const std::string& name) {
   const ResolvedSettings all = ComputedMotion(scene, opened(options)).settings(scene);
   const ResolvedSetting* one = find_setting(all, name);
@@ -288,8 +288,9 @@ TEST_F(MotionFiles, AVertexMayBeginSlightlyOffItsPlace) {
   }
 }
 
-// A rounding to a step q, as likely anywhere in it, has the variance q^2/12: of a link's length in
-// any direction 2 q^2/12; no link is off by more than q (|x| + |y| + |z|) of its direction.
+// Rounding to a step q is uniformly distributed and has the variance q^2/12. A link's length has
+// the variance 2 q^2/12 in any direction, and its error is at most q (|x| + |y| + |z|) of the
+// link's direction.
 TEST_F(MotionFiles, TheFloorOfAStepIsItsVarianceOverTheRestLength) {
   Scene scene = sheet();
   scene.mesh = make_sheet({.nu = 9, .nv = 5, .width = 0.4, .height = 0.32, .mass = 1});
@@ -297,7 +298,7 @@ TEST_F(MotionFiles, TheFloorOfAStepIsItsVarianceOverTheRestLength) {
   const auto check = [&](const char* name, double z, double step, const std::string& text = "",
                          double unit = 1) {
     scene.start = {scene.mesh.rest, std::vector<Vec3>(45, Vec3::Zero())};
-    for (Vec3& v : scene.start.x) v += Vec3(0.55, 0.95, z);  // all within 0.5 to 1
+    for (Vec3& v : scene.start.x) v += Vec3(0.55, 0.95, z);  // all coordinates within 0.5 to 1
     MotionOptions options{.file = folder_ / name, .scale = unit};
     if (text.empty())
       options = write(name, scene, [&](const std::vector<Vec3>&) { return scene.start.x; });

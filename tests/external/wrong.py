@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Programs that are wrong, each in one way that the probe has to name."""
+"""Programs with one error each, which the probe has to name."""
 
 import os
 import random

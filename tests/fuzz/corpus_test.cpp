@@ -1,4 +1,4 @@
-// Inputs that once broke something, and a good one of each kind: read or refused, nothing else.
+// Inputs that once broke a reader, and a valid input of each kind: each is read or refused.
 #include <gtest/gtest.h>
 
 #include <set>

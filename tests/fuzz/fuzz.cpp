@@ -1,4 +1,4 @@
-// libFuzzer's entry: taut_fuzz --reader=NAME [CORPUS ...] [-max_total_time=SECONDS ...]
+// Entry point for libFuzzer: taut_fuzz --reader=NAME [CORPUS ...] [-max_total_time=SECONDS ...]
 #include <cstdint>
 #include <cstdio>
 #include <cstring>

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Generated and damaged inputs through the built program: fuzz.py BUILD [--seconds N] [--seed S] [--only KIND[:NUMBER]].
+"""Runs the built program with generated and damaged inputs: fuzz.py BUILD [--seconds N] [--seed S] [--only KIND[:NUMBER]].
 
-Each attempt is a folder of its own with inputs and a command or two. A finding is a signal, an exit code that the documents do not
-have, a refusal without a word, a run without end, output that is no strict JSON, a number that is not finite, or a file that a text
-of an input made. It prints the folder, which stays, and the command; `--seed S --only KIND:NUMBER` makes the same attempt again."""
+Each attempt has a folder of its own with inputs and one or two commands. A finding is a signal, an undocumented exit code, a refusal
+without a message, a run that does not end, output that is not strict JSON, a non-finite number, or a file that a text of an input
+created. The folder of a finding is kept and printed with the command; `--seed S --only KIND:NUMBER` repeats an attempt."""
 
 import argparse
 import json
@@ -27,8 +27,8 @@ import stored  # noqa: E402
 
 CODES = {0, 1, 2, 3, 4, 5, 6, 130}  # experiments/command_line/verb.hpp
 STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'protocol', 'error'}
-LEGITIMATE = 30  # strain that no scene has without being called extreme: experiments/case/divergence.hpp
-SECONDS = 60  # of one command: more is a hang
+LEGITIMATE = 30  # strain from which a scene counts as extreme: experiments/case/divergence.hpp
+SECONDS = 60  # s, limit of a command; more counts as a hang
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ('[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 0.1\npins = ["top-left"]\n'
          '[time]\ndt = "1/32"\nduration = 0.1\n')
@@ -41,7 +41,7 @@ class Finding(Exception):
 
 
 def strict(text):
-    """JSON without NaN and infinities."""
+    """Parses JSON without NaN and infinities."""
     def refuse(word):
         raise Finding(f'{word} in JSON')
     try:
@@ -77,12 +77,12 @@ class Attempt:
         file.write_bytes(data.encode('utf-8', 'surrogatepass') if isinstance(data, str) else data)
 
     def taut(self, *words, program='taut'):
-        """Runs it here; gives what it printed."""
+        """Runs the command in this folder and returns its output."""
         words = [str(word) for word in words]
         self.last = f'cd {shlex.quote(str(self.folder))} && {shlex.join([str(self.build / program), *words])}'
 
         def limit():
-            if not self.sanitized:  # whose shadow alone is terabytes
+            if not self.sanitized:  # shadow memory alone takes terabytes
                 resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         process = subprocess.Popen([self.build / program, *words], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -120,7 +120,7 @@ class Attempt:
         return self.make.solver(SOLVERS)
 
     def stored(self):
-        """A small study that was run and benched; made once, copied for each attempt."""
+        """Results of a small study that was run and benched, made once and copied for each attempt."""
         template = self.folder.parent / 'stored'
         if not template.exists():
             whole = Attempt(self.build, template, 0)
@@ -200,11 +200,11 @@ def study_made(attempt):
 def study_damaged(attempt):
     files = sorted((SOURCES / 'experiments/studies').glob('*.toml'))
     attempt.write('study.toml', mutate(attempt.random, attempt.random.choice(files).read_bytes(), 2))
-    attempt.run('./study.toml', '--shard', '1/99991')  # reads it all, runs next to nothing
+    attempt.run('./study.toml', '--shard', '1/99991')  # reads everything, runs almost nothing
 
 
 def arguments(attempt):
-    """Texts where the command line wants a name, a number or a file."""
+    """Texts in place of names, numbers or files on the command line."""
     attempt.write('small.toml', SMALL)
     attempt.write('study.toml', STUDY)
     texts = NASTY + ['-1', 'nan', '1e999', '0', '99999999999999999999', '1/0', '', 'x' * 5000, '/dev/null', '/', '.', './study.toml']
@@ -233,7 +233,7 @@ def damage(attempt, pattern):
 
 
 def record(attempt):
-    """Bytes of the file, or a cell of a table, which SQLite takes for sound."""
+    """Damages bytes of the file, or a cell of a table, which SQLite considers sound."""
     if attempt.make.maybe(0.4):
         damage(attempt, 'results/runs/results.db')
     else:
@@ -262,7 +262,7 @@ def baseline(attempt):
 
 
 def program(attempt):
-    """A solver from outside of which one answer is damaged."""
+    """An external solver with one damaged answer."""
     attempt.write('small.toml', SMALL)
     hostile = SOURCES / 'tests/external/hostile.py'
     text = f'''external:cmd='python3 "{hostile}" random {attempt.random.randrange(10**9)}',timeout=1'''
@@ -325,7 +325,7 @@ def main():
     shutil.rmtree(scratch)
     for each, seen in codes.items():
         print(f'{each:14} ' + ', '.join(f'exit {code}: {count}' for code, count in sorted(seen.items())))
-    # Of some kinds one attempt in twenty ends otherwise than the rest: of 180 all are alike in 1 of 10,000 runs, of 40 in one of eight.
+    # For some kinds one attempt in twenty ends differently from the rest: 180 attempts end alike in 1 of 10,000 runs, 40 in one of eight.
     alike = [each for each, seen in codes.items() if i > 20 and len(seen) < 2]
     vacuous = alike and i >= 180
     if alike:

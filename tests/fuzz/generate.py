@@ -1,4 +1,4 @@
-"""Inputs made up at random, and slips of the hand and broken disks at random. Everything comes from the given random.Random."""
+"""Random inputs, and random damage as by typing errors and broken disks. All randomness comes from the given random.Random."""
 
 import json
 
@@ -16,7 +16,7 @@ def toml(value):
         return '{ ' + ', '.join(f'{key} = {toml(item)}' for key, item in value.items()) + ' }'
     if isinstance(value, (list, tuple)):
         return '[' + ', '.join(map(toml, value)) + ']'
-    if isinstance(value, str):  # JSON's escapes are TOML's, but for a pair of surrogates
+    if isinstance(value, str):  # JSON's escapes are valid in TOML, except for surrogate pairs
         return json.dumps(value, ensure_ascii=False).replace('\x7f', '\\u007f')
     return repr(value)
 
@@ -54,7 +54,7 @@ def mutate(random, data: bytes, most=3) -> bytes:
 
 
 class Maker:
-    """Makes valid things most of the time."""
+    """Generator of inputs, most of them valid."""
 
     def __init__(self, random):
         self.random = random
@@ -63,7 +63,7 @@ class Maker:
         return self.random.random() < chance
 
     def log(self, low, high):
-        """A number between, its logarithm uniform."""
+        """A number between these limits, uniform in its logarithm."""
         return float(f'{low * (high / low) ** self.random.random():.4g}')
 
     def vector(self, size=1.0):
@@ -84,7 +84,7 @@ class Maker:
         return moved
 
     def collider(self, body=None):
-        """body: an OBJ file that one of them may be of."""
+        """body: an OBJ file that one of the colliders may use."""
         kind = self.random.choice(['plane', 'ball', 'box', 'capsule'] + (['mesh'] if body else []))
         one = {'type': kind, 'friction': self.random.choice([0, 0.5, 1000]), **self.motion()}
         if kind == 'plane':
@@ -140,7 +140,7 @@ class Maker:
         return '\n'.join(lines) + '\n'
 
     def body(self):
-        """A closed body: an octahedron whose corners are moved, or a prism with a notch."""
+        """A closed body: an octahedron with displaced corners, or a prism with a notch."""
         if self.maybe():
             corners = [[x * self.random.uniform(0.3, 1.5) for x in corner]
                        for corner in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))]
@@ -175,7 +175,7 @@ class Maker:
             else:
                 low, high = float(ends[0]), min(float(ends[1]), 40)
                 values = [param['default'], self.random.randint(round(low), round(high))]
-                if any(c in param['default'] + param['allowed'] for c in '.e'):  # else it may be a whole number
+                if any(c in param['default'] + param['allowed'] for c in '.e'):  # otherwise it may be an integer
                     values.append(f'{self.random.uniform(low, high):.3g}')
                 value = self.random.choice(values)
             chosen.append(f"{param['name']}={value}")

@@ -21,19 +21,19 @@
 #include "experiments/study/study.hpp"
 #include "experiments/system/files.hpp"
 
-/// Everything that reads what others wrote, as functions of bytes: for libFuzzer (fuzz.cpp) and for
-/// the inputs that once broke something (corpus_test.cpp). Each throws InputError for what it
-/// refuses; any other exception, a signal or a false expectation is a finding.
+/// All readers of external input, as functions of bytes, for libFuzzer (fuzz.cpp) and for inputs
+/// that once broke a reader (corpus_test.cpp). A reader throws InputError for input that it
+/// refuses; any other exception, a signal or a failed expectation is a finding.
 namespace taut::fuzz {
 
-/// What has to hold of anything that was read.
+/// Checks a property that every accepted input must have.
 inline void expect(bool holds, const char* what) {
   if (holds) return;
   std::cerr << "does not hold: " << what << '\n';
   std::abort();
 }
 
-/// A file with these bytes; the same one in every call.
+/// File with these bytes; every call reuses the same file.
 inline std::filesystem::path file_of(const std::string& bytes, const std::string& name) {
   static const Scratch scratch;
   const std::filesystem::path file = scratch.path() / name;
@@ -43,7 +43,7 @@ inline std::filesystem::path file_of(const std::string& bytes, const std::string
 }
 
 inline void read_scene(const std::string& bytes) {
-  // Small: the bytes may ask for 2^24 vertices. No mesh, which would be another file.
+  // The grid is small, as the bytes may ask for 2^24 vertices. A mesh would be another file.
   const Scene scene = parse_scene("fuzzed.toml", bytes, {"cloth.grid=[4, 3]"});
   expect(digest(scene).size() == 64, "a scene has a digest");
   for (const Vec3& x : scene.start.x) expect(x.allFinite(), "a scene starts at finite positions");
@@ -98,7 +98,8 @@ inline void read_baseline_rows(const std::string& bytes) {
   for (const BaselineRow& row : rows) reproduce(row);
 }
 
-/// The lines with which a program answers "hello", "scene" (of four vertices), "step" and "store".
+/// Reads the lines with which a program answers "hello", "scene" (of four vertices), "step" and
+/// "store".
 inline void read_answers(const std::string& bytes) {
   std::istringstream lines(bytes);
   const auto next = [&] {
@@ -118,7 +119,7 @@ inline void read_answers(const std::string& bytes) {
 }
 
 struct Reader {
-  std::string_view name;  ///< also of its folder in corpus/
+  std::string_view name;  ///< also the name of its folder in corpus/
   void (*read)(const std::string& bytes);
 };
 

@@ -1,5 +1,5 @@
-// A solver with parameters of every kind, which is never run: without those that are, the fuzz
-// targets cost a tenth to build.
+// Solver with parameters of every kind that is never run. Without the real solvers the fuzz targets
+// build in a tenth of the time.
 #include "core/model/solver.hpp"
 
 namespace taut {

@@ -12,7 +12,7 @@ namespace taut {
 
 namespace {
 
-/// A store whose builds have these stretches of one case each; NaN: planned, not run.
+/// Store whose builds have these stretches of one case each; NaN: planned but not run.
 class Histories : public testing::Test {
  protected:
   void build(const std::string& id, double stretch, Status status = {}) {
@@ -98,7 +98,7 @@ TEST_F(Histories, ACostStepsBeyondIntervalAndControl) {
   timed("one", "two", 2.1, 0.01);
   timed("two", "three", 1.2, 0.4);
   timed("two", "gone", 3, 0.01);
-  timed("one", "three", 2.1, 0.01);  // a bisection skipped two, which lies in between
+  timed("one", "three", 2.1, 0.01);  // the bisection skipped "two", which lies in between
   const History found = history();
   ASSERT_EQ(found.steps.size(), 1U);
   EXPECT_EQ(found.builds[found.steps[0].now].id, "two");

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""taut history: which build, or which commit of a repository, changed what a study measures or what it costs; and what happens
-when commits, builds, folders and ranges are not as they should be.
+"""taut history: finds the build, or the commit of a repository, that changed the values or the cost of a study; and its behaviour
+if commits, builds, folders or ranges are faulty.
 
 Usage: history_test.py FOLDER_OF_TAUT [TEST ...]"""
 
@@ -26,7 +26,7 @@ for variable in ("TAUT_BUILD_ID", "TAUT_COMMIT"):
     os.environ.pop(variable, None)
 COMMITS = 10
 NAMES = {"GIT_AUTHOR_NAME": "a", "GIT_AUTHOR_EMAIL": "a@x", "GIT_COMMITTER_NAME": "a", "GIT_COMMITTER_EMAIL": "a@x"}
-# The SDK's toy with a relaxation factor, a wait in every step, and what it may be told to do at its start.
+# The SDK's toy with a relaxation factor, a wait in every step, and a place for code that runs at its start.
 TOY = ((SDK / "toy.py").read_text()
        .replace("import math\n", "import math\nimport sys\nimport time\n\nRELAXATION = 1.0\nWAIT = 0\nSPIN = 0\n# START\n")
        .replace("(length - rest) / (length * w)", "RELAXATION * (length - rest) / (length * w)")
@@ -45,7 +45,7 @@ class Repository(CommandLine):
         self.study(rest="[axes]\niterations = [4]\n")
 
     def repository(self, changes, commits=COMMITS):
-        """Of a solver in Python; `changes` say by commit, counted from 0, what is replaced by what from there on."""
+        """Makes a repository of a solver in Python. `changes` lists the replacements (old, new) that each commit, counted from 0, makes."""
         folder, text, made = self.folder / "repo", TOY, []
         folder.mkdir()
         git(folder, "init", "-q", "-b", "main")
@@ -377,7 +377,7 @@ class Builds(Repository):
             store.executemany("insert into numbers values (?, ?, ?)", [(n, m, 1.0 + c) for _, c, n in every for m in names])
         store.close()
         best = 99.0
-        for _ in range(3):  # CPU time: other tests run beside it
+        for _ in range(3):  # CPU time, as other tests run at the same time
             start = os.times()
             ended = self.taut("history", "./study.toml", "--out", "out")
             end = os.times()
@@ -395,7 +395,7 @@ class Kept(CommandLine):
         self.study(rest="[axes]\niterations = [4, 8]\n")
 
     def slow_build(self):
-        """A program that does every sample of taut's workers, and then says that it took twice as long."""
+        """A program that runs every sample of taut's workers and reports twice the time."""
         folder = self.folder / "slow"
         folder.mkdir()
         program = folder / "taut"
@@ -435,7 +435,7 @@ for line in sys.stdin:
         answer = self.answer("check", "./study.toml", "--baselines", "kept", "--out", "out", "--speed")
         self.assertEqual(len(rows_of(answer, "speed")), 2)
         self.taut("check", "./study.toml", "--baselines", "kept", "--out", "out", "--speed", "--against", self.slow_build(), expect=1)
-        self.taut("check", "./study.toml", "--baselines", "kept", "--out", "out")  # values alone did not move
+        self.taut("check", "./study.toml", "--baselines", "kept", "--out", "out")  # values alone have not changed
 
 
 if __name__ == "__main__":

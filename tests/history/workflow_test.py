@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The workflow of experiments/external/README.md, which a foreign repository copies: its steps that use taut, in a repository of a
-solver in Python, commit after commit, with the results of the one before.
+"""The workflow in experiments/external/README.md, which other repositories copy. Its steps that use taut run in a repository of a
+solver in Python, for each commit with the results of the commit before.
 
 Usage: workflow_test.py FOLDER_OF_TAUT [README] [SDK]"""
 

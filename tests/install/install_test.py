@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What is installed works without the tree: programs built against it, its headers alone, and the Debian packages."""
+"""The installation works without the source tree: programs built against it, each header by itself, and the Debian packages."""
 
 import json
 import os
@@ -18,7 +18,7 @@ VERSION = re.search(r"project\(taut VERSION (\S+)", (TREE / "CMakeLists.txt").re
 PYTHON = "TAUT_PYTHON:BOOL=ON" in (BINARIES / "CMakeCache.txt").read_text()
 
 
-os.environ["CMAKE_GENERATOR"] = "Ninja"  # what ./taut installs; CMake's own default is make
+os.environ["CMAKE_GENERATOR"] = "Ninja"  # the generator of ./taut; CMake's own default is make
 
 
 def call(*words, expect=0, **more):
@@ -34,7 +34,7 @@ class Installed(unittest.TestCase):
         cls.addClassCleanup(scratch.cleanup)
         cls.folder = pathlib.Path(scratch.name)
         cls.prefix = cls.folder / "a prefix"
-        (BINARIES / "taut.1").unlink(missing_ok=True)  # ./taut builds the programs alone
+        (BINARIES / "taut.1").unlink(missing_ok=True)  # ./taut builds the programs only
         call("cmake", "--install", BINARIES, "--prefix", cls.prefix)
         cls.libraries = next(cls.prefix.glob("**/libtaut_model.a")).parent
         cls.scene = cls.prefix / "share/taut/scenes/hang.toml"
@@ -48,7 +48,7 @@ class Installed(unittest.TestCase):
             self.assertEqual((self.prefix / file).read_text(), call(taut, option))
 
     def build(self, name, *components, source="int main() {}", libraries="", expect=0):
-        """Configures and builds a project of one file that finds these components."""
+        """Configures and builds a project of one file that uses these components."""
         folder = self.folder / name
         folder.mkdir()
         (folder / "main.cpp").write_text(source)

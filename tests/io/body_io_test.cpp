@@ -1,5 +1,4 @@
-// A [[collider]] that is a mesh: what its file and its keys say, and what is wrong with them, by
-// file and line.
+// A [[collider]] that is a mesh: the meaning of its file and keys, and errors with file and line.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -72,7 +71,7 @@ TEST_F(BodyFiles, KeysPlaceTheBody) {
   EXPECT_EQ(collider.motion.pivot, Vec3(1, 2, 3));
   const Shape later = shape_at(collider, 2);
   EXPECT_EQ(std::get<MeshBody>(later).center, Vec3(1, 2, 11));
-  // 0.1 m above the face in x = 0, which is turned to y
+  // 0.1 m above the face that is at x = 0 in the file and is turned to y
   EXPECT_NEAR(surface(later, {0.9, 1.9, 11.1}).distance, 0.1, 1e-15);
 }
 
@@ -112,9 +111,9 @@ TEST_F(BodyFiles, WhatIsWrongWithAFileIsNamedByItsLine) {
   const std::string open = kTetrahedron;
   EXPECT_SAYS(errors_of_file(open.substr(0, open.size() - 8)), "b.obj:5:1: an edge of the face");
   EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "b.obj:4:1: the face has no");
-  // two corners that are at one place
+  // two corners at the same place
   EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1 0 0\nv 0 0 0\nf 1 2 3\n"), "b.obj:4:1: ");
-  // a doubled sheet
+  // a sheet with two faces back to back
   EXPECT_SAYS(errors_of_file("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n"),
               "encloses no volume");
   write("b.obj", std::string(kTetrahedron).replace(10, 1, "2"));
@@ -143,7 +142,7 @@ TEST_F(BodyFiles, AClothThatStartsInsideIsRefusedOrMovedOut) {
     EXPECT_GE(surface(moved.colliders[0].shape, x).distance, 0.01 - 1e-12);
 }
 
-/// A NumPy array of the tetrahedron's frames, each moved by a vector.
+/// NumPy array of frames: the tetrahedron shifted by each vector of `moved`.
 std::string npy(const std::vector<Vec3>& moved, const std::string& type = "<f8",
                 const std::string& shape = "", const std::string& order = "False") {
   const std::string real = shape.empty() ? "(" + std::to_string(moved.size()) + ", 4, 3)" : shape;

@@ -1,4 +1,4 @@
-// Documents: kinds and places of values, what a setting does, how deep and how long is too much.
+// Documents: types and places of values, the effect of a setting, limits of depth and length.
 
 #include "core/io/document.hpp"
 

@@ -1,5 +1,5 @@
-// Cloth from OBJ files: the same cloth as a grid where both say the same, and a place for every
-// flaw.
+// Cloth from OBJ files: the same cloth as a grid if both describe the same, and a place for every
+// error.
 #include "core/io/mesh_io.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 namespace taut::mesh_io_test {
 namespace {
 
-/// A sheet as the quads of an OBJ file, with every digit.
+/// The sheet's quads as an OBJ file with all digits.
 std::string as_obj(const Mesh& sheet) {
   std::ostringstream out;
   out.precision(17);
@@ -84,18 +84,18 @@ TEST(MeshFromObj, StructuralAndBendLinksComeInTheOrderOfTheGrid) {
 TEST(MeshFromObj, TwoTrianglesBendAcrossTheirEdge) {
   const Polygons p = parse_obj("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n");
   const auto links = mesh_links(p, {.structural = true, .shear = true, .bend = true});
-  ASSERT_EQ(links.size(), 6u);  // five edges, no quad, one pair of opposite vertices
+  ASSERT_EQ(links.size(), 6u);  // five edges, no quad, one pair of vertices opposite an edge
   EXPECT_EQ(links[5].family, Family::bend);
   EXPECT_EQ(std::pair(links[5].a, links[5].b), std::pair(0, 3));
   EXPECT_DOUBLE_EQ(links[5].rest, std::sqrt(3.0));
 }
 
 TEST(MeshFromObj, NoPairIsLinkedTwiceWhereThreeQuadsMeet) {
-  // The corner of a cube: 0 is the corner, 1 2 3 its neighbours. Across the edge 0-1, vertices 2
-  // and 3 are opposite, but they are also the diagonal of the third quad.
+  // The corner of a cube: vertex 0 is the corner, 1, 2 and 3 are its neighbours. Across the edge
+  // 0-1, vertices 2 and 3 are opposite, but they are also a diagonal of the third quad.
   const std::vector<std::string> vertices{"v 0 0 0\n", "v 1 0 0\n", "v 0 1 0\n", "v 0 0 1\n",
                                           "v 1 1 0\n", "v 0 1 1\n", "v 1 0 1\n"};
-  for (std::size_t shift = 0; shift < 7; ++shift) {  // whatever the vertices' numbers are
+  for (std::size_t shift = 0; shift < 7; ++shift) {  // for every numbering of the vertices
     std::string text;
     for (std::size_t v = 0; v < 7; ++v) text += vertices[(v + shift) % 7];
     for (const std::array<std::size_t, 4>& face :
@@ -126,7 +126,7 @@ TEST(MeshFromObj, QuadsAreCutAlongTheirShorterDiagonal) {
 
 TEST(MeshFromObj, TheShorterDiagonalCutsAQuad) {
   const std::string far =
-      "v 10 7 0\nv 11 7 0\nv 12 9 0\nv 10 8 0\n";  // of 2-4 and 1-3, 2-4 is shorter
+      "v 10 7 0\nv 11 7 0\nv 12 9 0\nv 10 8 0\n";  // 2-4 is the shorter diagonal
   const std::vector<Triangle> cut{{1, 2, 3}, {1, 3, 0}};
   for (const char* from : {"f 1 2 3 4\n", "f 2 3 4 1\n"})
     EXPECT_EQ(make_mesh(parse_obj("x.obj", far + from), 1, Lumping::area).triangles, cut) << from;
@@ -151,8 +151,8 @@ std::string vertices_of(const std::vector<Vec3>& corners) {
   return out.str();
 }
 
-/// The outline as one face that begins with each of its corners in turn, in either direction, its
-/// vertices in the order of the face or in that of the outline.
+/// The outline as one face, starting at each of its corners in turn, in both directions, with the
+/// vertices listed in the order of the face or of the outline.
 std::vector<Polygons> every_way_round(const std::vector<Vec3>& outline) {
   const std::size_t n = outline.size();
   std::vector<Polygons> all;
@@ -172,8 +172,8 @@ std::vector<Polygons> every_way_round(const std::vector<Vec3>& outline) {
   return all;
 }
 
-// Area by the outline (the shoelace formula); the mass of a corner is its own wherever the face
-// begins.
+// The area follows from the outline (shoelace formula). Each corner's mass does not depend on the
+// corner where the face starts.
 TEST(MeshFromObj, AConcaveFaceIsCutWithinItsOutline) {
   struct Shape {
     std::vector<Vec3> outline;
@@ -212,7 +212,7 @@ TEST(MeshFromObj, AFaceThatCrossesItselfIsRefused) {
       ": the outline of the face crosses or touches itself: it has to go once round an area";
   EXPECT_EQ(errors_of("v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nf 1 2 3 4\n"), "x.obj:5:1" + said)
       << "a crossed quad";
-  std::string star;  // five corners, twice round
+  std::string star;  // a star of five corners that winds around twice
   for (const int k : {0, 2, 4, 1, 3})
     star += "v " + std::to_string(std::cos(1.2566370614 * k)) + " " +
             std::to_string(std::sin(1.2566370614 * k)) + " 0\n";
@@ -294,7 +294,8 @@ TEST(MeshFromObj, TheShippedDiscIsTurnedScaledAndMoved) {
   EXPECT_EQ(flat.mesh.rest[0], Vec3(0, 0.45, 0));
   EXPECT_EQ(flat.pins, std::vector{0});
   const double mass = std::accumulate(flat.mesh.mass.begin(), flat.mesh.mass.end(), 0.0);
-  EXPECT_NEAR(mass, 0.2 * 3.14159, 0.002);  // a circle of 1 m less what its 48 chords cut off
+  // a circle of radius 1 m without what its 48 chords cut off
+  EXPECT_NEAR(mass, 0.2 * 3.14159, 0.002);
   const Scene upright = load_scene(
       disc, {"cloth.rotation={ axis = [1, 0, 0], angle = 90 }", "cloth.start_inside=\"resolve\""});
   EXPECT_EQ(upright.mesh.size(), 217);

@@ -1,5 +1,5 @@
-// Files of positions: what is written comes back to the format's rounding, and a hostile file costs
-// a message with its place.
+// Files of positions: written positions are read back up to the format's rounding, and a malicious
+// file only causes a message with its place.
 #include "core/io/positions/positions.hpp"
 
 #include <gtest/gtest.h>
@@ -100,7 +100,7 @@ TEST_F(Positions, WhatIsNotFiniteIsData) {
   }
 }
 
-/// A file of which every prefix, and every change of a byte, is either read or refused.
+/// Every prefix of a file, and a file with any byte changed, is read or refused.
 TEST_F(Positions, DamagedFilesAreRefused) {
   std::mt19937 random(7);
   for (const char* name : kFormats) {
@@ -120,7 +120,7 @@ TEST_F(Positions, DamagedFilesAreRefused) {
       std::string damaged = whole;
       damaged[random() % std::min<std::size_t>(whole.size(), 200)] = static_cast<char>(random());
       file(first.filename(), damaged);
-      message(path);  // whatever it says: no crash, no memory without end
+      message(path);  // any message will do: no crash, no unbounded memory
     }
     file(first.filename(), whole + "x");
     EXPECT_TRUE(path != first || message(path).find("bytes") != std::string::npos) << message(path);
@@ -181,7 +181,7 @@ TEST_F(Positions, BothByteOrdersAndBothWidths) {
 TEST_F(Positions, ASequenceHasAllItsFramesInOrder) {
   for (const int k : {8, 9, 10, 11})
     file("cloth" + std::to_string(k) + ".obj", "v " + std::to_string(k) + " 0 0\n");
-  file("cloth_rest.obj", "v 0 0 0\nv 0 0 0\n");  // another name
+  file("cloth_rest.obj", "v 0 0 0\nv 0 0 0\n");  // does not belong to the sequence
   for (const char* name : {"cloth.obj", "cloth9.obj"}) {
     const auto all = all_of(folder_ / name);
     ASSERT_EQ(all.size(), 4u);
@@ -199,7 +199,7 @@ TEST_F(Positions, ASequenceHasAllItsFramesInOrder) {
   EXPECT_NE(message(folder_ / "cloth.obj").find("cloth10.obj: has 2 vertices"), std::string::npos);
 }
 
-// A modelling program finds a sheet's material coordinates and faces, and a chain as a line.
+// A modelling program gets a sheet's material coordinates and faces, and a chain as a line.
 TEST_F(Positions, ObjHoldsWhatAModellingProgramWants) {
   const auto written = [&](const SheetShape& shape) {
     const Mesh mesh = make_sheet(shape);
@@ -216,7 +216,8 @@ TEST_F(Positions, ObjHoldsWhatAModellingProgramWants) {
   EXPECT_EQ(chain.find("vt "), std::string::npos) << chain;
 }
 
-// Two frames of a face with corners at 1 2 3, 0 0 0 and 0 0 -4 and twice that, at 0 s and 0.5 s.
+// Two frames at 0 s and 0.5 s. The first is a face with corners at 1 2 3, 0 0 0 and 0 0 -4, the
+// second is twice that.
 TEST_F(Positions, AreWrittenAsTheFormatsSay) {
   Mesh mesh;
   mesh.triangles = {{0, 2, 1}};
@@ -250,7 +251,8 @@ TEST_F(Positions, AreWrittenAsTheFormatsSay) {
   EXPECT_FALSE(fs::exists(folder_ / "f_00002.obj"));
 }
 
-// Whatever a sequence is called, its name reads back what was written last, and no other's frames.
+// The name of a sequence reads back what was last written under it, and no frames of other
+// sequences.
 TEST_F(Positions, ASequenceIsReadByTheNameThatItWasWrittenBy) {
   const Mesh mesh = make_sheet({.nu = 2, .nv = 1, .width = 1, .height = 0, .mass = 1});
   for (const int frames : {3, 2})
@@ -360,7 +362,7 @@ TEST_F(Positions, WhatCannotBeWrittenSaysWhy) {
 TEST_F(Positions, TextFilesAreReadWholeUpToTheirLimitOrRefused) {
   const std::string text(70000, 'x');
   const fs::path path = file("t", text);
-  errno = EINTR;  // of somebody else
+  errno = EINTR;  // left by an earlier call
   EXPECT_EQ(read_text(path, 70000), text);
   const auto says = [](const fs::path& file, std::size_t most, const std::string& what) {
     try {
@@ -375,7 +377,7 @@ TEST_F(Positions, TextFilesAreReadWholeUpToTheirLimitOrRefused) {
   says(folder_, 100, "is a folder, not a file");
   says("/dev/null", 100, "is not a regular file");
   says(folder_ / "absent", 100, "cannot be read: No such file or directory");
-  if (fs::exists("/proc/self/mem")) {  // nothing lies at address 0
+  if (fs::exists("/proc/self/mem")) {  // address 0 is not mapped
     says("/proc/self/mem", 100, "cannot be read: Input/output error");
   }
 }

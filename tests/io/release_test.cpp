@@ -1,4 +1,4 @@
-// When pins let go, as a scene file says it; seams and welds.
+// Releases of pins in scene files; seams and welds.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -73,7 +73,7 @@ TEST(ReleaseOfPins, WhatIsNoTimeIsRefused) {
       std::string::npos);
 }
 
-/// Two squares whose common side the file has twice.
+/// Two squares whose common side appears twice in the file.
 const std::string kSplit =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 1.00001 0 0\nv 2 0 0\nv 1 1.00001 0\nv 2 1 0\n"
     "f 1 2 4 3\nf 5 6 8 7\n";

@@ -1,4 +1,4 @@
-// Whatever happens to a scene or OBJ file, it loads or it is refused with a place inside the file.
+// Every mutated scene or OBJ file loads or is refused with a place inside the file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string slurp(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// Changes texts as slips of the hand and broken disks do; the same sequence in every run.
+/// Mutates texts as typing errors and broken disks do; every run makes the same sequence.
 class Mutator {
  public:
   std::string mutate(std::string text) {
@@ -57,7 +57,7 @@ class Mutator {
       case 4:
         text.insert(at, text.substr(below(text.size()), below(40)));
         break;
-      default:  // a digit becomes another
+      default:  // replaces a digit
         if (const auto digit = text.find_first_of("0123456789", at); digit != text.npos)
           text[digit] = static_cast<char>('0' + below(10));
     }
@@ -72,7 +72,7 @@ void expect_places_inside(const InputError& error, const std::string& file,
   EXPECT_FALSE(error.diagnostics().empty());
   for (const Diagnostic& d : error.diagnostics()) {
     EXPECT_FALSE(d.message.empty());
-    if (d.file != file) continue;  // a mesh that is not there has no line
+    if (d.file != file) continue;  // a missing mesh has no line
     EXPECT_GE(d.line, 1) << d.text() << "\n---\n" << text;
     EXPECT_LE(d.line, lines) << d.text() << "\n---\n" << text;
     EXPECT_GE(d.column, 1) << d.text() << "\n---\n" << text;
@@ -83,19 +83,19 @@ TEST(SceneFuzz, EveryMutantLoadsOrIsRefusedWithItsPlace) {
   std::vector<std::string> texts;
   for (const auto& entry : std::filesystem::directory_iterator(kScenes))
     if (entry.path().extension() == ".toml") texts.push_back(slurp(entry.path()));
-  std::sort(texts.begin(), texts.end());  // the order of a folder is not defined
+  std::sort(texts.begin(), texts.end());  // the order of directory entries is unspecified
   const std::string readme = slurp(kScenes / "README.md");
   const auto begin = readme.find("```toml\n") + 8;
   texts.push_back(readme.substr(begin, readme.find("```", begin) - begin));
 
-  const auto file = kScenes / "mutant.toml";  // never written; its mesh is beside it
+  const auto file = kScenes / "mutant.toml";  // never written; relative meshes are found beside it
   Mutator mutator;
   int loaded = 0, refused = 0;
   for (int k = 0; k < 2000; ++k) {
     const std::string text = mutator.mutate(texts[static_cast<std::size_t>(k) % texts.size()]);
     try {
       parse_scene(file, text,
-                  {"cloth.grid=[4, 3]"});  // small: a mutant may ask for 9999 x 9999 vertices
+                  {"cloth.grid=[4, 3]"});  // small, as a mutant may ask for 9999 x 9999 vertices
       ++loaded;
     } catch (const InputError& error) {
       expect_places_inside(error, file.string(), text);
@@ -138,7 +138,7 @@ TEST(SceneFuzz, EveryMutantMeshIsReadOrRefusedWithItsPlace) {
       ++refused;
     }
   }
-  EXPECT_GT(read, 90);  // a digit that becomes another often crosses a quad
+  EXPECT_GT(read, 90);  // another digit often makes a quad cross itself
   EXPECT_GT(refused, 300);
 }
 

@@ -1,5 +1,4 @@
-// Scene files: what is shipped loads, what is documented is true, what is wrong is named with its
-// place.
+// Scene files: shipped files load, documented facts hold, and errors are reported with their place.
 #include "core/io/scene_io.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +29,7 @@ Scene shipped(const std::string& name, const SceneSettings& settings = {}) {
   return load_scene(kScenes / (name + ".toml"), settings);
 }
 
-/// What is wrong with the text of a scene file that is called x; "" if nothing is.
+/// Errors in the text of a scene file called x; "" if there are none.
 std::string errors_of(const std::string& text, const SceneSettings& settings = {}) {
   try {
     parse_scene("x", text, settings);
@@ -130,7 +129,8 @@ TEST(SceneFiles, TheTimeStepIsRoundedToBinary32) {
   const Scene a = shipped("hang", {"time.dt=\"1/60\"", "time.duration=10"});
   EXPECT_EQ(a.dt, static_cast<double>(1.0f / 60));
   EXPECT_EQ(a.steps, 600);
-  const Scene b = shipped("hang", {"time.dt=0.01", "time.duration=10"});  // rounds down
+  // the number of steps is rounded down
+  const Scene b = shipped("hang", {"time.dt=0.01", "time.duration=10"});
   EXPECT_EQ(b.steps, 1000);
   EXPECT_EQ(shipped("hang", {"time.dt=0.3", "time.duration=1"}).steps, 4);
 }
@@ -452,8 +452,8 @@ std::vector<std::vector<std::string>> documented_keys() {
 
 std::string unquoted(const std::string& cell) { return cell.substr(1, cell.size() - 2); }
 
-/// As bare as a scene can be with one of each: no optional key is given but cloth.start_inside,
-/// which lets the obstacles stay where their defaults put them.
+/// Scene with each kind of section and no optional keys. The exception is cloth.start_inside, which
+/// lets the obstacles stay at their default places.
 constexpr const char* kBare = R"(
 cloth = { grid = [32, 32], size = [1, 1], pins = ["top"], start_inside = "resolve" }
 wind = {}
@@ -482,7 +482,7 @@ a = [64, 65, 66]
 b = [72, 73, 74]
 )";
 
-/// The dotted key under which a setting reaches a documented key in kBare.
+/// Dotted key with which a setting reaches a documented key in kBare.
 std::string path_to(const std::string& key, const std::string& meaning) {
   const auto dot = key.find('.');
   const auto about = [&](const char* type) { return meaning.rfind(type, 0) == 0; };

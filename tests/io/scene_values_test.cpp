@@ -1,5 +1,4 @@
-// What a scene file says is what the scene is, number by number; and what is judged stands at its
-// border.
+// A scene has the numbers that its file states, and limits are tested just below and above.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -101,8 +100,9 @@ TEST(SceneValues, OfTheClothAreThoseOfItsFile) {
       if (v != 1 && v != 5) expect_near(s.start.x[v], Vec3(1, 2 + 2 * i, 3 - 4 * j));
       const bool pin = v == 2 || v == 7 || v == 9;
       expect_near(s.start.v[v], v == 2 ? Vec3(0, -1, 8) : pin ? Vec3::Zero() : Vec3(1, 2, 4));
-      const double lumped = (i == 1 ? 1 : 0.5) * (j % 3 == 0 ? 0.5 : 1),  // kg: 1 of an inner one
-          factor = (v == 0 || v == 4 ? 3 : 1) * (j == 3 ? 0.5 : 1);
+      // kg; 1 for an inner vertex
+      const double lumped = (i == 1 ? 1 : 0.5) * (j % 3 == 0 ? 0.5 : 1),
+                   factor = (v == 0 || v == 4 ? 3 : 1) * (j == 3 ? 0.5 : 1);
       EXPECT_NEAR(s.mesh.mass[v], lumped * factor, 1e-14) << v;
     }
   expect_near(s.start.x[5], Vec3(1.5, 6, -1));
@@ -162,8 +162,8 @@ TEST(SceneValues, OfWindCollidersAndMotionsAreThoseOfTheFile) {
   EXPECT_EQ(s.pin_motions[0].motion.path.size(), 3u);
 }
 
-/// A level sheet of 3 x 3 vertices half a metre apart, thickness 0, with more of [cloth] and other
-/// sections.
+/// Text of a level sheet of 3 x 3 vertices half a metre apart, thickness 0, with additions to
+/// [cloth] and further sections.
 std::string level(const std::string& cloth = "", const std::string& more = "") {
   return "[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nv = [0, 0, 1]\n" + cloth + "\n" + more;
 }
@@ -239,14 +239,14 @@ TEST(SceneValues, StepsReachTheDurationAndAreOneAtLeast) {
   EXPECT_EQ(steps("{ dt = 0.1, duration = 1000 }"), 10000) << "float(0.1) is a little more";
   EXPECT_EQ(steps("{}"), 640);
   EXPECT_NEAR(steps("{ dt = 1e-3, duration = 1e6 }"), 1e9, 200);
-  const std::string most =  // a ten-millionth of its 1.024e9 steps is forgiven
+  const std::string most =  // a rounding of 1e-7 of its 1.024e9 steps is tolerated
       "time={ dt = 0.0009765625, duration = 1e6 }";
   EXPECT_EQ(
       problems(level(), {most}),
       most + ": column 38: 'duration' in [time] makes 1023999898 steps; at most 1e9 are allowed");
 }
 
-// The arc of three links whose ends are as far apart as the middle one is long: each turns by a
+// Three links form an arc whose ends are as far apart as a link is long: each link turns by a
 // quarter of a circle.
 TEST(SceneValues, ASpanBendsTheRowsAndATiltTurnsThem) {
   const Scene s = parse_scene(

@@ -1,5 +1,5 @@
-// Depths and passages at bodies of triangles, against closed forms and a look at thousands of
-// points of each way.
+// Depths and passages at bodies of triangles, against closed forms and thousands of sample points
+// on each path.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace taut::body_metrics_test {
 namespace {
 
-/// Places at random, 0.6 m about the middle of the sheet; none starts inside the collider.
+/// States with random positions within 0.6 m of the sheet's middle; no vertex starts inside the
+/// collider.
 std::vector<State> wild(const Scene& scene, double size) {
   Draw draw(7);
   std::vector<State> states(to_index(scene.steps) + 1, scene.start);
@@ -53,7 +54,8 @@ TEST(BodyMetrics, AtABoxOfTrianglesTheyAreTheBoxs) {
   EXPECT_TRUE(std::isnan(want.at("penetration.mesh.max")));
 }
 
-/// Inside: the triangles are seen under a whole turn (Van Oosterom, Strackee 1983).
+/// Whether p is inside: the triangles then cover the full solid angle (Van Oosterom, Strackee
+/// 1983).
 bool surrounds(const TriangleMesh& mesh, const Vec3& p) {
   double sum = 0;
   for (const auto& [i, j, k] : mesh.triangles()) {
@@ -66,7 +68,7 @@ bool surrounds(const TriangleMesh& mesh, const Vec3& p) {
   return sum > std::numbers::pi;
 }
 
-/// The triangle on whose inside p lies, seen from all.
+/// Triangle below whose inner side p lies, found by a search of all triangles.
 std::size_t triangle_at(const TriangleMesh& mesh, const Vec3& p) {
   double least = 1e9;
   std::size_t nearest = 0;
@@ -87,7 +89,7 @@ Vec3 in_frame(const Collider& collider, double t, const Vec3& x) {
   return body.rotation.conjugate() * (x - body.center);
 }
 
-/// One that is bent more from step to step.
+/// Frames of a body that bends further from step to step.
 std::shared_ptr<const BodyFrames> bending(const Triangles& body, const Scene& scene) {
   auto frames = std::make_shared<BodyFrames>();
   frames->fps = 1 / scene.dt;
@@ -98,9 +100,9 @@ std::shared_ptr<const BodyFrames> bending(const Triangles& body, const Scene& sc
   return frames;
 }
 
-constexpr int kMoments = 2000;  ///< of a step
+constexpr int kMoments = 2000;  ///< moments per step
 
-/// By step and moment.
+/// The body's mesh, by step and moment.
 std::vector<std::shared_ptr<const TriangleMesh>> moments(const Collider& c, const Scene& scene) {
   std::vector<std::shared_ptr<const TriangleMesh>> all;
   for (int n = 0; n <= scene.steps * kMoments; ++n)
@@ -134,7 +136,7 @@ TEST(BodyMetrics, PassagesThroughPyramidAndTorusAreThoseOfPoints) {
           in = !in;
           const std::size_t at = triangle_at(mesh, p);
           if (in) entry = at;
-          const auto normal = [&](std::size_t triangle) {  // at the end of the step
+          const auto normal = [&](std::size_t triangle) {  // normal at the end of the step
             return meshes[to_index(step * kMoments)]->normal(static_cast<int>(triangle));
           };
           if (in || normal(entry).dot(normal(at)) >= 0) continue;
@@ -171,7 +173,7 @@ TEST(BodyMetrics, EveryCrossingOfAThinBodyIsAPassage) {
   EXPECT_EQ(v.at("penetration.max"), 0);
 }
 
-// A wall of two triangles is the plane that they lie in, from both of its sides.
+// A wall of two triangles behaves like their plane, from both sides.
 TEST(BodyMetrics, SlipOnAFlatBodyIsThatOnItsPlane) {
   Scene scene = sheet(4);
   scene.steps = 20;
@@ -201,8 +203,8 @@ TEST(BodyMetrics, SlipOnAFlatBodyIsThatOnItsPlane) {
   EXPECT_EQ(measure(scene, slides).count("slip.error"), 0u);
 }
 
-// The tip of a pyramid goes through one face of a sheet that falls on it, and its others through
-// none; seen without the tree.
+// The tip of a pyramid passes through one face of the sheet that falls on it, and no other vertex
+// does. Checked without the tree.
 TEST(BodyMetrics, AVertexOfTheBodyThatPiercesAFaceIsAPassage) {
   Scene scene = sheet(6);
   scene.steps = 6;
@@ -214,16 +216,17 @@ TEST(BodyMetrics, AVertexOfTheBodyThatPiercesAFaceIsAPassage) {
   };
   const Values v = measure(scene, falls);
   EXPECT_EQ(v.at("face.passages"), 1);
-  // 0.1 m below the tip and above the base it is the nearest to the sides, whose slope is 0.2/0.35
+  // a vertex 0.1 m below the tip and above the base is nearest to the sides, whose slope is
+  // 0.2/0.35
   const double deepest = 0.1 * 0.35 / std::hypot(0.35, 0.2), side = 0.2 * std::sqrt(2);
   EXPECT_LE(v.at("face.mesh"), deepest + 1e-12);
   EXPECT_GE(v.at("face.mesh"), deepest - 0.01 * side);
   EXPECT_EQ(v.at("face.max"), v.at("face.mesh"));
-  scene.colliders[0].motion.velocity = {0, -0.04 / scene.dt, 0};  // falls with it
+  scene.colliders[0].motion.velocity = {0, -0.04 / scene.dt, 0};  // falls with the sheet
   EXPECT_EQ(measure(scene, falls).at("face.passages"), 0);
 }
 
-// The same where the sheet rests, and the tip rises from the pyramid.
+// The same passage with the sheet at rest, where frames raise the tip of the pyramid.
 TEST(BodyMetrics, AVertexThatItsFramesRaiseIsAPassageToo) {
   Scene scene = sheet(6);
   scene.steps = 6;

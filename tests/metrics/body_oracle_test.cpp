@@ -1,6 +1,6 @@
 // Depths and passages at a pyramid, a torus and a lumpy ball that move through a cloth, each at
-// three resolutions, by a second implementation without a tree: all triangles, thousands of
-// moments.
+// three resolutions. The second implementation has no tree: it searches all triangles at thousands
+// of moments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace taut::body_oracle_test {
 namespace {
 
-/// Each triangle cut in four.
+/// Splits each triangle into four.
 Triangles finer(const Triangles& body) {
   Triangles fine{body.vertices, {}};
   const auto middle = [&](int a, int b) {
@@ -58,13 +58,13 @@ std::vector<Named> bodies() {
           {"lumps 3", lumpy_ball(2)}};
 }
 
-// What follows knows the corners of triangles and nothing else of the library's geometry.
+// The code below uses the corners of triangles and nothing else of the library's geometry.
 
 struct Body {
   const Triangles& triangles;
   Vec3 corner(const Triangle& t, std::size_t k) const { return triangles.vertices[to_index(t[k])]; }
 
-  /// Over 4 pi: the solid angle by which the surface surrounds p.
+  /// Whether the surface covers the full solid angle (4 pi) around p.
   bool contains(const Vec3& p) const {
     double sum = 0;
     for (const Triangle& t : triangles.triangles) {
@@ -74,7 +74,8 @@ struct Body {
     }
     return sum > std::numbers::pi;
   }
-  /// By minimising over each triangle's barycentric coordinates: its inside, else its sides.
+  /// Distance by minimisation over each triangle's barycentric coordinates: first its interior,
+  /// then its sides.
   double distance(const Vec3& p) const {
     double least2 = 1e300;
     for (const Triangle& t : triangles.triangles) {
@@ -112,11 +113,11 @@ Motion tumbling() {
   return {.velocity = {0, 0.4, 1}, .spin = {0.2, -0.7, 0.4}, .pivot = {1, 0, 0}};
 }
 
-/// A sheet whose vertices are at random places, other ones at each step; none starts inside.
+/// Sheet whose vertices have new random places in every step; no vertex starts inside.
 struct Wild {
   Scene scene = sheet(4);
   std::vector<State> states;
-  std::vector<std::vector<Vec3>> body_at;  ///< [steps + 1][vertices] m, in its frame
+  std::vector<std::vector<Vec3>> body_at;  ///< [steps + 1][vertices] m, in the body's frame
   explicit Wild(const Triangles& body, bool deforms = false) {
     scene.steps = 3;
     scene.colliders = {{MeshBody{body.mesh(), {0.5, 0, 0.5}}, tumbling(), 0}};
@@ -193,12 +194,12 @@ TEST(BodyOracle, PassagesOfVerticesAgree) {
   }
 }
 
-/// On which side of the plane through three places the fourth is.
+/// Whether p is above the plane through a, b and c.
 bool above(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   return (b - a).cross(c - a).dot(p - a) > 0;
 }
 
-/// Whether, at one moment, the vertex seen along the face's normal is within the face.
+/// Whether the vertex, projected along the face's normal, is within the face at this moment.
 bool covers(const std::array<Vec3, 3>& face, const Vec3& p) {
   Eigen::Matrix<double, 3, 2> sides;
   sides << face[1] - face[0], face[2] - face[0];
@@ -206,7 +207,7 @@ bool covers(const std::array<Vec3, 3>& face, const Vec3& p) {
   return at.minCoeff() >= 0 && at.sum() <= 1;
 }
 
-/// Whether two edges that are nearly in one plane cross in it.
+/// Whether two edges that are nearly in one plane intersect within it.
 bool meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   Eigen::Matrix<double, 3, 2> ways;
   ways << q - p, a - b;
@@ -222,7 +223,7 @@ std::set<std::pair<int, int>> edges_of(const std::vector<Triangle>& triangles) {
   return edges;
 }
 
-/// Calls seen(share) at every moment at which what `side(share)` says changes.
+/// Calls seen(share) at every moment at which the sign of `side(share)` changes.
 template <class Side, class Seen>
 void changes(const Side& side, const Seen& seen) {
   constexpr int kMoments = 400;
@@ -245,7 +246,8 @@ void expect_passages_of_edges_and_faces(bool deforms) {
 #endif
   int all_of_faces = 0;
   for (const auto& [name, triangles] : bodies()) {
-    if (triangles.triangles.size() > (deforms ? 70 : 130)) continue;  // every edge and moment
+    // too many pairs of edges and moments
+    if (triangles.triangles.size() > (deforms ? 70 : 130)) continue;
     const Wild wild(triangles, deforms);
     int of_edges = 0, of_faces = 0;
     for (int step = 1; step <= wild.scene.steps; ++step) {

@@ -1,4 +1,4 @@
-// Penetration, faces, slip and tunnelling on states whose answers are known in closed form.
+// Penetration, faces, slip and tunnelling on states with answers in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,8 @@ TEST(Faces, ThatRestOnABallSagByGeometryAlone) {
   const double radius = 0.5, l = 0.05;
   const Vec3 center(0.5, -1, 0.5);
   scene.colliders = {{.shape = Ball{.center = center, .radius = radius}}};
-  State state = scene.start;  // one cell with corners on the ball, the rest above it
+  // one cell touches the ball with its corners, all other cells are above it
+  State state = scene.start;
   const Grid g = *scene.mesh.grid;
   for (const auto& [i, j] : {std::pair{10, 10}, {11, 10}, {10, 11}, {11, 11}}) {
     Vec3& x = state.x[static_cast<std::size_t>(g.index(i, j))];
@@ -91,7 +92,7 @@ TEST(Faces, ThatRestOnABallSagByGeometryAlone) {
   EXPECT_NEAR(v.at("penetration.max"), 0, 1e-12);
 }
 
-/// A block that slides down a slope of 30 degrees with friction mu, as steps of dt see it.
+/// Block that slides down a slope of 30 degrees with friction mu, sampled at steps of dt.
 State sliding(const Scene& scene, double mu, int step) {
   const Vec3 down = Vec3(1, -std::sqrt(1.0 / 3), 0).normalized();
   const double a = 9.81 * std::max(0.0, 0.5 - mu * std::sqrt(0.75));
@@ -110,18 +111,20 @@ TEST(Slip, IsZeroForCoulombsLaw) {
   Values v = at(0.3);
   EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
   EXPECT_NEAR(v.at("slip.distance"), 0, 1e-9);
-  v = at(0.2);  // a solver whose friction is too small by 0.1
+  v = at(0.2);  // a solver whose friction is 0.1 too small
   const double wrong = 9.81 * 0.1 * std::sqrt(0.75);
   EXPECT_NEAR(v.at("slip.error"), wrong, 1e-9);
   EXPECT_NEAR(v.at("slip.distance"), wrong / 2 * 3 * (3 - scene.dt), 1e-9);  // from step 1 on
-  scene.colliders[0].friction = 0.6;  // more than tan(30 degrees): it has to stick, and creeps
+  // more than tan(30 degrees): the block has to stick, yet creeps
+  scene.colliders[0].friction = 0.6;
   v = at(0.57);
   EXPECT_NEAR(v.at("slip.error"), 9.81 * 0.03 * std::sqrt(0.75), 1e-9);
   v = at(1);
   EXPECT_NEAR(v.at("slip.error.peak"), 0, 1e-9);
 }
 
-/// A corner that goes through a coarse face touches none of its vertices; there and back are two.
+/// A corner that pierces a coarse face touches no vertex; going through and back counts as two
+/// passages.
 TEST(Faces, ThatAColliderPiercesArePassages) {
   Scene scene = sheet(2);  // 1 m wide, level
   for (Vec3& x : scene.start.x) x.y() = 0.3;
@@ -129,7 +132,7 @@ TEST(Faces, ThatAColliderPiercesArePassages) {
   const auto passages = [&](const Shape& shape, double amplitude) {
     scene.colliders = {{.shape = shape}};
     return measure(scene,
-                   [&](int step) {  // the cloth comes down on it, and is lifted off
+                   [&](int step) {  // the cloth is lowered on to it and lifted again
                      State state = scene.start;
                      const double t = static_cast<double>(step) / scene.steps;
                      for (Vec3& x : state.x)
@@ -147,7 +150,8 @@ TEST(Faces, ThatAColliderPiercesArePassages) {
   EXPECT_EQ(passages(Ball{{2, 0, 0.4}, half}, 0.35), 0) << "beside the cloth";
 }
 
-/// A cloth that lies still is held by its weight, with every solver; while it falls, by nothing.
+/// With every solver, contact carries the weight of a cloth at rest, and no force acts while it
+/// falls.
 TEST(ContactForce, IsTheWeightOfAClothAtRestWithEverySolver) {
   Scene scene = sheet(3);
   double weight = 0;
@@ -174,8 +178,8 @@ TEST(ContactForce, IsTheWeightOfAClothAtRestWithEverySolver) {
   EXPECT_EQ(force("mass-spring", "contact.force"), -1);
 }
 
-/// In substeps of dt/n a block goes a dt^2 (1 + 1/n)/2 in its first step, and obeys Coulomb with
-/// any.
+/// In its first step a block with substeps of dt/n moves a dt^2 (1 + 1/n)/2. It obeys Coulomb's law
+/// for every n.
 TEST(Slip, IsZeroForAnyNumberOfSubsteps) {
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Plane{.normal = {0.5, std::sqrt(0.75), 0}}, .friction = 0.3}};
@@ -205,7 +209,7 @@ TEST(Slip, SeesThePlaneMoveAndDampingAndNeedsAPlaneAlone) {
   for (Vec3& v : scene.start.v) v = {0.3, 0, 0};
   EXPECT_NEAR(measure(scene, carried).at("slip.error.peak"), 0, 1e-9);
   scene.colliders[0].motion = {};
-  EXPECT_NEAR(measure(scene, carried).at("slip.error"), 0.5 * 9.81, 1e-9);  // nothing brakes it
+  EXPECT_NEAR(measure(scene, carried).at("slip.error"), 0.5 * 9.81, 1e-9);  // nothing slows it down
   scene.colliders.clear();
   scene.damping = 2;
   scene.gravity = {0, -1e-9, 0};
@@ -222,8 +226,9 @@ TEST(Slip, SeesThePlaneMoveAndDampingAndNeedsAPlaneAlone) {
   EXPECT_FALSE(measure(scene, damped).contains("slip.error"));
 }
 
-// A cloth of unequal masses that goes anywhere, beside a block that feels the same normal impulses,
-// on a slope that moves: Coulomb's law once more, in components along the plane.
+// A cloth of unequal masses with arbitrary motion, beside a block that receives the same normal
+// impulses, on a moving slope. Coulomb's law is implemented a second time, in components along the
+// plane.
 TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
   Draw draw(5);
   Scene scene = sheet(3);
@@ -254,7 +259,7 @@ TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
   const auto freely = [&](const Vec3& v) {
     return Vec3(std::exp(-0.9 / 64) * v + scene.gravity / 64);
   };
-  const auto rubbed = [&](const Vec3& v, double press) {  // along the plane
+  const auto rubbed = [&](const Vec3& v, double press) {  // velocity along the plane after friction
     const Eigen::Vector2d slides = along(v - carried);
     const double left = std::max(0.0, slides.norm() - 0.4 * press);
     return Eigen::Vector2d(along(carried) + left * slides.normalized());
@@ -271,7 +276,7 @@ TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
     peak = std::max(peak, error);
     mean += step >= 77 ? error / 64 : 0;
     const Eigen::Vector2d slid = rubbed(freely(block), press);
-    block = slid.x() * u + slid.y() * w;  // how fast it goes up or down does not matter
+    block = slid.x() * u + slid.y() * w;  // velocity normal to the plane does not matter
     apart += (along(next) - slid) / 64;
     velocity = next;
   }
@@ -284,17 +289,17 @@ TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
 
 TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {
   Scene scene = sheet(3);
-  scene.start.x[5].y() = -0.995;  // inside, at the top
+  scene.start.x[5].y() = -0.995;  // starts inside, at the top
   scene.colliders = {{.shape = Box{.center = {0.5, -1, 0.5}, .half_extents = {2, 0.01, 2}}}};
   const auto v = measure(scene, [&](int step) {
     State state = scene.start;
-    if (step >= 10) state.x[0].y() = -2;                        // through in one step
-    if (step >= 10) state.x[1].y() = -1 + 0.001 * (15 - step);  // slowly through
-    if (step >= 10 && step < 50) state.x[2].y() = -2;           // and back
+    if (step >= 10) state.x[0].y() = -2;                        // passes through in one step
+    if (step >= 10) state.x[1].y() = -1 + 0.001 * (15 - step);  // passes through slowly
+    if (step >= 10 && step < 50) state.x[2].y() = -2;           // and returns
     if (step >= 10) state.x[3].y() = -0.995;                    // stays inside
-    if (step >= 10) state.x[4] = {9, -2, 9};                    // past the edge
+    if (step >= 10) state.x[4] = {9, -2, 9};                    // passes beside the edge
     if (step >= 12) state.x[4] = {0.5, -2, 0.5};
-    if (step >= 10) state.x[5].y() = -2;  // out below
+    if (step >= 10) state.x[5].y() = -2;  // leaves at the bottom
     return state;
   });
   EXPECT_EQ(v.at("tunnelling.count"), 3);
@@ -305,9 +310,10 @@ TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {
 TEST(Tunnelling, SeesTheColliderMoveAndGrazesPardoned) {
   Scene scene = sheet(3);
   scene.colliders = {{.shape = Ball{.center = {0.5, -1, 0.5}, .radius = 0.1},
-                      .motion = {.velocity = {0, 64, 0}}}};  // 1 m a step, straight through
+                      .motion = {.velocity = {0, 64, 0}}}};  // moves 1 m a step, straight through
   EXPECT_EQ(measure_at_rest(scene, scene.start).at("tunnelling.count"), 1);
-  std::get<Ball>(scene.colliders[0].shape).center.x() += 0.08;  // beyond R/sqrt(2) off the axis
+  // farther than R/sqrt(2) from the axis
+  std::get<Ball>(scene.colliders[0].shape).center.x() += 0.08;
   EXPECT_EQ(measure_at_rest(scene, scene.start).at("tunnelling.count"), 0);
 }
 

@@ -1,5 +1,6 @@
-// Every metric against its definition, computed a second time from all states at once, on a cloth
-// that does everything at random: at each moment, and over the last second and the run.
+// Every metric against its definition, implemented a second time on all states at once: at each
+// moment, over the last second and over the run. The cloth moves at random in every way that
+// metrics see.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +21,8 @@
 namespace taut::definitions_test {
 namespace {
 
-/// Masses and rest lengths of every size, pins, and one moving collider of each kind; 140 steps of
-/// 1/64 s.
+/// Scene with masses and rest lengths of every size, pins, and one moving collider of each kind;
+/// 140 steps of 1/64 s.
 Scene irregular(Draw& draw) {
   Scene scene = sheet(6);
   scene.gravity = {1, -9, 2};
@@ -43,7 +44,7 @@ Scene irregular(Draw& draw) {
   return scene;
 }
 
-/// The start, then noise that dies down: it rests from step 100 on.
+/// States from the start on, with noise that decays: the cloth is at rest from step 100 on.
 std::vector<State> noise(const Scene& scene, Draw& draw) {
   std::vector<State> states(static_cast<std::size_t>(scene.steps) + 1, scene.start);
   for (std::size_t step = 1; step < states.size(); ++step) {
@@ -57,7 +58,7 @@ std::vector<State> noise(const Scene& scene, Draw& draw) {
   return states;
 }
 
-/// What is recorded of a motion, and how definitions sum it up.
+/// Recorded motion, and the summaries that definitions form of it.
 struct Recorded {
   Recorded()
       : scene(irregular(draw)),
@@ -88,7 +89,7 @@ struct Recorded {
     ASSERT_TRUE(values.contains(name)) << name;
     EXPECT_NEAR(values.at(name), value, 1e-9 * std::max(1.0, std::abs(value))) << name;
   }
-  /// The value that is recorded over time, at every step.
+  /// Compares the value that is recorded over time at every step.
   void expect_now(const std::string& name, const At& f) const {
     const auto [entry, value] = find_value(name);
     ASSERT_TRUE(value && value->in_series) << name;
@@ -167,7 +168,7 @@ TEST(Definitions, Stretch) {
 
 TEST(Definitions, Area) {
   const Recorded r;
-  const auto area = [](const Triangle& t, const std::vector<Vec3>& x) {  // Heron
+  const auto area = [](const Triangle& t, const std::vector<Vec3>& x) {  // Heron's formula
     const double a = (x[to_index(t[0])] - x[to_index(t[1])]).norm(),
                  b = (x[to_index(t[1])] - x[to_index(t[2])]).norm(),
                  c = (x[to_index(t[2])] - x[to_index(t[0])]).norm(), s = (a + b + c) / 2;
@@ -259,7 +260,7 @@ TEST(Definitions, SpeedsRestAndJumps) {
   r.expect("jitter.max", r.max(fastest));
   r.expect_now("jitter.rms", [&](const State& s, double t) { return std::sqrt(square(s, t)); });
   r.expect_now("jitter.max", fastest);
-  int last = 0;  // step at which the last rest begins
+  int last = 0;  // step at which the final rest begins
   for (int step = 1; step <= 140; ++step)
     for (const std::size_t i : r.free) {
       const State &now = r.states[to_index(step)], &then = r.states[to_index(last)];
@@ -281,7 +282,7 @@ TEST(Definitions, SpeedsRestAndJumps) {
 
 TEST(Definitions, Penetration) {
   const Recorded r;
-  const auto depths = [&](const State& s, double t, int kind) {  // -1: in any
+  const auto depths = [&](const State& s, double t, int kind) {  // kind -1: in any collider
     std::vector<double> all;
     for (const std::size_t i : r.free) {
       double depth = 0;
@@ -415,7 +416,7 @@ TEST(Definitions, DistanceFromTheReferences) {
   ASSERT_TRUE(known.rest && !known.motion.empty());
   Draw draw(23);
   scene.dt = 0.02;
-  scene.steps = 60;  // neither matters
+  scene.steps = 60;  // both differ from the reference's, which does not matter
   std::vector<State> states(61, scene.start);
   for (State& state : states)
     for (Vec3& x : state.x) x += draw.vector(0.1);

@@ -1,4 +1,4 @@
-// The drape coefficient and the bending length of states whose answer is known.
+// Drape coefficient and bending length of states with known answers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace taut::drape_test {
 namespace {
 
-/// A level square of 9 x 9 whose inner 5 x 5 vertices, half a side, are the support.
+/// Level square of 9 x 9 vertices; the inner 5 x 5, half a side wide, are the support.
 Scene table() {
   Scene s = hanging_sheet(9, 9, {true, false, false});
   for (Vec3& x : s.mesh.rest) x = Vec3(x.x(), 0, x.y());
@@ -25,7 +25,7 @@ Scene table() {
   return s;
 }
 
-/// A value of a cloth that stays where it is.
+/// Value of a metric for a cloth at rest.
 double standing(const Scene& s, const std::vector<Vec3>& x, const std::string& value) {
   return measure(s,
                  [&](int) {
@@ -45,10 +45,11 @@ TEST(Drape, IsWhatTheShadowCoversBesideTheSupport) {
   const auto inside = [](double c, double low, double high) { return std::clamp(c, low, high); };
   for (Vec3& p : x) p = Vec3(inside(p.x(), 0.25, 0.75), p.y(), inside(p.z(), -0.75, -0.25));
   EXPECT_NEAR(coefficient(s, x), 0, 1e-9) << "straight down";
-  for (const double wide : {0.9, 0.3, 1.0}) {  // edge on edge at last
+  for (const double wide : {0.9, 0.3, 1.0}) {  // with 1.0 the edges coincide
     x = s.mesh.rest;
     for (Vec3& p : x)
-      if (p.x() > 0.75) p.x() = 0.75 - wide * (p.x() - 0.75);  // folded under: covered twice
+      // folded under, so that it is covered twice
+      if (p.x() > 0.75) p.x() = 0.75 - wide * (p.x() - 0.75);
     EXPECT_NEAR(coefficient(s, x), (0.75 - 0.25) / 0.75, 1e-9) << "a flap under the support";
   }
   for (Vec3& p : x) p.y() += 3 * p.x();
@@ -58,7 +59,7 @@ TEST(Drape, IsWhatTheShadowCoversBesideTheSupport) {
   EXPECT_NEAR(coefficient(s, x), 1, 1e-5) << "turned by 45 degrees: lines cut corners";
 }
 
-// ISO 9073-9: a round cloth of 30 cm on a disc of 18 cm, 254.47 cm^2 whatever the mesh.
+// ISO 9073-9: a round cloth of 30 cm on a disc of 18 cm, which has 254.47 cm^2 for every mesh.
 TEST(Drape, OfARoundClothTheSupportIsADisc) {
   for (const char* mesh : {"woven-disc.obj", "woven-disc-fine.obj"}) {
     Scene s =
@@ -73,7 +74,7 @@ TEST(Drape, OfARoundClothTheSupportIsADisc) {
     const double support = std::numbers::pi * 0.09 * 0.09;
     EXPECT_NEAR(coefficient(s, s.mesh.rest), 1, 1e-4) << "flat";
     std::vector<Vec3> x = s.mesh.rest;
-    for (Vec3& p : x) p *= 0.8;  // whatever holds the cloth: its shadow alone counts
+    for (Vec3& p : x) p *= 0.8;  // only the shadow counts, whatever holds the cloth
     EXPECT_NEAR(coefficient(s, x), (0.64 * cloth - support) / (cloth - support), 1e-4) << mesh;
   }
 }
@@ -88,7 +89,8 @@ TEST(Drape, IsOfScenesWithALevelSupportAlone) {
   EXPECT_FALSE(has(s)) << "aslant";
   s.gravity = Vec3::Zero();
   EXPECT_FALSE(has(s));
-  for (const int corner : {2 * 9 + 2, 6 * 9 + 6}) {  // of the first faces and of the last
+  // corners of the first faces and of the last ones
+  for (const int corner : {2 * 9 + 2, 6 * 9 + 6}) {
     s = table();
     s.mesh.rest[to_index(corner)].y() += 0.1;
     s.start.x = s.mesh.rest;
@@ -97,7 +99,7 @@ TEST(Drape, IsOfScenesWithALevelSupportAlone) {
   EXPECT_FALSE(has(hanging_sheet(5, 5))) << "no face is pinned";
 }
 
-/// 0.2 m from the clamp, which is between the first two rows.
+/// Strip that extends 0.2 m from a clamp between its first two rows.
 Scene strip() {
   Scene s = hanging_sheet(3, 9, {true, false, false});
   const double l = 0.2 / 7.5;
@@ -109,7 +111,7 @@ Scene strip() {
   return s;
 }
 
-/// The last rows of a strip turned about its clamp.
+/// Positions with the strip's last rows turned about the clamp.
 std::vector<Vec3> turned(const Scene& s, double angle) {
   std::vector<Vec3> x = s.mesh.rest;
   const double l = 0.2 / 7.5;
@@ -130,7 +132,7 @@ TEST(Cantilever, SeesItsEndFromBetweenTheTwoRows) {
   EXPECT_NEAR(standing(s, x, "cantilever.bending_length") / 0.2, 0.50932, 1e-4) << "41.5 degrees";
 }
 
-// How far Peirce's formula is from the elastica, as the help says it.
+// Deviation of Peirce's formula from the elastica, as stated in the help.
 TEST(Cantilever, HasABendingLengthWherePeircesFormulaHolds) {
   const Scene s = strip();
   const auto too_long = [&](double degrees) {
@@ -142,7 +144,8 @@ TEST(Cantilever, HasABendingLengthWherePeircesFormulaHolds) {
   EXPECT_NEAR(too_long(20), 0.0042, 1e-4);
   EXPECT_NEAR(too_long(41.5), 0.0188, 1e-4);
   EXPECT_NEAR(too_long(59.999), 0.0442, 1e-4);
-  for (const double degrees : {60.001, 0.0, -0.001, -30.0})  // none beyond, level or bent upwards
+  // no bending length above 60 degrees, level or bent upwards
+  for (const double degrees : {60.001, 0.0, -0.001, -30.0})
     EXPECT_TRUE(std::isnan(too_long(degrees))) << degrees;
   EXPECT_NEAR(reference::peirce_bending_length(87 * std::numbers::pi / 180) /
                   reference::bending_length(87 * std::numbers::pi / 180),

@@ -1,6 +1,6 @@
 #pragma once
 
-// A plain sheet, and every metric of a motion that a test makes up.
+// Plain sheet, and all metrics of a motion that a test prescribes.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ namespace taut {
 
 using Values = std::map<std::string, double>;
 
-/// A sheet of n x n vertices, 1 m x 1 m in the plane y = 0, all links, 3 s in steps of 1/64 s.
+/// Sheet of n x n vertices, 1 m x 1 m in the plane y = 0, all families of links, 3 s in steps of
+/// 1/64 s.
 inline Scene sheet(int n = 11) {
   Scene scene;
   scene.mesh =
@@ -27,7 +28,7 @@ inline Scene sheet(int n = 11) {
   return scene;
 }
 
-/// Every value of every metric that applies, for the motion x(step).
+/// Every value of every applicable metric for the motion x(step).
 template <class Motion>
 Values measure(const Scene& scene, const Motion& motion) {
   Values values;
@@ -50,7 +51,7 @@ inline Values measure_at_rest(const Scene& scene, const State& state) {
   return measure(scene, [&](int) { return state; });
 }
 
-/// Of a point from a surface [m], negative inside.
+/// Distance of a point from a surface [m], negative inside.
 inline double signed_distance(const Shape& shape, const Vec3& p) {
   if (const auto* plane = std::get_if<Plane>(&shape)) return plane->normal.dot(p) - plane->offset;
   if (const auto* ball = std::get_if<Ball>(&shape)) return (p - ball->center).norm() - ball->radius;

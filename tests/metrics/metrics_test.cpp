@@ -1,4 +1,4 @@
-// Metrics on states whose answers are known in closed form, and the symmetries that all obey.
+// Metrics on states with answers in closed form, and the symmetries that all metrics obey.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,8 +79,8 @@ TEST(Stretch, OfAUniformStretchIsOnePercentByEveryMeasure) {
   EXPECT_NEAR(v.at("area.total"), 1.01 * 1.01 - 1, 1e-12);
 }
 
-// n links strained by 1, 2, ..., n per mille, every other one shortened, in no order; all strains
-// grow from nothing to this at the end.
+// The n links are strained by 1, 2, ..., n per mille in irregular order, every other one shortened.
+// All strains grow from zero to these values at the end.
 TEST(Stretch, ThePercentileIsWhat95PercentDoNotExceed) {
   for (const int n : {1, 7, 19, 20, 21, 39, 40, 60}) {
     Scene scene = sheet(2);
@@ -90,7 +90,7 @@ TEST(Stretch, ThePercentileIsWhat95PercentDoNotExceed) {
     const auto v = measure(scene, [&](int step) {
       State state = scene.start;
       for (int k = 0; k < n; ++k) {
-        const int rank = k * 11 % n + 1;  // 11 has no common factor with any n
+        const int rank = k * 11 % n + 1;  // 11 is coprime with every n
         const double strain = (rank % 2 ? 1e-3 : -1e-3) * rank * step / scene.steps;
         const auto i = static_cast<std::size_t>(k);
         state.x[i + 1] = state.x[i] + (1 + strain) * (scene.start.x[i + 1] - scene.start.x[i]);
@@ -99,7 +99,7 @@ TEST(Stretch, ThePercentileIsWhat95PercentDoNotExceed) {
     });
     int rank = 1;
     while (100 * rank < 95 * n) ++rank;
-    // ten moments, six steps apart, the last one among them: 27 steps before the end on average
+    // ten moments, six steps apart up to the last step: 27 steps before the end on average
     EXPECT_NEAR(v.at("stretch.p95"), 1e-3 * rank * (192 - 27) / 192, 1e-12) << n;
     EXPECT_NEAR(v.at("structural.p95"), v.at("stretch.p95"), 1e-15) << n;
     EXPECT_TRUE(std::isnan(v.at("shear.p95")));
@@ -127,7 +127,7 @@ TEST(Stretch, KeepsFamiliesAndSignsApart) {
 
 TEST(Stretch, ShearCollapseLosesAreaWithoutStrain) {
   const Scene scene = sheet();
-  const double angle = std::numbers::pi / 6;  // between the sides, was 90 degrees
+  const double angle = std::numbers::pi / 6;  // between the sides; 90 degrees at rest
   State state = scene.start;
   for (Vec3& x : state.x) x = {x.x() + x.z() * std::cos(angle), 0, x.z() * std::sin(angle)};
   const Values v = measure_at_rest(scene, state);
@@ -137,7 +137,7 @@ TEST(Stretch, ShearCollapseLosesAreaWithoutStrain) {
 
 TEST(Stretch, MeansAreOverTheLastSecondAndPeaksOverTheRun) {
   const Scene scene = sheet(3);
-  const auto v = measure(scene, [&](int step) {  // 20 % at 1 s, then 1 % and 3 % in turn
+  const auto v = measure(scene, [&](int step) {  // 20 % at 1 s, then alternately 1 % and 3 %
     State state = scene.start;
     for (Vec3& x : state.x) x *= step == 64 ? 1.2 : step % 2 ? 1.01 : 1.03;
     return state;
@@ -159,7 +159,7 @@ TEST(Energy, OfAFallingBodyIsConserved) {
   });
   EXPECT_NEAR(v.at("energy.mean"), 0, 1e-12);
   EXPECT_NEAR(v.at("energy.peak"), 0, 1e-12);
-  double kinetic = 0;  // g t^2/(2 L), mean over the last second
+  double kinetic = 0;  // g t^2/(2 L), averaged over the last second
   for (int step = 129; step <= 192; ++step)
     kinetic += 9.81 * std::pow(step * scene.dt, 2) / (2 * std::sqrt(2.0)) / 64;
   EXPECT_NEAR(v.at("energy.kinetic"), kinetic, 1e-9);
@@ -205,7 +205,7 @@ TEST(Jitter, IsTheSpeedOfFreeVerticesAndSettlingItsEnd) {
   const auto v = measure(scene, [&](int step) {
     State state = scene.start;
     for (Vec3& u : state.v) u.x() = step <= 96 ? 0.006 : 0.004;
-    state.v[0].x() = 1000;  // a pin that a solver reports as moving is not jitter
+    state.v[0].x() = 1000;  // motion of a pin, as a solver might report it, is not jitter
     return state;
   });
   EXPECT_NEAR(v.at("jitter.rms"), 0.004, 1e-12);
@@ -216,7 +216,8 @@ TEST(Jitter, IsTheSpeedOfFreeVerticesAndSettlingItsEnd) {
 TEST(Settle, IsWhenTheLastRestBeginsOfEveryVertex) {
   Scene scene = sheet(3);
   scene.pins = {0};
-  const auto when = [&](double first, double second) {  // ways of one vertex at steps 40 and 70
+  // displacements of one vertex at steps 40 and 70
+  const auto when = [&](double first, double second) {
     return measure(scene,
                    [&](int step) {
                      State state = scene.start;
@@ -237,11 +238,11 @@ TEST(Jitter, IsTheRmsOverVerticesAndTimeAndTheFastest) {
   scene.pins = {0};
   const auto v = measure(scene, [&](int step) {
     State state = scene.start;
-    for (std::size_t i = 0; i < 9; ++i)  // before the last second a hundred times as fast
+    for (std::size_t i = 0; i < 9; ++i)  // a hundred times as fast before the last second
       state.v[i].z() = 1e-3 * static_cast<double>(i) * (step <= 128 ? 100 : step % 2 ? 1 : 3);
     return state;
   });
-  const double over_vertices = 204.0 / 8;  // of i^2, i = 1 .. 8
+  const double over_vertices = 204.0 / 8;  // mean of i^2, i = 1 .. 8
   EXPECT_NEAR(v.at("jitter.rms"), 1e-3 * std::sqrt(over_vertices * (1 + 9) / 2), 1e-12);
   EXPECT_NEAR(v.at("jitter.max"), 24e-3, 1e-12);
 }
@@ -264,7 +265,7 @@ TEST(SelfIntersection, OfAFlapThatFoldsThroughTheSheet) {
   Values v = measure_at_rest(scene, scene.start);
   EXPECT_EQ(v.at("self.crossings"), 0);
   EXPECT_EQ(v.at("self.gap"), 0);
-  State state = scene.start;  // the last row is bent back, below the first
+  State state = scene.start;  // the last row is folded back below the first
   for (int i = 0; i < 5; ++i) {
     state.x[static_cast<std::size_t>(15 + i)] += Vec3(0.01, 0.2, -0.3);
     state.x[static_cast<std::size_t>(20 + i)] += Vec3(0.01, -0.2, -0.9);
@@ -277,19 +278,19 @@ TEST(SelfIntersection, OfAFlapThatFoldsThroughTheSheet) {
   EXPECT_NEAR(measure_at_rest(scene, state).at("self.gap"), 0.03 - 0.1, 1e-12);
 }
 
-// Balls that overlap at rest are not deep in each other for that: what they lack of that distance
-// is.
+// Balls that overlap at rest are not self-penetration in themselves; only a distance below that at
+// rest counts.
 TEST(SelfIntersection, BallsThatOverlapAtRestAreNearerThanAtRest) {
   Scene scene = sheet(5);
-  scene.self_collision = SelfCollision{.radius = 0.2};  // 0.25 m apart
+  scene.self_collision = SelfCollision{.radius = 0.2};  // particles are 0.25 m apart
   EXPECT_EQ(measure_at_rest(scene, scene.start).at("self.gap"), 0);
   State state = scene.start;
   state.x[12] += 0.1 * (state.x[13] - state.x[12]);
   EXPECT_NEAR(measure_at_rest(scene, state).at("self.gap"), -0.025, 1e-12);
 }
 
-// 192 steps: the run is looked at each 9 steps, the last second (64 steps) each 6 back from the
-// end.
+// Of 192 steps every 9th is examined; of the last second (64 steps) every 6th, counted back from
+// the end.
 TEST(SelfIntersection, IsLookedForAtTwentyMomentsOfTheRun) {
   Scene scene = sheet(5);
   scene.self_collision = SelfCollision{.radius = 0.05};
@@ -317,12 +318,12 @@ TEST(SelfIntersection, IsLookedForAtTwentyMomentsOfTheRun) {
   EXPECT_EQ(folded_at(28).at("self.crossings.peak"), 0) << "between two of those moments";
 }
 
-// Layers in one plane cross nowhere: without collision a fold that has come to rest would look
-// like a cloth that never passed through itself.
+// Coplanar layers do not intersect: without this check a fold at rest without self-collision would
+// look like a cloth that never passed through itself.
 TEST(SelfIntersection, CountsLayersThatCoincide) {
   Scene scene = sheet(5);
   scene.self_collision = SelfCollision{.radius = 0.05};
-  State folded = scene.start;  // the last two rows lie on the first two, half a cell aside
+  State folded = scene.start;  // the last two rows lie on the first two, shifted by half a cell
   for (std::size_t i = 15; i < 25; ++i) {
     folded.x[i].x() += 0.11;
     folded.x[i].z() = 1 - folded.x[i].z();
@@ -340,7 +341,7 @@ TEST(SelfIntersection, CountsLayersThatCoincide) {
   EXPECT_EQ(lifted(0.1).at("self.crossings"), 0);
 }
 
-/// The scene as seen after a rigid motion of the whole world.
+/// The scene after a rigid motion of the whole world.
 struct Rigid {
   Eigen::Quaterniond turn{Eigen::AngleAxisd(0.8, Vec3(1, 2, -0.5).normalized())};
   Vec3 shift{0.3, -0.7, 1.1};
@@ -374,9 +375,9 @@ struct Rigid {
   }
 };
 
-/// A scene with everything, and states that violate everything. The rest shape is left alone by
-/// Rigid: metrics use its distances, and its bounding box as a unit.
-/// Nothing in it is symmetric, so that no vertex is equally near to two sides.
+/// Scene with every feature, whose states violate every constraint. Rigid leaves the rest shape
+/// alone: metrics use its distances, and its bounding box as a unit. Nothing is symmetric, so that
+/// no vertex is equally near to two sides.
 Scene busy_scene() {
   Scene scene = sheet(6);
   scene.pins = {0, 5};
@@ -395,7 +396,7 @@ Scene busy_scene() {
 std::vector<State> noisy_states(const Scene& scene) {
   std::mt19937 random(7);
   std::normal_distribution<> noise(0, 0.08);
-  const auto draw = [&] {  // braces: from left to right, whatever the compiler
+  const auto draw = [&] {  // braces evaluate from left to right with every compiler
     return Vec3{std::array{noise(random), noise(random), noise(random)}.data()};
   };
   std::vector<State> states;
@@ -422,21 +423,21 @@ TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
   const References known = known_references(scene);
   ASSERT_TRUE(known.rest && !known.motion.empty());
   scene.dt = 0.1;
-  scene.steps = 10;  // neither matters
+  scene.steps = 10;  // both differ from the reference's, which does not matter
   const auto pins = [&](std::size_t i) {
     return std::ranges::count(scene.pins, static_cast<int>(i));
   };
   const auto motion = [&](int step) {
     State state{step == 5 ? known.motion[0].x : known.rest->x, scene.start.v};
     for (std::size_t i = 0; i < state.x.size(); ++i) {
-      if (pins(i)) state.x[i] += Vec3(0, 0, 5);  // which the scene moves, not the solver
+      if (pins(i)) state.x[i] += Vec3(0, 0, 5);  // pins are moved by the scene, not by the solver
       if (step != 5) state.x[i] += Vec3(0, 0.03, -0.04);
     }
     return state;
   };
   const Values v = measure(scene, motion);
   EXPECT_EQ(v.at("reference.motion"), 0);
-  EXPECT_GT(v.at("reference.max"), 0.05);  // at step 5, where it should not rest yet
+  EXPECT_GT(v.at("reference.max"), 0.05);  // at step 5, where the cloth is not at rest yet
   EXPECT_EQ(v.at("reference.floor"), known.rest->floor);
   EXPECT_EQ(v.at("reference.motion_floor"), known.motion[0].floor);
   scene.steps = 4;
@@ -444,11 +445,12 @@ TEST(ReferenceDistance, IsThatFromTheCommittedStates) {
   const Values end = measure(scene, [&](int) { return motion(1); });
   EXPECT_NEAR(end.at("reference.rms"), 0.05, 1e-15);
   EXPECT_NEAR(end.at("reference.max"), 0.05, 1e-15);
-  scene.mesh.mass[3] *= 2;  // another cloth: nothing is known of it
+  scene.mesh.mass[3] *= 2;  // another cloth, which has no reference
   EXPECT_FALSE(measure(scene, motion).contains("reference.rms"));
 }
 
-/// Of elastic cloth too: springs integrated explicitly by another program, 2 % softer ones, none.
+/// Elastic cloth has references of its own: springs that another program integrates explicitly
+/// reproduce them, and springs that are 2 % softer do not.
 TEST(ReferenceMotion, OfElasticClothIsThatOfItsStiffness) {
   const auto error = [](const std::string& solver) {
     const Scene scene =
@@ -485,10 +487,10 @@ TEST(Metrics, DoNotCareWhereTheWorldIs) {
 
 TEST(Metrics, DoNotCareHowVerticesAreNumbered) {
   Scene scene = busy_scene();
-  scene.mesh.grid.reset();  // which numbers them
+  scene.mesh.grid.reset();  // the grid numbers the vertices
   const auto states = noisy_states(scene);
   const int n = scene.mesh.size();
-  const auto to = [n](int i) { return (i * 7 + 3) % n; };  // 7 and 36 have no common factor
+  const auto to = [n](int i) { return (i * 7 + 3) % n; };  // 7 and 36 are coprime
   const auto permuted = [&](const auto& values) {
     auto result = values;
     for (int i = 0; i < n; ++i)

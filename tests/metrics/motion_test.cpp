@@ -1,4 +1,4 @@
-// Metrics of motion on states whose answers are known in closed form.
+// Metrics of motion on states with answers in closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A sheet thrown with a spin about its centre, as a rigid body: the closed form at time t.
+/// State at time t of a sheet thrown with a spin about its centre, as a rigid body in closed form.
 State thrown(const Scene& scene, double t, const Vec3& gravity, double spin) {
   const Vec3 center(0.5, 0, 0.5), throws(1, 2, -0.5), axis = Vec3(0, 1, 0);
   State state = scene.start;
@@ -65,8 +65,9 @@ TEST(Momentum, NeedsFreeFlightAndASpin) {
   for (const Scene& s : {pinned, plane, windy, damped}) EXPECT_TRUE(absent(s));
 }
 
-/// A body whose swings k = 0, 1, ... take `period` steps each: kinetic energy from 0 to `kinetic`
-/// and back, total energy from -k loss to -(k + 1) loss, both in J.
+/// State of a body with swings k = 0, 1, ... of `period` steps each. In a swing the kinetic energy
+/// rises from 0 to `kinetic` and falls again, and the total energy goes from -k loss to -(k + 1)
+/// loss [J].
 State swinging(const Scene& scene, int step, int period, double kinetic, double loss) {
   const double mass = 0.5, at = static_cast<double>(step) / period,
                moves = kinetic * std::pow(std::sin(pi * at), 2), total = -loss * at;
@@ -80,7 +81,7 @@ TEST(EnergyLoss, IsThatBetweenTurningPoints) {
   const Scene scene = sheet(3);
   for (const double loss : {0.0, 0.1, -0.05}) {
     const Values v = measure(scene, [&](int step) { return swinging(scene, step, 40, 0.8, loss); });
-    EXPECT_NEAR(v.at("energy.loss"), loss / 0.8, 1e-12);  // four whole swings, and a part
+    EXPECT_NEAR(v.at("energy.loss"), loss / 0.8, 1e-12);  // four whole swings and a fraction
   }
 }
 
@@ -88,7 +89,7 @@ TEST(EnergyLoss, IgnoresRipplesAndNeedsAWholeSwing) {
   const Scene scene = sheet(3);
   const auto rippled = measure(scene, [&](int step) {
     State state = swinging(scene, step, 48, 0.8, 0.1);
-    if (step % 48 == 20)  // down to half of the largest, and back: no turning point
+    if (step % 48 == 20)  // falls to half of the maximum and rises again: not a turning point
       for (Vec3& v : state.v) v *= std::sqrt(0.5);
     return state;
   });
@@ -112,7 +113,7 @@ TEST(EnergyLoss, IsNotOfClothThatTremblesOrSinks) {
   EXPECT_TRUE(std::isnan(loss(0.8, 0.88)));
 }
 
-// Two weights that hang on a spring each, let go at its rest length: u'' = g - u K/m.
+// Two weights, each on a spring, released at its rest length: u'' = g - u K/m.
 TEST(Energy, HoldsThatOfElasticLinks) {
   Scene scene = sheet(2);
   const auto u_of = [&](const State& s) { return Vec3(s.x[2] - s.x[0]); };
@@ -138,14 +139,15 @@ TEST(Pins, CarryTheWeightAndTheCentripetalForce) {
   Scene scene = sheet(3);
   scene.pins = {4};
   EXPECT_NEAR(measure_at_rest(scene, scene.start).at("pins.force"), 1, 1e-12);
-  // Lifted ever faster at 2 m/s^2: the free share 0.75 of the mass takes 2/9.81 of its weight more.
+  // Lifted with an acceleration of 2 m/s^2, the free share 0.75 of the mass adds 2/9.81 of its
+  // weight.
   const auto lifted = [&](int step) {
     State state = scene.start;
     for (Vec3& v : state.v) v.y() = 2 * step * scene.dt;
     return state;
   };
   EXPECT_NEAR(measure(scene, lifted).at("pins.force"), 1 + 0.75 * 2 / 9.81, 1e-12);
-  // With damping the velocity that is kept is what it would be without pins and gravity.
+  // With damping, the damped velocity is what the cloth would have without pins and gravity.
   scene.damping = 2;
   scene.gravity = {0, -9.81, 0};
   const double keep = std::exp(-2 * scene.dt);
@@ -163,7 +165,8 @@ TEST(Pins, CarryTheWeightAndTheCentripetalForce) {
 TEST(Principal, OfUniformStrainsAreItsSingularValues) {
   const Scene scene = sheet(5);
   const double c = std::cos(0.4), s = std::sin(0.4);
-  const auto under = [&](const Eigen::Matrix2d& f) {  // in the plane of the sheet, turned out of it
+  // deformation f within the sheet's plane, which is rotated in space
+  const auto under = [&](const Eigen::Matrix2d& f) {
     State state = scene.start;
     for (std::size_t i = 0; i < state.x.size(); ++i) {
       const Eigen::Vector2d p = f * Eigen::Vector2d(scene.mesh.rest[i].x(), scene.mesh.rest[i].z());
@@ -180,7 +183,7 @@ TEST(Principal, OfUniformStrainsAreItsSingularValues) {
     EXPECT_NEAR(v.at(std::string("principal.bias") + rank),
                 1 - std::sqrt((1.1 * 1.1 + 0.8 * 0.8) / 2), 1e-12);
   }
-  // Simple shear by k strains no thread along u; sigma = sqrt(1 + k^2/4) +- k/2.
+  // Simple shear by k does not strain threads along u; sigma = sqrt(1 + k^2/4) +- k/2.
   const double k = 0.6;
   v = under((Eigen::Matrix2d() << 1, k, 0, 1).finished());
   EXPECT_NEAR(v.at("principal.first.max"), std::sqrt(1 + k * k / 4) + k / 2 - 1, 1e-12);
@@ -223,15 +226,15 @@ TEST(SelfIntersection, HasTheLengthOfTheLinesAlongWhichFacesCross) {
   scene.links.clear();
   scene.start = {scene.mesh.rest, std::vector<Vec3>(6, Vec3::Zero())};
   scene.self_collision = SelfCollision{.radius = 0.01};
-  // In the plane z = 0 the second face is the line x = 1 from y = 0.5 to 2.75; the first one's hem
-  // x + y = 3 cuts it at y = 2.
+  // In the plane z = 0 the second face is the line x = 1 from y = 0.5 to 2.75. The hem of the first
+  // face, x + y = 3, cuts it at y = 2.
   EXPECT_NEAR(measure_at_rest(scene, scene.start).at("self.contour"), 1.5, 1e-12);
   State apart = scene.start;
   for (const std::size_t i : {3u, 4u, 5u}) apart.x[i].z() += 1.5;
   EXPECT_EQ(measure_at_rest(scene, apart).at("self.contour"), 0);
 }
 
-/// Every vertex goes its own way, to and fro.
+/// Positions of vertices that oscillate independently.
 std::vector<Vec3> swaying(const Scene& scene, double t) {
   std::vector<Vec3> x = scene.start.x;
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -266,7 +269,7 @@ TEST(ReferencePath, HasThePhaseOfAMotionThatIsLateOrEarly) {
   for (const double late : {0.1, 0.25, -0.2})
     EXPECT_NEAR(along(scene, {0.5, 1, 1.5}, [&](double t) { return t - late; }).phase(), late,
                 2e-4);
-  // Within a step, too: a straight path has no error of interpolation.
+  // Within a step as well, a straight path has no interpolation error.
   std::vector<Reference> known{{"", "", "motion", 0.5, "", 0, scene.start.x}};
   for (Vec3& x : known[0].x) x += Vec3(0.5, 0, 0);
   ReferencePath path(scene, known);
@@ -292,7 +295,7 @@ TEST(ReferencePath, OfASlowedAndOfAFrozenClothIsAShare) {
   EXPECT_EQ(slowed(0).error(), 1);
   EXPECT_TRUE(std::isnan(slowed(0).phase()));
   EXPECT_EQ(slowed(0.01).phase(), 0.5) << "at least the longest shift that is looked at";
-  scene.steps = 60;  // the run ends before the second moment, and too soon to look for a delay
+  scene.steps = 60;  // the run ends before the second moment and is too short to search for a delay
   EXPECT_EQ(slowed(1).horizon(), 0.5);
   EXPECT_TRUE(std::isnan(slowed(1).phase()));
   scene.steps = 30;
@@ -304,7 +307,7 @@ Scene shipped(const std::string& name, const SceneSettings& set) {
       std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes" / (name + ".toml"), set);
 }
 
-// What a strain metric alone cannot see: a cloth that hangs frozen in the air has no strain.
+// A strain metric alone misses this: a cloth that hangs frozen in the air has no strain.
 TEST(MotionBesideStrain, AFrozenClothIsFirstInStrainAndLastInMotion) {
   const Scene scene = shipped("swing", {"time.duration=2.5"});
   const Values frozen = measure_at_rest(scene, scene.start);
@@ -328,7 +331,7 @@ TEST(MotionBesideStrain, OfAReferenceThatStaysNearTheStartIsNotJudged) {
     EXPECT_TRUE(std::isnan(v.at(name))) << name;
 }
 
-/// A chain in its lowest mode with this damping ratio, in closed form.
+/// Values of a chain in its lowest mode with this damping ratio, in closed form.
 Values in_mode(double ratio, double slower, double scale = 0.05) {
   const int n = 16;
   Scene scene = sheet(2);
@@ -363,7 +366,8 @@ TEST(Mode, OfADampedSwingHasItsDampingRatioAndPeriod) {
 }
 
 TEST(Mode, SeesNothingOfHigherModes) {
-  const int n = 16;  // a sheet whose rows weigh as much as those of the chain, in other columns
+  // a sheet whose rows weigh as much as the chain's vertices, in columns of other weights
+  const int n = 16;
   Scene scene = sheet(2);
   scene.mesh = make_sheet({.nu = 3, .nv = n + 1, .width = 0.5, .height = 1, .mass = 1});
   for (int j = 0; j <= n; ++j)

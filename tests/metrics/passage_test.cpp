@@ -1,4 +1,4 @@
-// Passages through colliders that move and turn, against ten thousand points of each way.
+// Passages through moving and turning colliders, against ten thousand sample points on each path.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ Vec3 center(const Collider& collider) {
   return ball ? ball->center : Vec3(Vec3::Zero());
 }
 
-// What was free at the start of a straight way in the collider's own frame goes in by the side that
-// it meets first and comes out by another one, seen at ten thousand points of the way.
+// A vertex that is outside at the start of a straight path in the collider's frame enters by the
+// first side on its path and leaves by another. The path is sampled at ten thousand points.
 TEST(Definitions, Tunnelling) {
   Draw draw(5);
   Scene scene = sheet(8);
@@ -32,7 +32,7 @@ TEST(Definitions, Tunnelling) {
       {.shape = Capsule{.from = {0.9, 0.2, 0.1}, .to = {1.1, -0.5, 0.4}, .radius = 0.25},
        .motion = {.velocity = {-0.4, 0, 0.6}, .spin = {0.9, 0.3, -0.6}, .pivot = {1, 0, 0}}}};
   std::vector<State> states(13, scene.start);
-  for (std::size_t i = 0; i < scene.start.x.size(); ++i)  // none begins inside
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i)  // no vertex starts inside
     for (State& state : states) do
         state.x[i] = Vec3(0.5, 0, 0.5) + draw.vector(1.2);
       while (&state == &states[0] && std::ranges::any_of(scene.colliders, [&](const Collider& c) {
@@ -46,14 +46,14 @@ TEST(Definitions, Tunnelling) {
       const Shape shape = shape_at(collider, step * scene.dt);
       const Vec3& x = states[to_index(step)].x[i];
       if (const auto* ball = std::get_if<Ball>(&shape)) return x - ball->center;
-      if (std::holds_alternative<Capsule>(shape))  // as it stood at the start
+      if (std::holds_alternative<Capsule>(shape))  // with the axis as at the start
         return collider.motion.pivot +
                collider.motion.rotation(step * scene.dt).inverse() *
                    (x - collider.motion.displacement(step * scene.dt) - collider.motion.pivot);
       const Box& box = std::get<Box>(shape);
       return box.rotation.inverse() * (x - box.center);
     };
-    const auto side = [&](const Vec3& p) -> Vec3 {  // outward, of a point at the surface
+    const auto side = [&](const Vec3& p) -> Vec3 {  // outward normal at a point of the surface
       const auto* box = std::get_if<Box>(&collider.shape);
       if (!box) return surface(collider.shape, p + center(collider)).normal;
       Eigen::Index axis;

@@ -1,4 +1,4 @@
-// What a metric sees of the path between two step boundaries.
+// What metrics see of the path between two step boundaries.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace taut::path_test {
 namespace {
 
-/// A ball or a box that runs at 32 m/s into the hanging sheet of moving-ball.
+/// Moving-ball with a ball or a box that runs at 32 m/s into the hanging sheet.
 Scene fast(const std::string& collider, const std::string& dt) {
   return load_scene(
       std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/moving-ball.toml",
@@ -33,8 +33,8 @@ Outcome outcome(const Scene& scene, const std::string& solver) {
           record.values.at("tunnelling.events")};
 }
 
-// Judged by the step's ends alone, vertices that a ball pushed aside within a step went through it:
-// 32 of them with four substeps at 1/64 s, none with one at 1/256 s.
+// Judged by the ends of steps alone, vertices that a ball pushed aside within a step would have
+// passed through it: 32 of them with four substeps at 1/64 s, none with one at 1/256 s.
 TEST(Path, TheSameMotionTunnelsAsOftenInAnySteps) {
   for (const char* collider :
        {"type = \"ball\", radius = 0.15", "type = \"box\", half_extents = [0.15, 0.15, 0.15]"})
@@ -48,14 +48,14 @@ TEST(Path, TheSameMotionTunnelsAsOftenInAnySteps) {
     }
 }
 
-// The other way round: what does pass through within a step is still seen.
+// Conversely, a vertex that does pass through within a step is still detected.
 TEST(Path, APlateThinnerThanASubstepsTravelIsPassed) {
   const Scene scene =
       load_scene(std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/scenes/tunnel.toml", {});
   EXPECT_EQ(outcome(scene, "jakobsen:contact=discrete,substeps=4").tunnelled, 289);
 }
 
-/// Way of the references at t [m]: along a line, as fast as the time is long.
+/// Displacement of the references at t [m]: along a line, at constant velocity.
 Vec3 way(double t) { return t * Vec3(0.3, -0.9, 0.4); }
 
 ReferencePath followed(double dt, const std::function<Vec3(double)>& way_at) {
@@ -76,7 +76,8 @@ ReferencePath followed(double dt, const std::function<Vec3(double)>& way_at) {
   return path;
 }
 
-// References are of moments that few time steps meet: on a line the time step changes nothing.
+// References are at moments that few time steps coincide with; on a straight line the time step
+// makes no difference.
 TEST(Path, ALineIsJudgedAtTheReferencesTimes) {
   for (const double dt : {1.0 / 64, 0.03, 0.07, 0.19, 0.3}) {
     for (const double faster : {0.5, 1.0, 1.5}) {

@@ -1,4 +1,4 @@
-// What is judged at the end of a run, and how a quantity is summed up there.
+// Values judged at the end of a run, and how quantities are summed up there.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,7 +65,7 @@ TEST(Summary, LeavesTheStartOut) {
   EXPECT_EQ(s.peak(), -7);
 }
 
-// A value that is recorded over time is one at every moment; any other never is.
+// A value declared as recorded over time exists at every moment; no other value does.
 TEST(Metrics, SayWhichValuesTheyHaveAtEveryMoment) {
   Scene scene = sheet(4);
   scene.pins = {0};
@@ -81,7 +81,7 @@ TEST(Metrics, SayWhichValuesTheyHaveAtEveryMoment) {
     auto metric = entry->make(scene);
     const Scene& seen = metric ? scene : slides;
     if (!metric) metric = entry->make(slides);
-    if (!metric) continue;  // of scenes with references
+    if (!metric) continue;  // a metric of scenes with references
     for (const int step : {0, 1}) metric->observe({step, step * seen.dt, seen.start});
     const std::vector<double> now = metric->now({1, seen.dt, seen.start});
     for (std::size_t k = 0; k < now.size(); ++k)

@@ -1,5 +1,5 @@
-// A body that deforms, between two moments: places between frames, the first triangle on the way of
-// a point while all move, and where the surface takes what lies on it.
+// Deforming body between two moments: positions between frames, the first triangle on the path of a
+// moving point, and the motion of things that lie on the surface.
 #include "core/model/deforming_body.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 class Random {
  public:
-  double number() {  // -1 to 1
+  double number() {  // in [-1, 1]
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     return static_cast<double>(state_ >> 11) * 0x1p-52 - 1;
   }
@@ -28,7 +28,7 @@ class Random {
   std::uint64_t state_ = 1;
 };
 
-/// One that swells, leans and turns from frame to frame.
+/// Positions of a body that swells, leans and turns from frame to frame.
 std::vector<Vec3> bent(const std::vector<Vec3>& x, double s) {
   const Eigen::AngleAxisd turn(0.3 * s, Vec3(1, 2, 1).normalized());
   std::vector<Vec3> y;
@@ -57,7 +57,8 @@ TEST(BodyFrames, AreLinearBetweenAndRestAtTheEnd) {
   for (const double t : {0.5, 0.75, 1e6}) EXPECT_EQ(frames.at(t)[0], Vec3(1, 4, 3));
 }
 
-/// The height of a point over a triangle times twice its area, and whether it is above it.
+/// Height of a point over a triangle times twice the triangle's area, and whether the point is
+/// above it.
 std::pair<double, bool> height(const Corners& t, const Vec3& p) {
   const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
   bool above = true;
@@ -66,8 +67,8 @@ std::pair<double, bool> height(const Corners& t, const Vec3& p) {
   return {n.dot(p - t[0]), above};
 }
 
-/// What is seen at so many moments: the shares after which a point is on another side of the plane,
-/// within the triangle.
+/// Shares of the motion after which the point is on the other side of the plane, within the
+/// triangle, found by sampling `moments` moments.
 std::vector<double> seen_passes(const Corners& before, const Corners& after, const Vec3& from,
                                 const Vec3& to, int moments) {
   std::vector<double> all;
@@ -94,7 +95,7 @@ TEST(TrianglePasses, AreThoseThatAreSeenAtManyMoments) {
     const auto seen = seen_passes(before, after, from, to, kMoments);
     ASSERT_LE(all.size(), 3u);
     ++with[all.size()];
-    if (all.size() != seen.size()) {  // at an edge, or two within one moment
+    if (all.size() != seen.size()) {  // at an edge, or two passes within one moment
       ++differ;
       continue;
     }
@@ -130,7 +131,7 @@ TEST(TrianglePasses, OfATriangleAtRestAreItsHits) {
   }
 }
 
-/// By a look at all triangles.
+/// First hit, by a search of all triangles.
 std::optional<MeshHit> first_of_all(const DeformingBody& body, const Vec3& from, const Vec3& to) {
   std::optional<MeshHit> first;
   const auto& triangles = body.after().triangles();
@@ -166,7 +167,7 @@ TEST(DeformingBody, FindsTheFirstTriangleOnTheWay) {
   EXPECT_GT(found, 100);
 }
 
-// Whoever is outside before and inside after has come through the surface, and nothing comes in
+// A point that is outside before and inside after has passed the surface, and no point slips in
 // between two triangles.
 TEST(DeformingBody, NothingComesInWithoutAHit) {
   DeformingBody body(bending(torus(0.5, 0.2, 24, 12), 3, 10));
@@ -188,7 +189,7 @@ TEST(DeformingBody, IsWhatShapeAtSaysAtEitherEnd) {
   const Collider collider = bending(torus(0.5, 0.2, 12, 8), 4, 10);
   DeformingBody body(collider);
   Random random;
-  for (const double t : {0.0, 0.1, 0.13, 0.31, 0.2, 0.5}) {  // in order, and not
+  for (const double t : {0.0, 0.1, 0.13, 0.31, 0.2, 0.5}) {  // in order, and out of order
     body.move(t, t + 0.1);
     const Shape before = shape_at(collider, t), after = shape_at(collider, t + 0.1);
     for (int n = 0; n < 100; ++n) {
@@ -201,7 +202,7 @@ TEST(DeformingBody, IsWhatShapeAtSaysAtEitherEnd) {
   }
 }
 
-// Where the body turns as a whole, so does whatever is fixed to any of its triangles.
+// Where the body turns as a whole, things fixed to its triangles turn with it.
 TEST(DeformingBody, FramesOfARigidMotionCarryAsItDoes) {
   const Triangles shape = torus(0.5, 0.2, 12, 8);
   Collider collider{.shape = MeshBody{shape.mesh(), {0.1, 0.2, 0.3}}};

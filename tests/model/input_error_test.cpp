@@ -1,4 +1,4 @@
-// What errors print of texts from outside.
+// How errors print texts from outside.
 #include "core/model/input_error.hpp"
 
 #include <gtest/gtest.h>
@@ -36,8 +36,8 @@ TEST(Suggestion, IsForNamesAndNotForDocuments) {
   EXPECT_NE(suggestion(std::string(200, 'x'), {std::string(199, 'x')}), "");
 }
 
-// Two slips at most, or one for each three letters: a letter too many, too few or another one, or
-// two neighbours swapped.
+// At most two slips, or one per three letters. A slip is an extra letter, a missing or a wrong one,
+// or two swapped neighbours.
 TEST(Suggestion, IsTheNearestNameWithinAFewSlips) {
   const auto near = [](const std::string& word, const std::string& name) {
     return !suggestion(word, {name}).empty();

@@ -1,5 +1,4 @@
-// Parameters: which values are taken and how they are written, and what is said of others; solvers
-// by their texts.
+// Parameters: accepted values, their spelling and errors in others; solvers by their texts.
 #include "core/model/params.hpp"
 
 #include <gtest/gtest.h>
@@ -132,7 +131,7 @@ TEST(SolverTexts, AreReadWithErrorsCountedFromTheFirstCharacter) {
             "xpdb:bend=1,2: column 13: expected key=value, got '2'");
 }
 
-/// What a solver says that nothing asked it.
+/// Solver without optional answers.
 struct Silent final : Solver {
   void load(const State&) override {}
   void step(double, double) override {}

@@ -1,4 +1,5 @@
-// The table of keys: what it says of each, and that what is a member of a scene counts.
+// The table of keys: its entries, and that every member of a scene that has a key counts in its
+// content.
 #include "core/model/scene_keys.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +45,7 @@ template <class Enumeration>
 requires std::is_enum_v<Enumeration>
 void move(Enumeration& value) { value = static_cast<Enumeration>(value == Enumeration{} ? 1 : 0); }
 
-/// One with everything that a key may be a member of.
+/// Scene that has every optional part to which keys belong.
 Scene scene_of_all() {
   Scene scene;
   scene.wind.emplace();
@@ -58,7 +59,7 @@ Scene scene_of_all() {
   return scene;
 }
 
-/// The parts of a scene that have keys, with the section of each.
+/// Calls visit for each part of a scene that has keys, with its section.
 template <class Visit>
 void each_part(Scene& scene, const Visit& visit) {
   visit("forces", scene);
@@ -104,8 +105,8 @@ TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
   EXPECT_GE(counted.size(), 19u);
 }
 
-// Any key may have been the one that came later: a scene at its default then has the content that
-// it had before there was the key, and any other value has a content of its own.
+// Tests each key as if it had been added later. A scene with the key's default then has the content
+// from before the key, and every other value has a content of its own.
 TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
   const std::vector<SceneKey> known(scene_keys().begin(), scene_keys().end());
   const Scene initial = scene_of_all();
@@ -116,7 +117,7 @@ TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
     now[k] = known[k].came_later(5);
     EXPECT_EQ(content(initial, now), content(initial, before)) << known[k].path;
     EXPECT_TRUE(later_keys(initial, now).empty()) << known[k].path;
-    if (content(initial) == content(initial, before)) continue;  // no member of a scene
+    if (content(initial) == content(initial, before)) continue;  // not a member of a scene
     Scene scene = initial;
     bool moved = false;
     each_part(scene, [&](const char* section, auto& part) {
@@ -140,7 +141,7 @@ TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
   EXPECT_GE(later, 19u);
 }
 
-// The same value in another place is another scene.
+// The same value at another key is another scene.
 TEST(SceneKeys, OneThatCameLaterCountsWithItsPlace) {
   std::vector<SceneKey> keys(scene_keys().begin(), scene_keys().end());
   for (SceneKey& key : keys)

@@ -1,4 +1,4 @@
-// Settings of a scene: key and value of a text, whichever way it is written, and lists of them.
+// Settings of a scene: key and value of a text in each of its spellings, and lists of settings.
 #include "core/model/scene_setting.hpp"
 
 #include <gtest/gtest.h>

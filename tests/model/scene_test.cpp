@@ -1,4 +1,4 @@
-// What scenes are made of: sheets, links, colliders that move, content.
+// Parts of a scene: sheets, links, moving colliders, content.
 #include "core/model/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(Sheet, LinksComeInTheOrderInWhichTheyAreVisited) {
   EXPECT_TRUE(grid_links(mesh, {.structural = false}).empty());
 }
 
-// 0 - 1 - 2 - 3 in a row, 0 - 4 - 3 around, 5 - 6 apart from them.
+// 0 - 1 - 2 - 3 in a row, 0 - 4 - 3 as a detour, 5 - 6 separate.
 TEST(ShortestWays, LeadFromTheNearestStartAlongTheShortestLinks) {
   const std::vector<Link> links{{0, 1, 2}, {1, 2, 2}, {2, 3, 2}, {0, 4, 1.5}, {4, 3, 1}, {5, 6, 1}};
   const Adjacency neighbours(links, 7);
@@ -87,7 +87,7 @@ TEST(ShortestWays, LeadFromTheNearestStartAlongTheShortestLinks) {
   EXPECT_EQ(from_two.before, (std::vector{1, 2, -1, 2, 3, 6, -1}));
 }
 
-/// Distance and outward normal.
+/// Expects this distance and this outward normal.
 void expect_surface(const Shape& shape, const Vec3& p, double distance, const Vec3& normal) {
   const Surface s = surface(shape, p);
   EXPECT_NEAR(s.distance, distance, 1e-15) << p.transpose();
@@ -154,7 +154,7 @@ TEST(Motion, AlongAPathIsLinearBetweenItsKeys) {
   EXPECT_EQ(m.moved({7, 7, 7}, 1.5), Vec3(8, 8, 22));
 }
 
-// A quarter turn a second about the vertical axis through (1, 0, 0).
+// A quarter turn per second about the vertical axis through (1, 0, 0).
 TEST(Motion, TurnsEveryShapeAboutItsPivot) {
   Collider c{
       .motion = {.velocity = {0, 1, 0}, .spin = {0, std::numbers::pi / 2, 0}, .pivot = {1, 0, 0}}};

@@ -1,5 +1,4 @@
-// How the text of a solver is taken apart: quotes carry commas and quotes, and every error has its
-// column.
+// Parsing of a solver's text: quotes protect commas and quotes, and every error has its column.
 #include <gtest/gtest.h>
 
 #include "core/model/input_error.hpp"

@@ -1,5 +1,5 @@
-// A body of triangles answers as closed forms do where there are any, and as a look at all of its
-// triangles does everywhere.
+// A body of triangles agrees with closed forms where they exist, and with a search of all its
+// triangles everywhere.
 #include "core/model/triangle_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class Random {
 
 const Vec3 kHalf(0.3, 0.2, 0.45);
 
-/// Where a path from outside first meets the box, by its three slabs.
+/// Point at which a path from outside first meets the box, by its three slabs.
 std::optional<std::pair<double, Vec3>> slab_hit(const Vec3& a, const Vec3& b) {
   double in = -1, out = 1;
   Vec3 normal = Vec3::Zero();
@@ -44,7 +44,7 @@ std::optional<std::pair<double, Vec3>> slab_hit(const Vec3& a, const Vec3& b) {
   return std::pair(in, normal);
 }
 
-// As at the tip of a scanned tail that crosses itself: the triangles there look inward.
+// Regression: at the tip of a scanned tail that crosses itself triangles look inward.
 TEST(TriangleMesh, NothingOutsideItsBoxIsInside) {
   Triangles body = box_of_triangles(kHalf);
   const Triangles tip = box_of_triangles(Vec3(0.01, 0.01, 0.01));
@@ -75,7 +75,7 @@ TEST(TriangleMesh, ABoxOfTrianglesIsTheBoxOnAMillionSegments) {
     const Surface want = surface(box, p), got = surface(body, p);
     far_apart += std::abs(want.distance - got.distance) > 1e-12;
     inside += want.distance < 0;
-    // Inside near the medial axis two sides are equally near; at the surface nothing is a
+    // Near the medial axis two sides are equally near; at the surface the direction is undefined.
     // direction.
     const Vec3 local = turned.conjugate() * (p - center);
     Vec3 gaps = kHalf - local.cwiseAbs();
@@ -117,7 +117,7 @@ TEST(TriangleMesh, ATessellatedBallIsTheBallToSecondOrder) {
       const Vec3 p = random.point(1).normalized() * (kRadius + random.within(0.1));
       worst = std::max(worst, std::abs(mesh->nearest(p).distance - (p.norm() - kRadius)));
     }
-    // e^2/(6R) and higher orders: the height of the cap over the middle of a triangle of sides e
+    // Height of the cap over the middle of a triangle of sides e: e^2/(6R) and higher orders.
     EXPECT_LE(worst, kRadius - std::sqrt(kRadius * kRadius - longest * longest / 3)) << times;
     if (before > 0) {
       EXPECT_NEAR(before / worst, 4, 0.5) << times;
@@ -126,7 +126,8 @@ TEST(TriangleMesh, ATessellatedBallIsTheBallToSecondOrder) {
   }
 }
 
-/// Six times the solid angle over 4 pi: 1 inside, 0 outside (Van Oosterom, Strackee 1983).
+/// Winding number of the mesh around p, from solid angles: 1 inside, 0 outside (Van Oosterom,
+/// Strackee 1983).
 double winding(const TriangleMesh& mesh, const Vec3& p) {
   double sum = 0;
   for (const auto& [i, j, k] : mesh.triangles()) {
@@ -144,7 +145,7 @@ Corners corners(const TriangleMesh& mesh, const Triangle& t) {
           mesh.vertices()[to_index(t[2])]};
 }
 
-/// Where the path meets a triangle, by the system of its barycentric coordinates.
+/// Share of the path at which it meets a triangle, from the system of barycentric coordinates.
 std::optional<double> share_at(const Corners& t, const Vec3& from, const Vec3& to) {
   Eigen::Matrix3d m;
   m << from - to, t[1] - t[0], t[2] - t[0];
@@ -186,7 +187,7 @@ void expect_all_seen(const char* name, const TriangleMesh& mesh) {
     const NearestPlace place = mesh.nearest(p);
     EXPECT_NEAR(place.distance, is_inside ? -least : least, 1e-12) << name << ' ' << n;
     EXPECT_NEAR(place.normal.norm(), 1, 1e-12) << name << ' ' << n;
-    // The gradient: a step along it changes the distance by as much.
+    // Gradient: a step along it changes the distance by the length of the step.
     const double step = 1e-4 * std::abs(place.distance);
     EXPECT_NEAR(
         std::abs(mesh.nearest(p - std::copysign(step, place.distance) * place.normal).distance),
@@ -215,7 +216,7 @@ TEST(TriangleMesh, TheTreeSeesWhatALookAtAllTrianglesSees) {
   for (const auto& [name, body] : bodies()) expect_all_seen(name, *body.mesh());
 }
 
-// A point that has been looked up once and moves a little gets the bits of a look at all.
+// A point that was looked up before and moves a little gets the same bits as a full search.
 TEST(TriangleMesh, WhatIsNearbyAnswersToTheBit) {
   for (const auto& [name, body] : bodies()) {
     const auto mesh = body.mesh();
@@ -224,7 +225,7 @@ TEST(TriangleMesh, WhatIsNearbyAnswersToTheBit) {
     for (int n = 0; n < 600; ++n) {
       TriangleMesh::Nearby nearby;
       Vec3 p = random.point(0.8);
-      // edges and corners are nearest, too; steps are small and large
+      // edges and corners are nearest as well; steps are small and large
       if (n % 3 == 0) p = 1.02 * body.vertices[to_index(n) % body.vertices.size()];
       for (int k = 0; k < 30; ++k) {
         const NearestPlace want = mesh->nearest(p);
@@ -268,8 +269,8 @@ TEST(TriangleMesh, RefittedItAnswersAsOneMadeAnew) {
   }
 }
 
-// Nothing slips through between triangles: from the middle of a ball every way out is one hit, also
-// through its edges and corners.
+// No path slips between triangles: every path out of the middle of a ball has one hit, also through
+// edges and corners.
 TEST(TriangleMesh, NoPathSlipsBetweenTriangles) {
   const Triangles ball = ball_of_triangles(1, 3);
   const auto mesh = ball.mesh();
@@ -297,13 +298,13 @@ TEST(TriangleMesh, SaysWhereItIsOpen) {
   box.triangles.pop_back();
   EXPECT_FALSE(box.mesh()->closed());
   box = box_of_triangles(kHalf);
-  box.triangles.push_back({0, 7, 3});  // a wall inside: edges of three
+  box.triangles.push_back({0, 7, 3});  // an inner wall: edges with three triangles
   EXPECT_FALSE(box.mesh()->closed());
 }
 
 TEST(TriangleMesh, AThinBodyIsAtADistanceOnBothSides) {
   Triangles half = box_of_triangles(kHalf);
-  half.triangles = {half.triangles[6], half.triangles[7]};  // its top
+  half.triangles = {half.triangles[6], half.triangles[7]};  // its top alone
   const Shape thin = MeshBody{.mesh = half.mesh(), .sides = MeshBody::Sides::both};
   for (const double y : {-0.1, 0.1}) {
     const Surface over = surface(thin, {0.05, kHalf.y() + y, 0.1});

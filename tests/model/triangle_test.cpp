@@ -1,4 +1,4 @@
-// Triangles against points, balls, boxes and each other: exact forms against brute force.
+// Triangles against points, balls, boxes and each other: exact forms compared with brute force.
 #include "core/model/triangle.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// The best value of f over a fine subdivision of the triangle.
+/// Largest value of f over a fine subdivision of the triangle.
 template <class F>
 double brute_force_max(const Corners& t, const F& f, int cuts = 120) {
   double best = -1e300;
@@ -111,7 +111,8 @@ TEST(Triangle, DepthInABoxIsThatOfSubdivision) {
 
 TEST(Triangle, ABoxCornerPokesThroughAFace) {
   const Box box{{0, 0, 0}, {1, 1, 1}};
-  const double h = 2.7;  // the plane x + y + z = h cuts the corner (1, 1, 1) off, 0.3 below it
+  // the plane x + y + z = h cuts off the corner (1, 1, 1), whose sum is 0.3 more
+  const double h = 2.7;
   const Corners t{Vec3(h, 0, 0), Vec3(0, h, 0), Vec3(0, 0, h)};
   EXPECT_NEAR(deepest_in(box, t).depth, 0.1, 1e-12);  // at (0.9, 0.9, 0.9)
 }
@@ -140,7 +141,7 @@ TEST(Triangle, CrossesAnotherIffAnEdgePiercesIt) {
   EXPECT_TRUE(cross(flat, spike(-0.1)));
   EXPECT_TRUE(cross(spike(-0.1), flat));
   EXPECT_FALSE(cross(flat, spike(0.1)));
-  EXPECT_FALSE(cross(flat, spike(0)));  // touches
+  EXPECT_FALSE(cross(flat, spike(0)));  // touches only
   EXPECT_FALSE(cross(flat, flat));
 }
 
@@ -208,7 +209,7 @@ TEST(Triangle, DistancesBeatSubdivisionAndAreZeroInTouch) {
     EXPECT_DOUBLE_EQ(distance(s, t), distance(t, s));
   }
   const Corners flat{Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 3, 0)};
-  const auto beside = [&](double x) {  // a star with flat: edges cross, no corner is inside
+  const auto beside = [&](double x) {  // a star with flat: edges cross, but no corner is inside
     return Corners{Vec3(x - 1, 1, 0), Vec3(x + 4, 1.1, 0), Vec3(x + 4, 1, 0)};
   };
   EXPECT_NEAR(distance(flat, beside(0)), 0, 1e-15);

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Depths and passages that runs record at a body of triangles, against a second implementation: every triangle, no tree.
+"""Depths and passages that runs record at a body of triangles, against a second implementation that searches all triangles.
 
 Usage: bodies_test.py BUILD [TEST...]
        bodies_test.py BUILD some.obj [sides=both] [sizes=8,16,32] [solvers='xpbd:substeps=1;pd']
-           the same of a body from elsewhere, under so many vertices a side"""
+           the same for any other body, under sheets with these numbers of vertices per side"""
 
 import math
 import pathlib
@@ -19,7 +19,7 @@ VELOCITY, SPIN, START = np.array([0.3, 2.5, 0.0]), np.array([0.4, 1.0, -0.7]), n
 
 
 def read_obj(path):
-    """Vertices, of which none coincide, and triangles."""
+    """Vertices, with coincident ones merged, and triangles."""
     places, number, own, triangles = {}, [], [], []
     for line in pathlib.Path(path).read_text().splitlines():
         words = line.split()
@@ -62,18 +62,18 @@ def dot(a, b):
 
 
 class Body:
-    """In its own frame."""
+    """A body in its own frame."""
 
     def __init__(self, vertices, triangles):
         self.vertices, self.triangles = vertices, triangles
-        self.corners = vertices[np.unique(triangles)]  # files of scanned meshes have places that no triangle uses
+        self.corners = vertices[np.unique(triangles)]  # files of scanned meshes have vertices without triangles
         self.a, self.b, self.c = (vertices[triangles[:, k]] for k in range(3))
         self.normals = np.cross(self.b - self.a, self.c - self.a)
         self.low, self.high = np.minimum(np.minimum(self.a, self.b), self.c), np.maximum(np.maximum(self.a, self.b), self.c)
         self.edges = np.unique(np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1), axis=0)
 
     def contains(self, p):
-        """By the solid angle under which its triangles are seen."""
+        """Whether p is inside, by the solid angle of the triangles."""
         if (p < self.low.min(0)).any() or (p > self.high.max(0)).any():
             return False
         a, b, c = self.a - p, self.b - p, self.c - p
@@ -96,7 +96,7 @@ class Body:
         return min(least, abs(height[over]).min(initial=np.inf))
 
     def hits(self, p, q):
-        """(share, triangle, inward) of all triangles that a straight way goes through."""
+        """(share, triangle, inward) of all triangles that a straight path crosses."""
         near = np.flatnonzero((self.low <= np.maximum(p, q)).all(1) & (self.high >= np.minimum(p, q)).all(1))
         found = []
         for t in near:
@@ -129,7 +129,7 @@ def passages_of_vertices(body, thin, frames):
 
 
 def roots(values, degree):
-    """[degree + 1, n] at equal distances, from 0 to 1, of n polynomials: those in [0, 1), as [(share, which)]."""
+    """Roots in [0, 1) of n polynomials, as [(share, which)]. values: [degree + 1, n], equally spaced from 0 to 1."""
     found = []
     coefficients = np.linalg.solve(np.vander(np.linspace(0, 1, degree + 1)), values)
     for which in np.flatnonzero((values.min(0) <= 0) & (values.max(0) >= 0) | (degree * abs(coefficients[:-1]).max(0) >= abs(values).min(0))):
@@ -142,7 +142,7 @@ def boxes_meet(low, high, others_low, others_high):
 
 
 def moving(pieces, was, now, low, high):
-    """Those whose swept box meets the body's box."""
+    """The pieces whose swept box meets the body's box."""
     corners = np.concatenate([was[pieces], now[pieces]], axis=1)
     return boxes_meet(low, high, corners.min(1), corners.max(1))
 

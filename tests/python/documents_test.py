@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Documents run as they stand, and what help() and an editor are told is what there is.
+"""The code in documents runs unchanged, and help() and the stubs for editors match the module.
 
 Usage: documents_test.py BUILD [TEST...]"""
 
@@ -110,7 +110,7 @@ class Documents(module.Case):
                     self.compare(member, getattr(type(made[name]), key))
 
     def compare(self, stub, function):
-        """The parameters of a stub and of what it stands for: names, kinds, defaults."""
+        """Compares the parameters of a stub with those of its original: names, kinds, defaults."""
         has = inspect.signature(function)
         args = stub.args
         said = [(arg.arg, "positional") for arg in args.posonlyargs + args.args if arg.arg != "self"] + [(arg.arg, "keyword") for arg in args.kwonlyargs]

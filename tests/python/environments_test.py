@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`pip install .` puts the module and its data into an environment, without a network.
+"""`pip install .` installs the module and its data into an environment without a network.
 
 Usage: environments_test.py BUILD [TEST...]"""
 
@@ -14,7 +14,7 @@ import module
 
 class Environments(module.Case):
     def call(self, *words, expect=0):
-        # Without a network where the system lets us; with none that pip may use in any case.
+        # Cuts off the network where the system permits it; pip gets an unusable index in any case.
         cut_off = ["unshare", "--net"] if os.getuid() == 0 and subprocess.run(["unshare", "--net", "true"], capture_output=True).returncode == 0 else []
         environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "PIP_", "TAUT_"))}
         done = subprocess.run([*cut_off, *map(str, words)], cwd=self.folder, env={**environment, "PIP_INDEX_URL": "http://localhost:9", "PIP_RETRIES": "0"},

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What is wrong with an input is an exception that names it, and the interpreter lives on.
+"""A wrong input raises an exception that names the error, and the interpreter survives.
 
 Usage: inputs_test.py BUILD [TEST...]"""
 
@@ -118,7 +118,7 @@ class Inputs(module.Case):
         self.assertEqual(done.stdout, "True\n")
 
     def test_an_import_is_quick_and_brings_neither_pandas_nor_matplotlib(self):
-        done = self.python("import time, taut\nprint(time.process_time())\n"  # of the interpreter and NumPy, too
+        done = self.python("import time, taut\nprint(time.process_time())\n"  # includes the interpreter and NumPy
                            "print({'pandas', 'matplotlib'} & set(sys.modules))")
         seconds, brought = done.stdout.splitlines()
         self.assertLess(float(seconds), 0.5)

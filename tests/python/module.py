@@ -1,4 +1,4 @@
-"""For the tests of the Python module: `import taut` of the build that is named first, and its command line."""
+"""Shared by the tests of the Python module: imports taut from the build in the first argument and runs its command line."""
 
 import os
 import pathlib
@@ -37,14 +37,14 @@ class Case(unittest.TestCase):
         return done.stdout
 
     def python(self, text, expect=0, **more):
-        """A program of its own that imports taut."""
+        """Runs a separate program that imports taut."""
         done = subprocess.run([sys.executable, "-c", f"import sys\nsys.path.insert(0, {str(BUILD / 'python')!r})\n{text}"],
                               cwd=self.folder, text=True, capture_output=True, timeout=60, **more)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
 
     def refused(self, *parts):
-        """A context in which InputError is raised whose text has all of these."""
+        """A context that expects an InputError whose text contains all of these."""
         import taut
 
         case = self

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""taut.simulate gives what the command line gives, bit for bit, and lets go of the interpreter and of its memory.
+"""taut.simulate gives the same bits as the command line, releases the interpreter lock while it runs, and frees its memory.
 
 Usage: runs_test.py BUILD [TEST...]"""
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""taut.score says of an array what `taut external score` says of the file that holds it.
+"""taut.score judges an array as `taut external score` judges a file with it.
 
 Usage: scores_test.py BUILD [TEST...]"""
 
@@ -75,7 +75,7 @@ class Scores(module.Case):
         late = x[4:, order]
         with self.refused("positions", "does not begin as swing does"):
             taut.score(scene, late)
-        one_later = x[1:, order]  # whose step from the scene's start is two steps' way
+        one_later = x[1:, order]  # its first step covers two steps of the motion
         run = taut.score(scene, one_later, rest=scene.rest[order])
         self.assertTrue(numpy.array_equal(run.x[0], scene.x), "a run begins at the scene's start")
         self.assertTrue(numpy.array_equal(run.x[1:], x[2:]))

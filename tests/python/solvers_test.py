@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A solver in Python is judged as ours are: the textbook's listing gives what jakobsen gives.
+"""A solver in Python is judged like our solvers: the textbook's listing gives jakobsen's results.
 
 Usage: solvers_test.py BUILD [TEST...]"""
 
@@ -13,7 +13,7 @@ import taut
 
 @taut.solver("textbook", parameters={"iterations": 8})
 class Textbook:
-    """Jakobsen 2001, with the square root, link after link."""
+    """Jakobsen 2001 with the square root, one link after another."""
 
     @staticmethod
     def unsupported(scene):

@@ -1,5 +1,5 @@
-// Eigenvalues and linear systems of small matrices that are known by heart; why reference solutions
-// are refused; the published listing.
+// Eigenvalues and linear systems of small matrices with known answers, reasons for refusing
+// reference solutions, and the published listing.
 #include "core/reference/dense.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace taut::reference::dense_test {
 namespace {
 
 TEST(Dense, EigenvectorsAreTurnedIntoTheirMultiples) {
-  Eigen::MatrixXd a(4, 4);  // a turn that grows, and two real modes that it is coupled with
+  Eigen::MatrixXd a(4, 4);  // a growing rotation, coupled with two real modes
   a << 1, -2, 0, 1, 3, 1, 0.5, 0, 0, 0, 5, 1, 0, 0, 0, -6;
   const Modes m = modes(a);
   double imaginary = 0;
@@ -131,9 +131,10 @@ TEST(ReferenceRefusals, OfTheDynamicReferenceNameTheirReason) {
   EXPECT_TRUE(refuse_dynamic(near).empty()) << "within a millionth";
   Scene pinned = hung();
   pinned.pins = {0, 1, 2};
-  pinned.links[0].rest *= 2;  // between pins: nobody can mend it
+  pinned.links[0].rest *= 2;  // between pins: no placement can satisfy it
   EXPECT_TRUE(refuse_dynamic(pinned).empty());
-  // A chain that is far too heavy below for its step: the projection cannot converge.
+  // The chain's lower end is far too heavy for the time step, so that the projection cannot
+  // converge.
   EXPECT_EQ(converged_motion(hung(), {4}, 4).reason,
             "the projection does not converge: the constraints are redundant or dt is too long");
 }
@@ -183,7 +184,7 @@ TEST(Formulas, OfShapesAndSmallAngles) {
   EXPECT_NEAR(capstan_ratio(0.3, 1, 1), (1 + 0.3 * std::tan(0.5)) / (1 - 0.3 * std::tan(0.5)),
               1e-14);
   EXPECT_NEAR(pendulum_quarter(1, 9.81, 1e-4) * 4, 2 * std::acos(-1.0) / std::sqrt(9.81), 1e-8);
-  // Two elastic links: the joint hangs where both pull its load up.
+  // Two elastic links: the joint hangs where their tensions carry its load.
   const Catenary c = discrete_catenary(2, 1.2, 1, 3, 10);
   const double t = c.tension[0], l = 1 + t / 10;
   EXPECT_NEAR(c.tension[1], t, 1e-12);

@@ -1,4 +1,4 @@
-// The reference solvers against closed forms, and their refusal to answer where there is no answer.
+// The reference solvers against closed forms, and their refusal of problems without an answer.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// A sheet whose two upper corners are `span` apart; structural links only, unless said.
+/// Sheet whose two upper corners are `span` apart; by default with structural links only.
 Scene two_corners(int n, double span, const LinkChoice& choice = {}) {
   Scene s;
   s.mesh = make_sheet({.nu = n, .nv = n, .width = 1, .height = 1, .mass = 0.2});
@@ -78,7 +78,7 @@ TEST(ClosedForms, CatenaryOfSixteenLinks) {
   EXPECT_NEAR(continuum_sag(1, 0.8), 0.265437509140, 5e-13);
 }
 
-/// One link swings as implicit Euler has it, whatever the sweeps: y = l/(l + g dt^2) y.
+/// One link swings as in implicit Euler for any number of sweeps: y = l/(l + g dt^2) y.
 TEST(ClosedForms, TransverseSweepsOfOneLinkAreImplicitEuler) {
   for (const int sweeps : {1, 3})
     EXPECT_NEAR(transverse_sweeps(1, sweeps, 0.01, 0.5)(0, 0), 0.5 / 0.51, 1e-15);
@@ -120,7 +120,7 @@ TEST(StaticEquilibrium, AFlatSheetOneWidthApartNeedsNoIteration) {
   for (std::size_t i = 0; i < e.x.size(); ++i) EXPECT_LT((e.x[i] - s.mesh.rest[i]).norm(), 1e-14);
 }
 
-/// Two rows of vertices whose masses differ by up to four orders of magnitude, on two corners.
+/// Two rows of vertices on two corners; masses differ by up to four orders of magnitude.
 Scene uneven_net(unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -136,8 +136,8 @@ Scene uneven_net(unsigned seed) {
   return s;
 }
 
-// In four of these nets Newton's method ends up to 4e-6 m from the links' lengths, or at two places
-// as far as 4 cm apart: that is no answer.
+// The last four nets have no answer: Newton's method ends up to 4e-6 m from the links' lengths, or
+// at two places as far as 4 cm apart.
 TEST(StaticEquilibrium, IsFoundOfNetsWithUnevenMassesOrNotAtAll) {
   int found = 0;
   for (const unsigned seed : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 391u, 508u, 1415u, 1698u}) {
@@ -177,8 +177,8 @@ TEST(StaticEquilibrium, RefusesWhatHasNoUniqueAnswer) {
   EXPECT_FALSE(static_equilibrium(free).unique);
 }
 
-/// Tensions and weights cancel at every free vertex, links that pull have their length, and others
-/// are shorter.
+/// Expects that tensions and weights cancel at every free vertex, that links under tension have
+/// their rest length, and that other links are shorter.
 void expect_balance(const Scene& s, const Equilibrium& e) {
   ASSERT_TRUE(e.unique) << e.reason;
   ASSERT_EQ(e.tension.size(), s.links.size());
@@ -215,14 +215,14 @@ TEST(StaticEquilibrium, OfAnUnevenNetBalancesAtEveryVertex) {
   rope.pins = {0, 9};
   rope.gravity = {0.3, -9, 1};
   expect_balance(rope, static_equilibrium(rope));
-  Scene net = two_corners(5, 0.8);  // a column's weight differs from that of the next one
+  Scene net = two_corners(5, 0.8);  // each column weighs differently from the next one
   for (std::size_t i = 0; i < net.mesh.mass.size(); ++i)
     net.mesh.mass[i] *= 1 + 0.1 * static_cast<double>(i % 5);
   expect_balance(net, static_equilibrium(net));
 }
 
-// Each link is as long as it likes: a plumb line below the pin, and straight between two pins that
-// are just as far apart.
+// Every link can have exactly its rest length: in a plumb line below a pin, and in a straight line
+// between two pins at just that distance.
 TEST(StaticEquilibrium, OfAPlumbLineIsKnownWithoutIteration) {
   Scene line = rods(5, {{0, 0, 0}, {1, 0, 0}, {1, 0.5, 0}, {2, 0, 0}, {2, 0, 1}, {3, 0, 1}});
   double depth = 0;
@@ -235,7 +235,7 @@ TEST(StaticEquilibrium, OfAPlumbLineIsKnownWithoutIteration) {
     EXPECT_LT((hung.x[i] - depth * Vec3(0, -0.6, 0.8)).norm(), 1e-14) << i;
   }
   EXPECT_LT(hung.floor, 1e-14);
-  line.pins = {0, 4};  // the last vertex hangs from the second pin
+  line.pins = {0, 4};  // the last vertex hangs below the second pin
   line.start.x[4] = Vec3(2, 1, 2).normalized() * (0.5 + 0.6 + 0.7 + 0.8);
   const Equilibrium taut = static_equilibrium(line);
   ASSERT_TRUE(taut.unique) << taut.reason;
@@ -264,7 +264,7 @@ TEST(Shake, DoublePendulumConvergesInSecondOrder) {
   EXPECT_LT((t.states[0].x[2] - exact[1]).norm(), 2 * t.floor[0]);
 }
 
-/// Largest error of the position and of the velocity over half a second, of any vertex.
+/// Largest error of position and of velocity over all vertices during half a second.
 template <class Exact>
 std::array<double, 2> errors(const Scene& s, int steps, const Exact& exact) {
   Shake shake(s, 0.5 / steps);
@@ -290,21 +290,21 @@ void expect_second_order(const Scene& s, const Exact& exact) {
   }
 }
 
-// A level sheet falls as one body: v' = g - (damping + c A/m) v + c A/m wind, each vertex with the
-// share of A that it has of m.
+// A level sheet falls as one body: v' = g - (damping + c A/m) v + c A/m wind. Each vertex has the
+// same share of A as of m.
 TEST(Shake, DampingAndWindAreThoseOfAFallingSheet) {
   for (const double strength : {0.0, 0.9}) {
     Scene s;
     s.mesh =
         make_sheet({.nu = 4, .nv = 4, .width = 1, .height = 1, .v = Vec3::UnitZ(), .mass = 0.2});
     s.mesh.mass.assign(16, 0);
-    for (const Triangle& t : s.mesh.triangles)  // thirds, as of the wind
+    for (const Triangle& t : s.mesh.triangles)  // a third for each corner, as for wind
       for (const int corner : t) s.mesh.mass[static_cast<std::size_t>(corner)] += 0.2 / 54;
     s.start = {s.mesh.rest, std::vector<Vec3>(16, Vec3(0.7, 2, -0.4))};
     s.links = grid_links(s.mesh, {});
     s.damping = 1.5;
     s.wind = Wind{.velocity = {5, 1.2, 3},
-                  .strength = strength};  // a level face feels what is vertical alone
+                  .strength = strength};  // a level face responds to vertical wind alone
     const double drag = strength / 0.2;
     expect_second_order(s, [&](double t) {
       State exact = s.start;
@@ -322,7 +322,7 @@ TEST(Shake, DampingAndWindAreThoseOfAFallingSheet) {
   }
 }
 
-// Seen from a pin that moves evenly, a pendulum swings as below one that rests.
+// Below a pin in uniform motion a pendulum swings as below a pin at rest, seen from the pin.
 TEST(Shake, APinThatMovesEvenlyMovesThePendulumWithIt) {
   Scene rest = rods(2, {Vec3::Zero(), Vec3(0.6, -0.8, 0), Vec3(0.6, -0.8, 1)}), moving = rest;
   const Vec3 velocity(1, 0.5, -2);
@@ -364,7 +364,7 @@ TEST(Shake, ConvergedMotionIsThatOfThePendulum) {
   }
 }
 
-/// n links of k [N/m], masses of 1 kg, on a straight line from its rest lengths.
+/// Straight chain of n links of stiffness k [N/m] at their rest lengths, with masses of 1 kg.
 Scene elastic_chain(int n, double k) {
   std::vector<Vec3> x;
   for (int i = 0; i <= n; ++i) x.emplace_back(0, -i, 0);
@@ -373,8 +373,9 @@ Scene elastic_chain(int n, double k) {
   return s;
 }
 
-// The chain stays straight, where its springs are linear: u(t) = rest - sum of a_p phi_p cos w_p t
-// with phi_p(j) = sin(j theta_p), theta_p = (2p - 1) pi/(2n + 1), w_p = 2 sqrt(k/m) sin(theta_p/2).
+// The chain stays straight, so that its springs are linear: u(t) = rest - sum of a_p phi_p cos w_p
+// t with phi_p(j) = sin(j theta_p), theta_p = (2p - 1) pi/(2n + 1), w_p = 2 sqrt(k/m)
+// sin(theta_p/2).
 TEST(Shake, AnElasticChainLetGoVibratesInItsModes) {
   for (const int n : {1, 2, 7}) {
     const double k = 900;
@@ -402,7 +403,7 @@ TEST(Shake, AnElasticChainLetGoVibratesInItsModes) {
   }
 }
 
-// Without links bending is linear: free modes of M^-1 K, K of the bending energy's elements.
+// Without links bending is linear: free modes of M^-1 K, where K comes from the bending elements.
 TEST(Shake, BendingVibratesInTheModesOfItsEnergy) {
   Scene s = two_corners(5, 1);
   s.links.clear();
@@ -438,7 +439,8 @@ TEST(Shake, BendingVibratesInTheModesOfItsEnergy) {
                 2 * t.floor[0] + 1e-12);
 }
 
-// Rods below springs: both at once, and what the springs and the weights hold is kept.
+// Rods below springs test both kinds of link at once; the energy of springs and weights is
+// conserved.
 TEST(Shake, RodsBetweenSpringsKeepLengthsAndEnergy) {
   Scene s = elastic_chain(4, 500);
   s.stiffness[static_cast<std::size_t>(Family::shear)] = kRigid[0];
@@ -466,7 +468,7 @@ TEST(Shake, RodsBetweenSpringsKeepLengthsAndEnergy) {
   }
 }
 
-/// A sheet with shear links that hangs by its first row, turned out of the plumb line by 0.7 rad.
+/// Sheet with shear links that hangs by its first row, turned by 0.7 rad from the vertical.
 Scene rows_let_go(const LinkChoice& choice) {
   Scene s = two_corners(4, 1, choice);
   s.pins = {0, 1, 2, 3};
@@ -478,8 +480,8 @@ Scene rows_let_go(const LinkChoice& choice) {
   return s;
 }
 
-// Rows that stay straight swing as the columns of a net without shear links, whose motion SHAKE
-// finds with all its links; what a vertex weighs within its row decides nothing.
+// If rows stay straight, the sheet swings like the columns of a net without shear links, whose
+// motion SHAKE computes with all links. The distribution of mass within a row does not matter.
 TEST(Shake, RowsThatStayStraightSwingAsTheColumnsOfANet) {
   Scene sheet = rows_let_go({.shear = true});
   const Scene net = rows_let_go({});
@@ -497,7 +499,7 @@ TEST(Shake, RowsThatStayStraightSwingAsTheColumnsOfANet) {
   EXPECT_GT((b.states[1].x[15] - net.start.x[15]).norm(), 0.5) << "it swings";
 }
 
-// Whatever bends or shears a row makes the sheet one whose links lock.
+// Anything that bends or shears a row turns the sheet into one whose links lock.
 TEST(Shake, ASheetWhoseRowsWouldNotStayStraightIsRefused) {
   const Scene straight = rows_let_go({.shear = true});
   const std::vector<std::function<void(Scene&)>> changes{
@@ -523,7 +525,7 @@ TEST(Shake, ASheetWhoseRowsWouldNotStayStraightIsRefused) {
         s.wind = Wind{.velocity = {0, 0, 1}, .strength = 1};
       },
       [](Scene& s) { s.mesh.grid.reset(); },
-      [](Scene& s) {  // turned within its plane: columns lean towards the next
+      [](Scene& s) {  // turned within its plane: columns lean towards their neighbours
         for (std::size_t i = 4; i < 16; ++i) s.start.x[i].x() += 0.1 * static_cast<double>(i / 4);
       }};
   EXPECT_TRUE(converged_motion(straight, {0.1}, 1.0 / 64).unique);
@@ -537,7 +539,7 @@ TEST(Shake, ASheetWhoseRowsWouldNotStayStraightIsRefused) {
 TEST(Shake, RefusesContactAndLockingLinks) {
   EXPECT_FALSE(converged_motion(two_corners(4, 1, {.shear = true}), {0.1}, 1e-3).unique);
   Scene s = two_corners(4, 0.8);
-  EXPECT_FALSE(converged_motion(s, {0.1}, 1e-3).unique);  // stretched start
+  EXPECT_FALSE(converged_motion(s, {0.1}, 1e-3).unique);  // stretched at the start
   s.stiffness.fill(100);
   EXPECT_TRUE(converged_motion(s, {0.1}, 1.0 / 1000).unique) << "springs may be stretched";
   s.stiffness.fill(1e12);

@@ -1,4 +1,4 @@
-// The estimated distance from the exact step, compared with the distance itself.
+// Estimated distance from the exact step, compared with the true distance.
 #include "core/reference/step_error.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ double rms_of_free(const Scene& scene, const std::vector<Vec3>& a, const std::ve
   return std::sqrt(sum / static_cast<double>(n));
 }
 
-/// Each vertex pushed by up to `amount` [m], in no order.
+/// Displaces each vertex by up to `amount` [m], irregularly.
 std::vector<Vec3> pushed(const Scene& scene, std::vector<Vec3> x, double amount) {
   Scene moved = scene;
   moved.start.x = std::move(x);
@@ -55,12 +55,12 @@ TEST(StepError, IsTheDistanceFromTheExactStepOfElasticLinks) {
     }
 }
 
-/// A frozen cloth keeps its links: strain does not tell it, the distance does.
+/// A frozen cloth keeps its links' lengths: the distance detects it, strain does not.
 TEST(StepError, TellsAFrozenClothFromARightOne) {
   Scene scene = hanging_sheet(9, 9);
   scene.stiffness = {1e6, 1e6, 1e4};
   for (std::size_t i = 0; i < scene.start.x.size(); ++i)
-    scene.start.x[i] = {scene.start.x[i].x(), 0, -scene.start.x[i].y()};  // out to the side
+    scene.start.x[i] = {scene.start.x[i].x(), 0, -scene.start.x[i].y()};  // swung out to the side
   scene.start = simulate(scene, "implicit", 20);
   const std::vector<Vec3> frozen = after_one_step(scene, "pd:iterations=10").x,
                           right = after_one_step(scene, "implicit:iterations=100").x;
@@ -71,7 +71,7 @@ TEST(StepError, TellsAFrozenClothFromARightOne) {
   EXPECT_LT(error.of(scene.start, 0, scene.dt, right).distance, 1e-8);
 }
 
-/// Strain is no missed motion: a rod that is a tenth too long hangs as it is.
+/// Strain is not missed motion: a rod that is a tenth too long still hangs in its right direction.
 TEST(StepError, OfLinksAtTheirLengthsHasNothingOfTheirStrain) {
   Scene scene = hanging_sheet(1, 2, {true, false, false});
   scene.stiffness = {1e5, 1e5, 1e5};
@@ -84,7 +84,7 @@ TEST(StepError, OfLinksAtTheirLengthsHasNothingOfTheirStrain) {
 
 TEST(StepError, OfRigidLinksIsTheDistanceFromTheNearest) {
   Scene scene = hanging_sheet(6, 6, {true, false, false});
-  scene.pins = {0};  // a row between two pins would resist at second order alone
+  scene.pins = {0};  // a row between two pins would resist in second order only
   scene.stiffness = {1e5, 1e5, 1e5};
   scene.start = simulate(scene, "implicit", 20);
   scene.stiffness = kRigid;
@@ -103,7 +103,7 @@ TEST(StepError, OfRigidLinksIsTheDistanceFromTheNearest) {
   EXPECT_LT(error.of(scene.start, 0, scene.dt, exact.x).distance, 1e-7);
 }
 
-/// With bending only `implicit` computes an exact step; other tests check it.
+/// Only `implicit` computes an exact step with bending; its exactness is checked by other tests.
 TEST(StepError, OfABentClothKnowsItsBending) {
   Scene scene = hanging_sheet(6, 6);
   scene.stiffness = {1e3, 1e3, 10};
@@ -119,7 +119,7 @@ TEST(StepError, OfABentClothKnowsItsBending) {
               0.05);
 }
 
-/// A particle on a slope, whose exact step has a closed form.
+/// Particle on a slope, whose exact step has a closed form.
 TEST(StepError, InContactHoldsWhatPushesAndRubsWhatSlips) {
   Scene scene;
   scene.name = "slope";
@@ -181,7 +181,8 @@ TEST(StepError, OfASheetThatLiesOnABodyIsThatOfTheReference) {
   }
 }
 
-/// Slack cloth: steps of Newton's method with a clamped Hessian shrink by a factor, and are summed.
+/// On slack cloth, steps of Newton's method with a clamped Hessian shrink by a factor; the error
+/// sums the steps that are still to come.
 TEST(StepError, OfSlackClothSumsWhatIsStillToCome) {
   Scene scene = hanging_sheet(6, 6);
   scene.stiffness = {1e3, 1e3, 1e3};
@@ -214,13 +215,13 @@ TEST(StepError, OfPlacesThatAreNoNumbersIsNone) {
   EXPECT_TRUE(error.missed(scene.start, 0, scene.dt, x).empty());
 }
 
-// The metric.
+// Tests of the metric.
 
 struct Measured {
   std::map<std::string, double> values;
   std::string remark;
 };
-/// What the metric of `value` says.
+/// Values of the metric that has the value `of`, and its remark.
 Measured measured(const Scene& scene, const std::string& solver,
                   const std::string& of = "step.error") {
   const auto [entry, value] = find_value(of);
@@ -256,8 +257,7 @@ Scene swinging() {
   return scene;
 }
 
-/// The same in a scene without a path of exact steps, so that the estimate from missed steps is
-/// used.
+/// The same scene without a path of exact steps, so that the estimate uses missed steps.
 Scene swinging_in_still_air() {
   Scene scene = swinging();
   scene.wind.emplace();
@@ -287,8 +287,9 @@ TEST(StepErrorMetric, TellsWhoseStepsMissTheWay) {
       << "the exact path says it";
 }
 
-/// Slack cloth goes 2 cm and comes back. Who lags, who stands still and who falls as far as
-/// stretched links let him is told by where exact steps lead, whatever his own step is.
+/// Slack cloth moves 2 cm and returns. The path of exact steps distinguishes a solver that lags,
+/// one that stands still, and one that falls as far as its stretched links allow, whatever the
+/// solver's own step is.
 TEST(Way, TellsWhoLagsFromWhoStandsStillAndWhoGoesTooFar) {
   const Case one = make_case({"drape", {"cloth.span=0.7", "time.duration=0.6"}, "jakobsen"});
   const auto share = [&](const std::string& solver) {
@@ -325,7 +326,7 @@ TEST(ExactPath, IsThatOfTheExactSolver) {
   EXPECT_TRUE(reference::exact_path(bent, {1}).empty());
 }
 
-// A stiff plate that falls on a ball falls nearly as far as cloth, but does not drape.
+// A stiff plate that falls on a ball falls nearly as far as cloth but does not drape.
 TEST(StepErrorMetric, LeavesTheFallOfTheWholeOut) {
   Scene scene = swinging();
   scene.pins.clear();
@@ -338,8 +339,9 @@ TEST(StepErrorMetric, LeavesTheFallOfTheWholeOut) {
   EXPECT_GT(measured(scene, "implicit").values.at("step.share"), 0.99);
 }
 
-/// Both go all of the way. In single precision the gravity of a substep is rounded to a whole
-/// number of units in the last place of x. With 224 substeps this rounding is a seventh of gravity.
+/// Both solvers cover the whole distance. In single precision the gravity of a substep is rounded
+/// to a whole number of units in the last place of x. With 224 substeps this rounding is a seventh
+/// of gravity.
 TEST(StepErrorMetric, TakesNoRoundingForAWayThatIsMissed) {
   const auto share = [](const char* scene, const std::string& solver) {
     const Case one = make_case(

@@ -1,4 +1,4 @@
-// What is ruled and written around a picture, pixel by pixel.
+// Frames, rules and labels around a picture, pixel by pixel.
 #include "experiments/render/picture/figure.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using test::small;
 
 constexpr Rgb8 kPaper = rgb(0xFFFFFF);
 
-/// How many pixels from the left, right, top and bottom have the colour of the corner, along the
+/// Number of pixels with the corner's colour from the left, right, top and bottom edge, along the
 /// middle.
 std::array<int, 4> border_of(const Image& panel) {
   const Rgb8 colour = panel.at(0, 0);
@@ -41,7 +41,7 @@ TEST(MarkOfAStop, IsAFrameOfFivePointsAndOfThreePixelsAtLeast) {
   }
 }
 
-/// Share of the sheet that is covered, in pixels, and where its middle lies.
+/// Covered share of the sheet in pixels, and the centre of the covered part.
 struct Ink {
   double area = 0, x = 0, y = 0;
   explicit Ink(const Image& image) {
@@ -139,8 +139,8 @@ TEST(Figure, WhatIsWrittenBelowIsInUnitsOfPeople) {
   EXPECT_EQ(caption_of(ColourBy::speed, live), Lines{"max |v| = 2.5 m/s"});
 }
 
-/// Whether a picture holds a panel with its left upper corner there: its middle, where nothing is
-/// written.
+/// Whether a picture contains a panel with its upper left corner at this place; compares the
+/// panel's middle, where no text is.
 bool holds(const Image& picture, const Image& panel, int left, int top) {
   for (int y = panel.height() * 2 / 5; y < panel.height() * 9 / 10; ++y)
     for (int x = panel.width() / 20; x < panel.width() * 7 / 10; ++x)
@@ -218,7 +218,8 @@ TEST(Figure, TheSheetLaidFlatHidesNoCloth) {
     const double edge = hides ? 1 : 0.4;
     options.frame = {.left = -edge, .right = edge, .bottom = -edge, .top = edge};
     const Image picture = compose(SceneRenderer(scene, runs, options), layout, {0.5});
-    for (const int panel : {0, 1})  // a fifth of the height wide, a 28th from the edges: its rim
+    // a fifth of the height wide, a 28th from the edges; counts its rim
+    for (const int panel : {0, 1})
       EXPECT_EQ(picture.at(panel * 200 + 196, 20) == rgb(0x4A5361), !hides) << panel;
   }
 }
@@ -236,7 +237,8 @@ TEST(ColourBar, TicksStandAtTheirPlaces) {
       if (image.at(x, 34) != rgb(0xFFFFFF)) ticks.insert(x);
     for (const double value : scale.ticks()) {
       const double at = 50 + (value - scale.low()) / (scale.high - scale.low()) * 300;
-      const int middle = static_cast<int>(std::round(at));  // half of either pixel beside it
+      // covers half of each of the two pixels beside it
+      const int middle = static_cast<int>(std::round(at));
       expected.insert({middle - 1, middle});
     }
     EXPECT_EQ(ticks, expected);

@@ -1,5 +1,5 @@
-// What a picture's numbers mean: areas of shapes, where a point is seen, lightness of a colour, the
-// values at the vertices.
+// Numbers in pictures: areas of shapes, projection of points, lightness of colours, values at
+// vertices.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace taut::numbers_test {
 namespace {
 
-/// How much ink is on a white page, in pixels, and where it is.
+/// Amount of ink on a white page, in pixels, and its centre.
 struct Ink {
   double area = 0, x = 0, y = 0;
 };
@@ -54,7 +54,7 @@ TEST(CanvasInk, OfAShapeIsItsAreaAndLiesAtItsCentre) {
                  c.disc({x + 9, y + 4}, 7.3, black);
                }),
                std::numbers::pi * 7.3 * 7.3, x + 9, y + 4, 0.003);
-    // whole pixels: what a rounded corner lacks of a square is (1 - pi/4) r^2
+    // whole pixels: each rounded corner lacks (1 - pi/4) r^2 of its square
     expect_ink(ink([&](Canvas& c) { c.fill_rounded(10, 12, 24, 18, 6, black); }),
                24 * 18 - (4 - std::numbers::pi) * 36, 22, 21, 0.003);
     for (const bool turned : {false, true}) {
@@ -128,7 +128,7 @@ TEST(ImageParts, ShrinkToTheirMeansAndAreCutAtTheEdges) {
   }
 }
 
-/// Lightness, chroma and hue [degrees] of a colour of the screen: OKLab (Ottosson 2020), from sRGB.
+/// Lightness, chroma and hue [degrees] of an sRGB colour in OKLab (Ottosson 2020).
 struct Seen {
   double lightness, chroma, hue;
 };
@@ -228,7 +228,7 @@ TEST(ColourScale, RoundsUpToTheNextRoundNumberAndHasRoundTicks) {
   EXPECT_EQ((ColourScale{ColourBy::strain, 2}).text(0.02), "+2 %");
 }
 
-/// Where a pinhole camera sees a point: x and y over depth, in units of half the picture.
+/// Projection by a pinhole camera: x and y over depth, in units of half the picture.
 Vec3 pinhole(const Camera& c, const Vec3& p, double aspect) {
   const Vec3 from = p - c.eye.cast<double>();
   const double depth = -from.dot(c.back.cast<double>()),
@@ -252,7 +252,7 @@ TEST(Camera, IsTheNearestFromWhichThePointsFitTheFrame) {
         EXPECT_NEAR(back.norm(), 1, 1e-5);
         EXPECT_NEAR(right.dot(up), 0, 1e-5) << "the horizon is level";
         EXPECT_NEAR(back.dot(up), std::sin(view.elevation * std::numbers::pi / 180), 1e-5);
-        // azimuth: from the level part of +z (+x if up is z) towards up x ahead
+        // azimuth runs from the horizontal part of +z (+x if up is z) towards up x ahead
         Vec3 ahead = std::abs(up.z()) > 0.99 ? Vec3::UnitX() : Vec3::UnitZ();
         ahead = (ahead - ahead.dot(up) * up).normalized();
         EXPECT_NEAR(std::atan2(back.dot(up.cross(ahead)), back.dot(ahead)),
@@ -268,7 +268,7 @@ TEST(Camera, IsTheNearestFromWhichThePointsFitTheFrame) {
           EXPECT_LT(std::abs(drawn.z() / drawn.w()), 1);
           least = std::min(least, at.z());
           most = std::max(most, at.z());
-          // in metres at the point's distance
+          // half extents in metres at the point's distance
           const double tan = static_cast<double>(camera.tan_half_height),
                        across = at.z() * tan * aspect, along = at.z() * tan;
           slack[0] = std::min(slack[0], (frame.right - at.x()) * across);
@@ -281,7 +281,7 @@ TEST(Camera, IsTheNearestFromWhichThePointsFitTheFrame) {
         EXPECT_NEAR(std::min(slack[0], slack[2]), 0, 1e-4) << "as near as it can be";
         EXPECT_LT(static_cast<double>(camera.near_plane), least);
         EXPECT_GT(static_cast<double>(camera.far_plane), most);
-        // the near plane maps to -1 and the far one to 1
+        // the near plane maps to -1, the far plane to 1
         for (const auto& [plane, depth] :
              {std::pair{camera.near_plane, -1.0}, {camera.far_plane, 1.0}}) {
           const Eigen::Vector4d drawn =
@@ -300,7 +300,7 @@ TEST(Camera, GoesBesideOrBelowTheInset) {
       corners.emplace_back(k & 1 ? 1 : -1, k & 2 ? height : -height, k & 4 ? 0.1 : -0.1);
     const FitRegion frame = FitRegion::beside_inset();
     FitRegion whole = frame;
-    whole.inset_left = whole.inset_bottom = 2;  // hides nothing
+    whole.inset_left = whole.inset_bottom = 2;  // hides nothing of the panel
     FitRegion below = whole, beside = whole;
     below.top = frame.inset_bottom;
     below.right = -frame.left;

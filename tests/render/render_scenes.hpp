@@ -4,7 +4,7 @@
 
 #include "experiments/render/picture/figure.hpp"
 
-/// Motions that no solver made: what a picture must show of them is known.
+/// Prescribed motions, so that the contents of their pictures are known.
 namespace taut::test {
 
 /// A level sheet of n x n vertices, one metre wide.
@@ -25,7 +25,7 @@ inline Scene level_sheet(int n) {
   return scene;
 }
 
-/// A ball of radius 0.3 below the level sheet.
+/// Level sheet above a ball of radius 0.3.
 inline Scene sheet_over_ball(int n) {
   Scene scene = level_sheet(n);
   scene.name = "over-ball";
@@ -37,7 +37,7 @@ inline Trajectory empty_trajectory(const Scene& scene) {
   return {"analytic:iterations=1", scene.dt, {}};
 }
 
-/// The sheet stretched evenly by 1 + strain, all the time.
+/// Run in which the sheet is stretched uniformly by 1 + strain at all times.
 inline RecordedRun stretched(const Scene& scene, double strain) {
   Trajectory trajectory = empty_trajectory(scene);
   State state = scene.start;
@@ -50,8 +50,8 @@ inline RecordedRun stretched(const Scene& scene, double strain) {
   return run;
 }
 
-/// The sheet laid over the ball of `sheet_over_ball`: bent along circles around the top, folded by
-/// `folds` waves below; t lets it down.
+/// Run in which the sheet is lowered on to the ball of `sheet_over_ball`. It bends along circles
+/// around the top and folds into `folds` waves below.
 inline RecordedRun draped(const Scene& scene, double folds) {
   Trajectory trajectory = empty_trajectory(scene);
   for (int k = 0; k <= scene.steps; ++k) {
@@ -66,7 +66,7 @@ inline RecordedRun draped(const Scene& scene, double folds) {
       const double y = -0.31 + 0.305 * std::cos(angle) - 0.93 * rest;
       x += down * (Vec3(out * std::cos(a), y, out * std::sin(a)) - x);
     }
-    state.v.clear();  // the run has to find out
+    state.v.clear();  // left for the run to compute
     trajectory.frames.push_back({k * scene.dt, state});
   }
   RecordedRun run = recorded_run(scene, trajectory);
@@ -76,7 +76,7 @@ inline RecordedRun draped(const Scene& scene, double folds) {
   return run;
 }
 
-/// Quickly drawn, small panels.
+/// Options for small panels that draw quickly.
 inline SceneRendererOptions small(ColourBy colour_by = ColourBy::strain) {
   SceneRendererOptions options;
   options.width = 240;
@@ -86,7 +86,7 @@ inline SceneRendererOptions small(ColourBy colour_by = ColourBy::strain) {
   return options;
 }
 
-/// Largest difference of a channel, and its mean over all.
+/// Largest and mean difference of the channels of two images.
 struct Difference {
   int largest = 0;
   double mean = 0;

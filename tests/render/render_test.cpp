@@ -1,4 +1,4 @@
-// Pictures: colours that can be trusted, the same bytes again, golden images.
+// Pictures: faithful colours, reproducible bytes, golden images.
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -40,7 +40,8 @@ TEST(ColourMap, IsNeutralAtZeroAndEquallyDarkAtBothEnds) {
   EXPECT_LE(std::max({zero.r, zero.g, zero.b}) - std::min({zero.r, zero.g, zero.b}), 3);
   for (const double s : {0.0, 0.1, 0.25, 0.4})
     EXPECT_NEAR(std::cbrt(luminance(map.at(s))), std::cbrt(luminance(map.at(1 - s))), 0.06) << s;
-  for (int i = 1; i < ColourMap::kSize / 2; ++i)  // lighter towards the middle, never back
+  // lightness rises towards the middle without turning back
+  for (int i = 1; i < ColourMap::kSize / 2; ++i)
     EXPECT_GE(luminance(map.table()[static_cast<std::size_t>(i)]) + 2e-3,
               luminance(map.table()[static_cast<std::size_t>(i - 1)]));
 }
@@ -72,10 +73,10 @@ TEST(ColourBar, EndsAreTheEndsOfTheMap) {
   draw_colour_bar(canvas, scale, {50, 10, 300, 20}, 1);
   EXPECT_EQ(image.at(50, 20), scale.colour(-0.05));
   EXPECT_EQ(image.at(349, 20), scale.colour(0.05));
-  EXPECT_EQ(image.at(349, 20), scale.colour(7.0));  // beyond the end: the end's colour
+  EXPECT_EQ(image.at(349, 20), scale.colour(7.0));  // the colour of the scale's end
 }
 
-/// Share of the panel's pixels that have this colour, to within two levels.
+/// Share of the panel's pixels that have this colour within two levels.
 double share_of(const Image& panel, Rgb8 colour) {
   std::size_t same = 0;
   for (const Rgb8 p : panel.pixels())
@@ -84,7 +85,7 @@ double share_of(const Image& panel, Rgb8 colour) {
   return static_cast<double>(same) / static_cast<double>(panel.pixels().size());
 }
 
-// Open cloth that faces the sky has the colour that the bar promises, whatever light and shader do.
+// Uncovered cloth that faces the sky has the colour of the bar, independently of light and shader.
 TEST(SceneRenderer, OpenClothHasTheBarsColour) {
   const Scene scene = test::level_sheet(9);
   for (const double strain : {-0.05, 0.0, 0.05, 0.4}) {
@@ -125,7 +126,7 @@ TEST(SceneRenderer, MovingTheClothMovesThePicture) {
   EXPECT_GT(difference(renderer.panel(0, 0), renderer.panel(0, 1)).mean, 2);
 }
 
-/// The sheet at rest whose vertices have these speeds [m/s], by vertex and time.
+/// Run of the sheet at rest with prescribed speeds [m/s], by vertex and time.
 RecordedRun with_speeds(const Scene& scene,
                         const std::function<double(std::size_t, double)>& speed) {
   Trajectory trajectory = test::empty_trajectory(scene);
@@ -148,13 +149,13 @@ TEST(SceneRenderer, TheBarEndsWhere98Of100ValuesLie) {
     options.to = to;
     return SceneRenderer(scene, runs, options).scale().high;
   };
-  const auto first = [](std::size_t n, double then) {  // of 100 vertices n have 1 m/s
+  const auto first = [](std::size_t n, double then) {  // n of 100 vertices move at 1 m/s
     return [=](std::size_t i, double) { return i < n ? 1 : i == n ? then : 50.0; };
   };
   EXPECT_EQ(high(first(97, 3)), 3) << "the 98th";
   EXPECT_EQ(high(first(98, 3)), 1);
   EXPECT_EQ(high(first(100, 3)), 1);
-  // 25 moments, the first and the last among them, and none before or after.
+  // 25 moments from the first to the last, none before or after.
   const auto at = [](bool (*fast)(double)) {
     return [=](std::size_t, double t) { return fast(t) ? 5.0 : 2.0; };
   };
@@ -163,7 +164,7 @@ TEST(SceneRenderer, TheBarEndsWhere98Of100ValuesLie) {
   EXPECT_EQ(high(at([](double t) { return t >= 0.75; }), 0.25, 0.75), 5);
   EXPECT_EQ(high(at([](double t) { return t == 0.5; }), 0.5, 0.5), 5) << "one moment alone";
   EXPECT_EQ(high(at([](double t) { return t >= 1; })), 5) << "to the scene's end";
-  // What is zero everywhere has a bar none the less.
+  // A bar exists even if all values are zero.
   const std::vector<RecordedRun> still{with_speeds(scene, [](std::size_t, double) { return 0; })};
   const auto least = [&](ColourBy by) {
     return SceneRenderer(scene, still, small(by)).scale().high;
@@ -214,7 +215,7 @@ SceneRendererOptions from_above() {
   return options;
 }
 
-/// The colour of a panel where this vertex is seen.
+/// Colour of the panel at this vertex.
 Rgb8 seen_at(const SceneRenderer& renderer, const Image& panel, std::size_t vertex, double t) {
   const auto p = renderer.projected(0, t).at(vertex);
   return panel.at(static_cast<int>((p.x() + 1) / 2 * static_cast<float>(panel.width())),
@@ -258,7 +259,7 @@ TEST(SceneRenderer, TheCameraFollowsClothThatNothingHolds) {
   EXPECT_GT(end.g, 150) << "cloth";
 }
 
-// What fell through a thin plate must not look as if it had never been there.
+// Cloth that fell through a thin plate is reported, or it would look as if it had never existed.
 TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
   Scene scene = test::sheet_over_ball(9);
   RecordedRun gone = test::draped(scene, 7);
@@ -274,7 +275,7 @@ TEST(SceneRenderer, ClothThatLeavesThePictureIsMissedAndSaidSo) {
   EXPECT_TRUE(renderer.in_sight(0, 1));
   EXPECT_TRUE(renderer.in_sight(1, 0.25));
   EXPECT_FALSE(renderer.in_sight(1, 1));
-  // Without the sheet both halves show the same ball; the plate with the text stands in one.
+  // Without the sheet both halves show the same ball; one of them has the label.
   Image empty = renderer.panel(1, 1), marked = empty;
   mark_absence(marked, renderer, 1, 1, layout.unit);
   EXPECT_GT(difference(empty, marked).largest, 100);
@@ -299,7 +300,7 @@ TEST(SceneRenderer, VerticesAreProjectedToWhereTheyAreDrawn) {
   for (const auto& p : points) EXPECT_LT(std::max(std::abs(p.x()), std::abs(p.y())), 1);
 }
 
-// Stretched to a thread of a thousandth of a pixel, no sample of any pixel lies in it.
+// A thread that is a thousandth of a pixel wide contains no sample of any pixel.
 TEST(SceneRenderer, AThreadOfClothIsSeenFromEndToEnd) {
   const Scene scene = test::level_sheet(9);
   RecordedRun thread = test::stretched(scene, 0);
@@ -325,7 +326,8 @@ TEST(SceneRenderer, AThreadOfClothIsSeenFromEndToEnd) {
   EXPECT_GE(seen, column(ends.max.x()) - column(ends.min.x()) - 2);
 }
 
-// A ball that comes from far away is seen at the cloth, the cloth is not a speck on its way.
+// A ball that comes from far away is shown near the cloth; the cloth is not a speck on the ball's
+// path.
 TEST(Placing, FramesTheClothAndNotTheWholeWayOfACollider) {
   Scene scene = test::level_sheet(9);
   scene.colliders.push_back({Ball{Vec3(-10, 0, 0), 0.3}, {.velocity = Vec3(20, 0, 0)}, 0});
@@ -347,7 +349,7 @@ TEST(Figure, WhatIsWrittenBelowIsTheQuantityThatIsShown) {
             (std::vector<std::string>{"max |ε| = 4.10 %", "mean ε = \u22120.20 %"}));
 }
 
-// Cloth that sinks into a ball is lifted to its surface, and only hatched there.
+// Cloth that sank into a ball is drawn on its surface and marked by a hatch alone.
 TEST(SceneRenderer, SunkenClothStaysVisible) {
   const Scene scene = test::sheet_over_ball(17);
   RecordedRun sunken = test::draped(scene, 7);
@@ -357,7 +359,7 @@ TEST(SceneRenderer, SunkenClothStaysVisible) {
         x = Vec3(0, -0.31, 0) + (x - Vec3(0, -0.31, 0)) * (0.29 / 0.305);
   const std::vector<RecordedRun> runs{test::draped(scene, 7), sunken};
   SceneRendererOptions options = small();
-  options.range = 100;  // no colour of its own
+  options.range = 100;  // so wide that strain does not change the colour
   const SceneRenderer renderer(scene, runs, options);
   const Image stable = renderer.panel(0, 1), sank = renderer.panel(1, 1);
   EXPECT_LT(difference(stable, sank).mean, 4);
@@ -434,8 +436,8 @@ TEST(RecordedRun, AnExplodedPanelIsMarked) {
   EXPECT_GT(share_of(after, alarm), 0.01);
 }
 
-/// Compares with tests/render/golden/NAME.png. TAUT_UPDATE_GOLDEN=1 writes it anew. Another Mesa,
-/// font hinting or CPU may move single pixels: the mean over the picture is what must stay.
+/// Compares with tests/render/golden/NAME.png; TAUT_UPDATE_GOLDEN=1 writes it anew. Another Mesa,
+/// font hinting or CPU may change single pixels, so that the mean over the picture is compared.
 void expect_golden(const std::string& name, const Image& picture) {
   const fs::path golden = fs::path(TAUT_SOURCE_DIR) / "tests/render/golden" / (name + ".png");
   if (std::getenv("TAUT_UPDATE_GOLDEN")) write_png(golden, picture);

@@ -1,5 +1,4 @@
-// The surfaces that are drawn, the light on them, and where camera and ground stand, by their
-// geometry.
+// Geometry of the surfaces that are drawn, their light, and the places of camera and ground.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +11,7 @@
 namespace taut::surfaces_test {
 namespace {
 
-/// What the faces enclose around the origin, which sees all of them [m^3].
+/// Volume enclosed by the faces around the origin, from which all of them are visible [m^3].
 double volume(const RenderMesh& mesh) {
   double six = 0;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -31,7 +30,7 @@ double area(const RenderMesh& mesh) {
 
 TEST(DrawnSheet, PassesThroughItsParticles) {
   const Scene scene = test::level_sheet(5);
-  const ClothMesher mesher(scene, 16);  // 4 pieces a quad
+  const ClothMesher mesher(scene, 16);  // 4 pieces per quad
   std::vector<Vec3> x = scene.start.x;
   std::vector<double> values, depths;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -55,7 +54,7 @@ TEST(DrawnSheet, PassesThroughItsParticles) {
       EXPECT_NEAR(mesh.hidden[k], p.z(), 1e-5);
       EXPECT_NEAR(mesh.uv[k].x(), static_cast<float>(i) / 4, 1e-6);
       EXPECT_NEAR(mesh.uv[k].y(), static_cast<float>(j) / 4, 1e-6);
-      // A parabola of rows is drawn exactly between the outermost quads.
+      // A parabola of rows is reproduced exactly between the outermost quads.
       if (i >= 4 && i <= 12) {
         EXPECT_NEAR(p.y(), p.x() * p.x(), 1e-6);
       }
@@ -164,7 +163,7 @@ TEST(DrawnColliders, HaveTheirSizesLessTheInset) {
   EXPECT_NEAR(area(sharp), 8 * (0.4 * 0.3 + 0.3 * 0.2 + 0.2 * 0.4), 1e-4);
   RenderMesh round = collider_mesh({box, {}, 0}, 0, {.inset = 0.1, .rounding = 0.05});
   for (Vec3f& p : round.position) p -= Vec3f(1, 0, 0);
-  const double r = 0.05, a = 0.7, b = 0.5, c = 0.3;  // sides of the core
+  const double r = 0.05, a = 0.7, b = 0.5, c = 0.3;  // radius, and sides of the core
   EXPECT_NEAR(volume(round),
               a * b * c + 2 * r * (a * b + b * c + c * a) + pi * r * r * (a + b + c) +
                   4 * pi / 3 * r * r * r,
@@ -233,7 +232,7 @@ TEST(Lights, AreAKeyFromTheLeftAFillFromTheRightAndTheSky) {
   for (std::size_t i = 18; i < 36; ++i) EXPECT_GT(lights[i].direction.y(), 0);
 }
 
-/// Mean brightness, 0 to 1, of the pixels around this place of a picture.
+/// Mean brightness of the pixels around this place of a picture, 0 to 1.
 double brightness(const Image& picture, double x, double y) {
   double sum = 0;
   for (int j = -2; j <= 2; ++j)
@@ -245,8 +244,8 @@ double brightness(const Image& picture, double x, double y) {
   return sum;
 }
 
-// A canopy over level ground, seen from 60 degrees above: what lies in its shade is dark, its upper
-// side and the ground far from it are as bright as if there were nothing else.
+// A canopy above level ground, seen from 60 degrees above: its shadow is dark. Its upper side, and
+// ground far from it, are as bright as without any other object.
 TEST(Lights, OpenGroundIsBrightAndBelowACanopyDark) {
   Panel panel;
   const std::vector<Vec3> seen{Vec3(-2, 0, -2), Vec3(2, 0, 2)};
@@ -268,7 +267,7 @@ TEST(Lights, OpenGroundIsBrightAndBelowACanopyDark) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = scale * scene.start.x[i] + Vec3(0, height, 0);
     return mesher.mesh(x, none, none);
   };
-  /// Where a point of the world stands in the picture, of brightness 0 to 1.
+  /// brightness, 0 to 1, where the picture shows a point of the world
   const auto at = [&](const Image& picture, const Vec3f& p) {
     const Eigen::Vector4d clip = (panel.camera.world_to_clip(1) * p.homogeneous()).cast<double>();
     return brightness(picture, 0.5 + 0.5 * clip.x() / clip.w(), 0.5 - 0.5 * clip.y() / clip.w());
@@ -287,7 +286,8 @@ TEST(Lights, OpenGroundIsBrightAndBelowACanopyDark) {
   const double uncovered = at(renderer.draw(panel), Vec3f(0, 0.05f, 0));
   EXPECT_NEAR(at(covered, Vec3f(0, 0.5f, 0)), uncovered, 0.01) << "height makes no difference";
   EXPECT_NEAR(at(covered, far), at(open, far), 0.01) << "far from it";
-  // The key light comes from the left at 52 degrees: its shadow is seen to the right of the canopy.
+  // The key light comes from the left at 52 degrees, so that the shadow lies to the right of the
+  // canopy.
   EXPECT_LT(at(covered, Vec3f(0.65f, 0, -0.1f)), 0.85 * at(open, far)) << "in its shade";
   EXPECT_GT(at(covered, Vec3f(-0.65f, 0, -0.1f)), 0.9 * at(open, far)) << "on its bright side";
 }

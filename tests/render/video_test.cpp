@@ -1,4 +1,4 @@
-// Video, media for the report, and export to other tools.
+// Videos, media for the report, and export to other tools.
 #include <gtest/gtest.h>
 #include <png.h>
 #include <unistd.h>
@@ -84,7 +84,7 @@ TEST_F(VideoTest, ADecodedFrameMatchesItsStill) {
   ASSERT_EQ(raw.size(), decoded.pixels().size() * sizeof(Rgb8));
   std::memcpy(&decoded.at(0, 0), raw.data(), raw.size());
   const test::Difference d = test::difference(still, decoded);
-  EXPECT_LT(d.mean, 1.7);  // 4:2:0 chroma and crf 22; a wrong colour matrix gives more
+  EXPECT_LT(d.mean, 1.7);  // chroma 4:2:0 and crf 22; a wrong colour matrix would exceed this
   const std::string tags = output_of(
       "ffprobe -v error -select_streams v -show_entries "
       "stream=codec_name,pix_fmt,color_space,color_transfer,color_primaries,color_range -of csv " +
@@ -107,7 +107,7 @@ TEST_F(VideoTest, MediaHasAVideoForEveryMomentTheSameBytesAgain) {
   const Media picture = render_media(scene, runs, still);
   EXPECT_EQ(picture.mp4, "");
   EXPECT_EQ(picture.poster, media.poster);
-  // the cloth moves all the time: each frame is another picture
+  // the cloth moves throughout, so that all frames differ
   std::ofstream(folder_ / "film.mp4", std::ios::binary) << media.mp4;
   std::istringstream frames(output_of("ffmpeg -v error -i " + (folder_ / "film.mp4").string() +
                                       " -f framemd5 - | grep -v '^#'"));
@@ -140,7 +140,7 @@ TEST_F(VideoTest, WithoutFfmpegThereIsAPoster) {
   EXPECT_EQ(media.poster.substr(1, 3), "PNG");
 }
 
-/// Without ffmpeg a film is its poster: what is chosen for it takes no encoder.
+/// Without ffmpeg a film is its poster; choosing it needs no encoder.
 class Posters : public testing::Test {
  protected:
   void SetUp() override { setenv("PATH", "/nowhere", 1); }
@@ -157,7 +157,7 @@ class Posters : public testing::Test {
   const std::string path_ = std::getenv("PATH");
 };
 
-/// The level sheet strained by `strain`(t) and moved along x by `way`(t) [m].
+/// Level sheet with the strain `strain`(t), moved along x by `way`(t) [m].
 RecordedRun moving(
     const Scene& scene, const std::function<double(double)>& strain,
     const std::function<double(double)>& way = [](double) { return 0.0; }) {
@@ -208,10 +208,10 @@ TEST_F(Posters, FramesAreWholeStepsAtAboutTheRateOfTheFilm) {
 TEST_F(Posters, ShowWhereTheRunsDifferMost) {
   const Scene scene = test::level_sheet(3);
   const auto poster = [&](const std::vector<RecordedRun>& runs) {
-    return media_of(scene, runs, 1).poster_t * 64 / 3;  // the frame of 22
+    return media_of(scene, runs, 1).poster_t * 64 / 3;  // number of the frame at 22 frames a second
   };
   const auto none = [](double) { return 0.0; };
-  /// `much` in frame k, else little.
+  /// `much` in frame k, otherwise little.
   const auto at = [](int k, double much, double little) {
     return [=](double t) { return std::lround(t * 64) == 3 * k ? much : little; };
   };
@@ -230,7 +230,7 @@ TEST_F(Posters, ShowWhereTheRunsDifferMost) {
       << "between the least and the largest";
   EXPECT_EQ(poster({moving(scene, at(6, 0.3, 0.2))}), 6) << "of one alone its own";
   const double size = extent(scene);
-  const auto little = at(5, 9e-4, 0);  // strain that nobody sees
+  const auto little = at(5, 9e-4, 0);  // strain too small to see
   EXPECT_EQ(poster({moving(scene, none), moving(scene, little, at(11, 0.011 * size, 0))}), 11);
   EXPECT_EQ(poster({moving(scene, none), moving(scene, little, at(11, 0.009 * size, 0))}), 14)
       << "two thirds on the way";
@@ -270,7 +270,7 @@ Record ran(const std::string& scene, const std::string& solver, const Status& st
   return r;
 }
 
-/// Who is called with the line of each film, and with no more than that.
+/// Callback for the news of each film; checks the progress numbers.
 auto teller(const std::function<void(const std::string&)>& hear) {
   return [=](const std::string& news, std::size_t done, std::size_t all) {
     EXPECT_LE(done, all);
@@ -284,7 +284,8 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
                     small = (scratch.path() / "small.toml").string();
   write_file(small, cloth + "pins = [0]\n[time]\ndt = \"1/64\"\nduration = 0.25\n");
   const double size = extent(*make_case({small, {}, "jakobsen"}).scene);
-  /// Half a second to cross its own size; at the limit, and just above it.
+  /// Speeds [sizes of the cloth per second] and expected speeds of the film, in which the cloth
+  /// needs at least half a second to cross its own size: at this limit, and just above it.
   const std::pair<double, double> thrown[] = {{4, 0.5}, {2, 1}, {4.01, 0.25}, {8.01, 0.125}};
   std::vector<OtherScene> others;
   for (const auto& [speed, expected] : thrown) {
@@ -352,7 +353,7 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   ASSERT_FALSE(input.series.empty());
   for (const report::TimeSeries& series : input.series)
     EXPECT_TRUE(series.scene.starts_with("thrown")) << "a study has its own";
-  // Made once: the second report takes what the first one kept.
+  // Films are made once: the second report uses those that the first one stored.
   report::ReportInput again;
   again.studies = input.studies;
   add_films(again, others, scratch.path() / "films",
@@ -371,7 +372,7 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   ASSERT_EQ(again.series.size(), input.series.size());
   for (std::size_t k = 0; k < again.series.size(); ++k)
     EXPECT_EQ(again.series[k].t, input.series[k].t);
-  // What is damaged is made once more.
+  // Damaged files are made again.
   for (const auto& entry : fs::directory_iterator(scratch.path() / "films"))
     if (entry.path().string().ends_with("-poster.jpg") ||
         entry.path().string().ends_with("-poster.png")) {
@@ -386,7 +387,7 @@ TEST_F(Posters, AFilmShowsTheQuotedCasesAndWhoRefuses) {
   EXPECT_EQ(mended.size(), 1u);
   ASSERT_EQ(again.media.size(), input.media.size());
   EXPECT_EQ(again.media[0].footage.poster, input.media[0].footage.poster);
-  // Another case is another film.
+  // Another case gets another film.
   again.studies[0].records[0] = ran(small, "xpbd:substeps=1,iterations=3");
   std::vector<std::string> made;
   add_films(again, {}, scratch.path() / "films",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Made-up results (failures that left values behind, ties, noise, one solver alone, metrics missing, unequal work) go
-through `taut report`, and every cell of the answer is made again from the raw rows by other code.
+"""Made-up results (failures that left values behind, ties, noise, a single solver, missing metrics, unequal work) go through
+`taut report`, and other code recomputes every cell of the answer from the raw rows.
 
     answer_test.py BINARIES
 """
@@ -20,7 +20,7 @@ import unittest
 
 TAUT = MADE_UP = ""
 SEEDS = range(1, 25)
-# Metric: what the last row is, what less counts as.
+# Metric: kind of the last row, and the value as which smaller values count.
 METRICS = {"stretch.rms": ("mean", 1e-3), "motion.share": ("mean", 0), "penetration.peak": ("largest", 1e-6),
            "face.peak": ("largest", 1e-6), "step.error": ("mean", 1e-6), "tunnelling.events": ("sum", 0)}
 BUDGETS = [0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3]
@@ -32,7 +32,7 @@ def ended(status):
 
 
 def raw_rows(folder):
-    """Every stored case; numbers that a failure left behind are among its values."""
+    """Every stored case; its values include numbers that a failure left behind."""
     base = sqlite3.connect(os.path.join(folder, "results", "results.db"))
     values = collections.defaultdict(dict)
     for case, name, value in base.execute("select case_id, name, value from numbers join metrics using (metric_id)"):
@@ -48,7 +48,7 @@ def raw_rows(folder):
 
 
 def timed_rows(folder):
-    """What was timed, by scene: rows with their median cost per simulated second."""
+    """Timed rows by scene, with their median cost per simulated second."""
     scenes, path = collections.defaultdict(list), os.path.join(folder, "bench.csv")
     if not os.path.exists(path):
         return scenes
@@ -61,14 +61,14 @@ def timed_rows(folder):
     return scenes
 
 
-# A level sheet of a metre: a thousandth of its diagonal.
+# A thousandth of the diagonal of a level sheet of one metre.
 DEEPEST = 1e-3 * math.sqrt(2)
 LEVELS = [0.1, 0.03, 0.01, 0.003, 0.001]
-SOLVE_ALL = {"admm"}  # their iteration is no sweep
+SOLVE_ALL = {"admm"}  # their iterations are not sweeps
 
 
 def way_gone(row):
-    """Of its way: by the reference in motion, else by exact steps, else by what its own miss; (None, 1): nothing says it."""
+    """(source, share of the way that the cloth moves), from the reference motion, exact steps or missed steps; (None, 1) if unknown."""
     by = next((name for name in ("motion.share", "way.share", "step.share") if name in row.values), None)
     return by, row.values.get(by, 1)
 
@@ -78,7 +78,7 @@ def hardly_moves(row):
 
 
 def not_counted(row):
-    """Why a case wins nothing although it reaches an error: what its scene does not accept. Nobody passes through a plane."""
+    """Reasons why a case that reaches an error cannot win: limits that its scene does not accept. A plane is never passed through."""
     if hardly_moves(row):
         return ["hardly moves"]
     limits = {"tunnelling.events": math.inf if row.scene == "plane" else 0, "penetration.peak": DEEPEST, "stretch.rms": 0.1}
@@ -86,13 +86,13 @@ def not_counted(row):
 
 
 def ratio(a, b):
-    """Cost of a over cost of b: the median over blocks of two samples each."""
+    """Cost of a over cost of b, as the median over blocks of two samples each."""
     sums = [[sum(map(float, row["samples"].split()[i:i + 2])) for i in range(0, 8, 2)] for row in (a, b)]
     return math.exp(statistics.median(math.log(x / y) for x, y in zip(*sums))) * float(b["dt"]) / float(a["dt"])
 
 
 class Table:
-    """A table of the answer: its rows by label, the last one apart."""
+    """A table of the answer: its rows by label, and the last row separately."""
 
     def __init__(self, json_table):
         self.columns = [c["name"] for c in json_table["columns"]][1:]
@@ -104,7 +104,7 @@ class Table:
 
 
 class Report:
-    """One made-up run: what it holds and what the program makes of it."""
+    """One made-up run: its raw results, and the answer of the program."""
 
     def __init__(self, seed):
         with tempfile.TemporaryDirectory() as folder:
@@ -123,7 +123,8 @@ class Report:
         self.works = self.compared_works()
 
     def compared_works(self):
-        """At which work each solver is compared: the one that all ran nearest to 1 x 16, else each its commonest of 16 sweeps."""
+        """Work at which each solver is compared: the common work nearest to 1 x 16. Without a common work it is each solver's most
+        frequent one with the common number of sweeps nearest to 16."""
         own = {s: collections.Counter(r.work for r in self.raw if r.solver == s) for s in self.solvers}
 
         def far(work):
@@ -136,7 +137,7 @@ class Report:
         return {s: max((w for w in own[s] if w[1] == best), key=lambda w: (own[s][w], -far(w))) for s in self.solvers}
 
     def compared(self, scene):
-        """The case of each solver at the time step that most ran, of equals the one nearest to 1/64 s."""
+        """The case of each solver at the time step that most solvers ran; of equal ones, at the step nearest to 1/64 s."""
         at = collections.defaultdict(dict)
         for r in self.raw:
             if r.scene == scene and r.work == self.works[r.solver]:
@@ -153,7 +154,7 @@ def why_none(row):
 
 
 class Still(float):
-    """An error of cloth that goes less than half of its way: shown, not compared."""
+    """An error of cloth that moves less than half of its way: shown but not compared."""
 
 
 def compared(value):
@@ -161,7 +162,7 @@ def compared(value):
 
 
 def best_of(values, nothing):
-    """Who has less than all others by more than a twentieth; None: nobody."""
+    """The solver whose value is smaller than all others by more than a twentieth; None if there is none."""
     ranked = sorted((max(v, nothing), s) for s, v in values.items())
     if len(ranked) < 2:
         return None
@@ -173,7 +174,7 @@ class Answer(unittest.TestCase):
     seen = collections.Counter()
 
     def one(self, table, name, cells, last, label, marks):
-        """Holds a table against its cells {row: {solver: value or text}}, its last row and who is marked."""
+        """Compares a table with its expected cells {row: {solver: value or text}}, its last row and its marks."""
         self.assertEqual(set(table.rows), set(cells), name)
         for row, values in list(cells.items()) + [(None, last)]:
             shown = table.last[1] if row is None else table.rows[row]
@@ -191,7 +192,7 @@ class Answer(unittest.TestCase):
         self.assertTrue(table.last[0] == label or len(cells) == 1, f"{table.last[0]}, not {label}")
 
     def last_row(self, cells, columns, kind, nothing):
-        """The last row by its definition, and what it is called."""
+        """The last row by its definition, and its label."""
         having = [c for c in columns if any(compared(row[c]) for row in cells.values())]
         common = [row for row in cells.values() if all(compared(row[c]) for c in having) and
                   (nothing == 0 or kind != "mean" or any(row[c] >= nothing for c in having))]
@@ -236,12 +237,12 @@ class Answer(unittest.TestCase):
         table = report.tables[metric]
         last, label = self.last_row(cells, report.columns, kind, nothing)
 
-        self.one(table, metric, cells, last, label, lambda row: None)  # sweeps cost unequally: nobody is best
+        self.one(table, metric, cells, last, label, lambda row: None)  # costs of sweeps differ, so that no solver is marked
         for scene, row in table.rows.items():
             for solver, (value, note) in row.items():
                 self.assertEqual(note.get("state") == "hardly_moves", (scene, solver) in still)
         self.seen["hardly moves"] += len(still)
-        for scene, row in table.rows.items():  # each cell leads to its case
+        for scene, row in table.rows.items():  # each cell links to its case
             for solver, case in report.compared(scene).items():
                 if metric != "stretch.rms" or solver not in SOLVE_ALL:
                     self.assertTrue(case.key.startswith(row[solver][1]["key"]), metric)
@@ -273,7 +274,7 @@ class Answer(unittest.TestCase):
         self.one(report.tables["largest_step"], "largest_step", cells, last, label, lambda row: None)
 
     def failures(self, report):
-        """Of what all solvers of a scene ran; the sum is over scenes on which all ran something."""
+        """Failures among the cases that all solvers of a scene ran, summed over scenes on which all ran something."""
         cells, of = {}, collections.Counter()
         for scene in dict.fromkeys(r.scene for r in report.raw):
             asked = {s: {(r.work, r.dt): r.status for r in report.raw if (r.scene, r.solver) == (scene, s)} for s in report.columns}
@@ -300,7 +301,7 @@ class Answer(unittest.TestCase):
             for row in rows:
                 cases.setdefault(row["key"], (row["scene_id"], row["solver"], row["status"]))
         of = collections.Counter((scene, solver) for scene, solver, _ in cases.values())
-        # The page counts the same elsewhere.
+        # The page shows the same counts in another place.
         for scene in report.model["scenes"]:
             for solver, statuses in scene.get("statuses", {}).items():
                 self.assertEqual(sum(statuses.values()), of[scene["id"], solver])
@@ -350,7 +351,7 @@ class Answer(unittest.TestCase):
                                  set().union(*(bounds[scene] for scene in common)))
 
     def is_bound(self, rows, case):
-        """Whether no cheaper setting of the case's solver was tried: its cost is an upper bound."""
+        """Whether no cheaper setting of the case's solver was tried, so that its cost is an upper bound."""
         def work(row):
             own = dict(part.split("=") for part in row["setting"].split(":", 1)[-1].split(",") if "=" in part)
             return int(own.get("substeps", 1)) * int(own["iterations"])
@@ -360,7 +361,7 @@ class Answer(unittest.TestCase):
                        if r["solver"] == case["solver"])
 
     def price_marks(self, row, noise, bounds):
-        """Intervals hold their middle; only a cost that is less beyond tolerance and noise is marked, and than no upper bound."""
+        """Intervals contain their middle. A cost is only marked if it is lower beyond tolerance and noise and no other is a bound."""
         numbers = {s: v for s, (v, _) in row.items() if isinstance(v, list)}
         for low, mid, high in numbers.values():
             self.assertLessEqual(low, mid)
@@ -372,17 +373,17 @@ class Answer(unittest.TestCase):
             return
         over = numbers[ranked[1]][1] / numbers[ranked[0]][1]
         self.assertTrue(marked in ([], [ranked[0]]))
-        if over < 0.9 * (1 + max(noise, 0.05)):  # the ratio's middle is not that of the medians
+        if over < 0.9 * (1 + max(noise, 0.05)):  # the middle of the ratio differs from the ratio of medians
             self.assertEqual(marked, [], f"{over}, noise {noise}")
             self.seen["not marked"] += 1
         if any(s in bounds for s in ranked[1:]):
             self.assertEqual(marked, [])
-        elif over > 2.5:  # samples of one case spread by half at most
+        elif over > 2.5:  # samples of a case vary by at most half
             self.assertEqual(marked, ranked[:1], f"{over}, noise {noise}")
             self.seen["marked"] += 1
 
     def winners(self, report):
-        """The map of who is cheapest where: who, at which setting and cost, over whom by how much, what is passed over."""
+        """The map of the cheapest solvers: solver, setting, cost, the next solver and its ratio, and settings that are passed over."""
         if not report.timed:
             self.assertNotIn("winners", report.model)
             return
@@ -399,7 +400,7 @@ class Answer(unittest.TestCase):
                     self.winner(timed, level, cell)
 
     def winner(self, timed, level, cell):
-        best = {}  # of each solver
+        best = {}  # by solver
         for row in sorted((r for r in timed if r["usable"] and r["error"] <= level), key=lambda r: -r["cost"]):
             best[row["solver"]] = row
         ranked = sorted(best.values(), key=lambda r: r["cost"])
@@ -426,7 +427,7 @@ class Answer(unittest.TestCase):
         alike, told = {c["solver"] for c in cell["cheapest"]}, []
         for row in ranked[1:]:
             over = ratio(row, first)
-            if row["solver"] in alike:  # what cannot be told, or whose cost is an upper bound
+            if row["solver"] in alike:  # cannot be told apart, or its cost is an upper bound
                 self.assertTrue(over < 2.5 or self.is_bound(timed, row), f"{over}, noise {noise}")
             else:
                 self.assertGreater(over, max(1.05, 1 + noise))
@@ -443,7 +444,7 @@ class Answer(unittest.TestCase):
             self.seen["won"] += len(alike) == 1
 
     def said(self, report):
-        """Counts and ratios of the sentences are those of the map, and every number leads somewhere."""
+        """Counts and ratios in the sentences agree with the map, and every number is a link."""
         cells = [cell for row in report.model.get("winners", {}).get("rows", []) for cell in row["cells"]]
         if not cells:
             return
@@ -469,7 +470,7 @@ class Answer(unittest.TestCase):
         self.seen["said"] += 1
 
     def setting(self, report, table, cheapest):
-        """Of all scenes: the setting that reaches the error on most of them, of equals the cheapest in the mean."""
+        """The setting that reaches the error on most scenes; of equal ones, the cheapest on average."""
         for solver, (value, note) in table.last[1].items():
             reached = collections.defaultdict(list)
             for rows in report.timed.values():

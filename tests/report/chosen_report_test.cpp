@@ -1,5 +1,4 @@
-// One small report whose every number was chosen: what its cases, charts, panels, films and tables
-// say.
+// A small report with chosen numbers: the contents of its cases, charts, panels, films and tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,13 +18,13 @@ namespace {
 
 Json model_of(const ReportInput& input) { return parse_json(make_model(input)); }
 
-/// "hj04kkkkkkkk": twelve digits of a key, as the model has them.
+/// "hj04kkkkkkkk": twelve digits of a key, as in the model.
 std::string short_key(const std::string& scene, const std::string& solver, int sweeps) {
   return std::string{scene[0], solver[0], sweeps < 10 ? '0' : '1'} + std::to_string(sweeps % 10) +
          "kkkkkkkk";
 }
 
-/// A small report whose every number was chosen: two solvers on two scenes, one refusal.
+/// Small report with chosen numbers: two solvers on two scenes, one refusal.
 ReportInput chosen() {
   ReportInput input;
   input.studies = {{"sweeps", "How many?", {}, 9, {{"hang", -1}}}, {"other", "?", {}, 0, {}}};
@@ -172,7 +171,7 @@ TEST(Chosen, AFilmHasItsPanelsItsBarAndItsEvents) {
   EXPECT_EQ(film["bar"], (Json{{"title", "strain"},
                                {"stops", {"#000000", "#FFFFFF"}},
                                {"ticks", {{{"at", 0.5}, {"text", "0 %"}}}}}));
-  const Json range{{"axis", "linear"}, {"low", 0}, {"high", 10 + 0.06 * 10}};  // of 0.1
+  const Json range{{"axis", "linear"}, {"low", 0}, {"high", 10 + 0.06 * 10}};  // intervals of 0.1
   const Json line{{"solver", "jakobsen"},
                   {"label", "J"},
                   {"dash", ""},
@@ -255,11 +254,12 @@ TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
   EXPECT_TRUE(model["answer"]["subject"].get<std::string>().starts_with("B alone, y."));
 }
 
-// Two builds of one solver in sessions of their own: the geometric mean, and never more than
-// likely.
+// Two builds of a solver in sessions of their own: the result is a geometric mean, and at most
+// "likely".
 TEST(Chosen, CostsOfTwoFoldersAreComparedSolverBySolver) {
   ReportInput input = chosen();
-  const std::vector<Record>& records = input.studies[0].records;  // in turns Jakobsen's, Bullet's
+  // alternating between Jakobsen's and Bullet's
+  const std::vector<Record>& records = input.studies[0].records;
   const auto timed = [](const Record& r, double cost) {
     const std::vector<double> samples(12, cost * r.dt);
     return BenchedCase{r, {samples, samples, 0, "", ""}};
@@ -293,7 +293,8 @@ TEST(Chosen, CostsOfTwoFoldersAreComparedSolverBySolver) {
   }));
 }
 
-// Three builds of which the last stepped; the one in between has no result of the case.
+// Three builds, the last of them with a step in its results; the middle build has no result for the
+// case.
 TEST(Chosen, AHistoryHasALineForEachCase) {
   ReportInput input = chosen();
   EXPECT_FALSE(model_of(input).contains("history"));
@@ -371,7 +372,7 @@ TEST(Chosen, ACostIsThatOfTheCheapestWithinTheError) {
     EXPECT_EQ(note["key"], short_key("hang", solver, row == 0 ? 4 : solver == "bullet" ? 16 : 8));
     EXPECT_TRUE(text.ends_with(", " + quantity("motion.share").title + " 60\u00A0%")) << text;
     EXPECT_EQ(text.find(quantity("stretch.rms").title), text.npos) << "the row has it: " << text;
-    // 10 % is reached by the cheapest settings that were tried: upper bounds
+    // 10 % is reached by the cheapest settings tried, so that costs are upper bounds
     EXPECT_EQ(note.contains("best"), solver == "jakobsen" && row >= 1) << row;
     ++seen;
   }
@@ -383,7 +384,7 @@ TEST(Chosen, ACostIsThatOfTheCheapestWithinTheError) {
   EXPECT_TRUE(profiles["caption"].get<std::string>().starts_with("Share of 5 problems, each "));
 }
 
-// The largest change first, and no more rows than one reads.
+// The largest changes come first; the number of rows is limited.
 TEST(Chosen, OfManyChangesTheLargestAreListed) {
   ReportInput input = chosen();
   Differences two{"x", "y", {}, {}, 0, 0, 0};
@@ -403,7 +404,7 @@ TEST(Chosen, OfManyChangesTheLargestAreListed) {
     EXPECT_NEAR(table["rows"][i][4].get<double>(), (250 - static_cast<double>(i)) * 1e-3, 1e-12);
 }
 
-// What this program's own truths say of an assertion stands in the place of what was found before.
+// Verdicts of this program's own truths replace stored verdicts on an assertion.
 TEST(Chosen, AssertionsHaveTheVerdictOfThisProgram) {
   ReportInput input = chosen();
   const Json earlier = model_of(input), &before = earlier["tables"]["assertions"];

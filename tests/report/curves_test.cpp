@@ -1,4 +1,4 @@
-// Curves and the words for them: what a chart holds fixed, orders, fits and names.
+// Curves and their labels: what a chart keeps fixed, orders of convergence, fits and names.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ TEST(Slices, KeepWhatHasNoSuchSetting) {
   EXPECT_EQ(slice.records[2], &all[5]);
 }
 
-// Positions that another program computed have no sweeps, but a step; rounding is their floor.
+// Positions computed by another program have a time step but no sweeps; their floor is rounding.
 TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
   StudyResult study{"iterations", "?", synthetic::iterations("hang"), 0, {}};
   for (const double dt : {1.0 / 64, 1.0 / 32}) {
@@ -62,7 +62,8 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
     study.records.push_back(file);
   }
   Record failed =
-      synthetic::record("hang", "jakobsen", 512, 1.0 / 64);  // drawn as a mark, at its sweeps
+      // drawn as a mark at its number of sweeps
+      synthetic::record("hang", "jakobsen", 512, 1.0 / 64);
   failed.status = {Status::Kind::exploded, "energy", 3, 0};
   failed.values.clear();
   study.records.push_back(failed);
@@ -208,7 +209,7 @@ TEST(Settings, AcceleratorsThatTheOtherLacksAreExtras) {
   EXPECT_EQ(extras(r, {}), Names{});
 }
 
-/// Records of two solvers at these substeps and sweeps.
+/// Records of two solvers with these substeps and sweeps.
 std::vector<Record> at_work(const std::vector<std::pair<std::string, std::vector<Work>>>& all) {
   std::vector<Record> records;
   for (const auto& [solver, works] : all)
@@ -286,7 +287,7 @@ TEST(Charts, ATheoryLineLiesBelowTheLowestPoint) {
   chart.slope = -1;  // y x: 8, 6, 8
   EXPECT_NEAR(theory_factor(chart), 0.6 * 6, 1e-12);
   EXPECT_EQ(chart.ticks, (std::vector<double>{1, 2, 4}));
-  chart.curves[0].points[0].x = 0;  // nobody knows its work
+  chart.curves[0].points[0].x = 0;  // its work is unknown
   EXPECT_EQ(pareto_front(chart).size(), 2u);
   EXPECT_NEAR(theory_factor(chart), 0.6 * 6, 1e-12);
   EXPECT_EQ(tick_of(quantity("dt"), 0.004), "4");

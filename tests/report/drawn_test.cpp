@@ -1,4 +1,4 @@
-// What the model draws, counts and names, held against the raw records of made-up reports.
+// What the model draws, counts and names, compared with the raw records of made-up reports.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ bool fails(const std::string& status) {
   return status != "ok" && status != "unsettled" && status != "unsupported";
 }
 
-/// One made-up report, its model and its cases by their short keys.
+/// Made-up report, its model, and its cases by their short keys.
 struct Made {
   explicit Made(unsigned seed) : input(made_up::Maker(seed).input()) {
     model = parse_json(make_model(input));
@@ -32,7 +32,7 @@ struct Made {
   std::map<std::string, Json> cases;
 };
 
-/// Made-up reports, made once.
+/// Made-up reports, created once.
 const std::vector<Made>& sets() {
   static const std::vector<Made> all = [] {
     std::vector<Made> made;
@@ -42,7 +42,7 @@ const std::vector<Made>& sets() {
   return all;
 }
 
-/// What a listed case has of a quantity: a setting, a measured value or its cost; null: none.
+/// Value of a quantity in a listed case: a setting, a measured value or its cost; null if absent.
 Json value_in(const Json& one, const std::string& metric) {
   for (const char* field : {"dt", "steps", "projections"})
     if (metric == field) return one[field];
@@ -52,7 +52,7 @@ Json value_in(const Json& one, const std::string& metric) {
   return one["values"].value(metric, Json());
 }
 
-/// A case lists its values to seven digits.
+/// Whether two values agree; a case lists its values to seven digits.
 bool same(const Json& a, const Json& b) {
   if (!a.is_number() || !b.is_number()) return a == b;
   const double x = a, y = b;
@@ -78,7 +78,7 @@ TEST(Drawn, APointIsMarkedAsItEndedWithinItsInterval) {
           EXPECT_EQ(one["scene"], chart["scene"]);
           const Json x = value_in(one, chart["x"]["metric"]);
           EXPECT_TRUE(p["x"] == x || (p["failed"] && x.is_null()))
-              << chart["id"];  // failed in time
+              << chart["id"];  // failed runs have a time
           if (!p["failed"]) {
             EXPECT_TRUE(same(p["y"], value_in(one, chart["y"]["metric"]))) << chart["id"];
           }
@@ -187,7 +187,7 @@ TEST(Drawn, ACellOfAMapIsTheCaseOfItsRowAndColumn) {
   EXPECT_GT(seen, 300U);
 }
 
-// A map over a setting of the scene: its cells differ in that one.
+// A map over a scene's setting: its cells differ in that setting alone.
 TEST(Drawn, AMapNamesItsAxesAndItsSharedSettings) {
   const Record other = synthetic::record("hang", "jakobsen", 8, 1.0 / 64);
   ReportInput input{.studies = {{"one", "?", {other}, 1, {}}},
@@ -244,7 +244,7 @@ TEST(Drawn, OfTwoCasesInOneCellTheWorseIsShown) {
   }
 }
 
-// A solver that has no sweeps has no place over them, nor has another scene.
+// Maps leave out solvers without sweeps, and other scenes.
 TEST(Drawn, AMapIsOfTheCasesThatHaveBothOfItsSettings) {
   std::vector<Record> records;
   for (const int sweeps : {1, 2})

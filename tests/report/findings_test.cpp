@@ -1,4 +1,4 @@
-// What other verbs left in a results folder, as a report has it.
+// Results of other verbs in a results folder, as a report reads them.
 #include "experiments/report/findings.hpp"
 
 #include <gtest/gtest.h>
@@ -175,7 +175,7 @@ TEST(ShownSeries, AreTheColumnsOfTheTableThatAFilmShows) {
   EXPECT_TRUE(shown_series(table, {}).empty()) << "one moment is no curve";
 }
 
-/// A study of two solvers, two numbers of sweeps and two time steps, that was run.
+/// Stored study of two solvers, two numbers of sweeps and two time steps.
 class StoredStudy : public testing::Test {
  protected:
   void SetUp() override {
@@ -293,12 +293,12 @@ TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
   std::vector<Record> all;
   for (const Case& one : cases_) all.push_back(*store_.find(one));
   for (std::size_t i = 1; i < 8;
-       ++i) {  // the first is missing; a parameter is new to all of a solver
+       ++i) {  // the first is missing; the parameter is new in all cases of a solver
     Record r = all[i];
     r.values["stretch.rms"] *= 2;
     if (r.solver == "xpbd") r.params["new"] = "1";
     put(r, "0" + std::to_string(i));
-    if (i == 7)  // two under one name: neither is compared
+    if (i == 7)  // two cases with the same name: neither is compared
     {
       r.params["new"] = "2";
       r.spec.solver += ",new=2";
@@ -321,7 +321,7 @@ TEST_F(StoredStudy, IsComparedWithAnotherFolderCaseByCase) {
   EXPECT_EQ(found.only_b, 3u);
   EXPECT_EQ(found.noise, 0);
 
-  // A folder that a second build ran into: what it stored last stands, whatever the key.
+  // A second build ran into this folder: the result stored last counts, whatever its key.
   for (const char* key : {"zz", "21"}) {
     Record r = all[3];
     r.values["stretch.rms"] = key[0] == 'z' ? 7 : 8;

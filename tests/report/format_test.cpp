@@ -1,4 +1,4 @@
-// Text for people and for other programs, at the borders of its rules.
+// Text for people and for other programs, at the limits of its rules.
 #include "experiments/report/chart/format.hpp"
 
 #include <gtest/gtest.h>
@@ -109,7 +109,7 @@ TEST(Words, AreJoinedAndCapitalisedAsInASentence) {
 double power(double n) { return std::exp2(n); }
 
 TEST(GeometricMean, AddsErrorsAsSquaresOfLogarithms) {
-  // 3 and 4 powers of two below, 6 and 8 above: 5 and 10 together.
+  // The means are 3 and 4 powers of two below, 6 and 8 above; together 5 and 10.
   const Interval mean =
       geometric_mean({{power(-1), power(2), power(8)}, {power(0), power(4), power(12)}});
   EXPECT_NEAR(mean.low, power(0.5), 1e-12);
@@ -148,7 +148,8 @@ TEST(Palette, ColoursDifferAndReadOnTheirBackgrounds) {
     EXPECT_TRUE(looks.insert(std::string(style.colour.light)).second) << solver;
     EXPECT_TRUE(looks.insert(std::string(style.colour.dark)).second) << solver;
     const std::string_view light = style.colour.light, dark = style.colour.dark;
-    const auto order = [&](std::string_view hex) {  // of the channels: the same hue in both themes
+    // order of the channels: both themes keep the hue
+    const auto order = [&](std::string_view hex) {
       return std::tuple(channel(hex, 0) < channel(hex, 1), channel(hex, 1) < channel(hex, 2),
                         channel(hex, 0) < channel(hex, 2));
     };

@@ -1,4 +1,5 @@
-// What panels share: scales, ends, what stands on the axis, dashes; and who is on the front.
+// Properties that panels share: scales, ends, labels on the axis, dashes; and the points on the
+// front.
 
 #include "experiments/report/chart/frame.hpp"
 
@@ -12,7 +13,7 @@
 namespace taut::report::frame_test {
 namespace {
 
-/// Charts of curves over sweeps; it owns what they point to.
+/// Charts of curves over sweeps; owns the curves that they point to.
 class Charts {
  public:
   Chart of(const std::string& scene, const std::vector<std::pair<double, double>>& points,

@@ -1,5 +1,5 @@
-// What the plot of frontiers draws: how many times harder each parameter may be made, and what
-// theory says.
+// The plot of frontiers: how many times harder each parameter can be made, and the predictions of
+// theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ TEST(FrontierPlot, BarsAreHowMuchHarderAParameterMayBeMade) {
   std::vector<std::vector<double>> rows;
   std::vector<std::string> ends;
   while (std::getline(csv, line)) {
-    // the parameter's name may hold a comma and is quoted then
+    // the name of the parameter may contain a comma and is then quoted
     const std::size_t name =
         line.find('"') == std::string::npos ? line.find(',', 2) : line.find('"', 3) + 1;
     std::istringstream rest(line.substr(name + 1));
@@ -72,7 +72,7 @@ TEST(FrontierPlot, BarsAreHowMuchHarderAParameterMayBeMade) {
     } else {
       EXPECT_NEAR(rows[k][4], theory[k], 1e-12);
     }
-    // bars of a parameter lie beside each other within its row
+    // bars of a parameter lie side by side within its row
     EXPECT_GT(rows[k][1] - rows[k][2], static_cast<double>(k / 2) - 0.5);
     EXPECT_LT(rows[k][1] + rows[k][2], static_cast<double>(k / 2) + 0.5);
   }

@@ -37,12 +37,13 @@ class Maker {
     }
     ReportInput input;
     input.studies = {sweeps, steps};
-    if (chance(0.1)) input.bench = bench(names, scenes);  // its intervals take the time
+    // the intervals of a bench take the most time
+    if (chance(0.1)) input.bench = bench(names, scenes);
     if (chance(0.2)) input.differences = differences(input);
     return input;
   }
 
-  /// Sets the status and the values. Failures keep values that would flatter them.
+  /// Sets the status and the values. Failed runs keep values that would flatter them.
   void fill(Record& r) {
     end(r);
     const bool failure = !completed(r.status);
@@ -55,7 +56,8 @@ class Maker {
     if (r.scene == "hang" || r.scene == "fall" || r.scene == "swing") return;
     const double peak = failure || chance(0.2) ? 0 : between(1e-6, 0.2);
     r.values["penetration.peak"] = peak;
-    r.values["penetration.max"] = chance(0.4) ? 0 : peak * uniform();  // 0: it has left
+    // 0: the cloth has left the collider
+    r.values["penetration.max"] = chance(0.4) ? 0 : peak * uniform();
     if (!chance(0.1)) r.values["face.peak"] = failure ? 0 : peak + between(1e-5, 0.1);
     r.values["face.max"] = 0;
     r.values["tunnelling.events"] = failure ? 0 : static_cast<double>(random_() % 3 * 28);
@@ -67,7 +69,7 @@ class Maker {
   double between(double low, double high) { return low * std::pow(high / low, uniform()); }
 
  private:
-  /// At least one of them, in any order.
+  /// Random nonempty selection in random order.
   std::vector<std::string> some(std::vector<std::string> all) {
     std::shuffle(all.begin(), all.end(), random_);
     all.resize(1 + random_() % all.size());
@@ -99,7 +101,7 @@ class Maker {
     const double die = uniform();
     if (die < 0.7) return;
     r.status.reason = "made up";
-    r.status.vertex = static_cast<int>(1000 * die) % 3 - 1;  // none, the first, another
+    r.status.vertex = static_cast<int>(1000 * die) % 3 - 1;  // none, the first or another vertex
     r.status.step = static_cast<int>(1e6 * die) % 3 - 1;
     r.status.kind = die < 0.78   ? Status::Kind::unsettled
                     : die < 0.82 ? Status::Kind::extreme
@@ -116,7 +118,8 @@ class Maker {
     study.records.push_back(r);
   }
 
-  /// The same cases again, most of them to the bit, others with other values or another end.
+  /// The same cases computed again: most with the same bits, others with other values or another
+  /// end.
   Differences differences(const ReportInput& input) {
     Differences found{"before", "after", {}, {}, 3, 0, chance(0.5) ? 0.02 : 0.3};
     const bool changed = chance(0.7);
@@ -149,7 +152,7 @@ class Maker {
       for (const std::string& solver : names) {
         if (chance(0.1)) continue;
         const double speed = between(0.5, 4);
-        const bool stubborn = chance(0.3);  // no setting reaches the priced error
+        const bool stubborn = chance(0.3);  // no setting reaches the error of the price table
         const bool to_the_end = chance(0.3);
         const double dt = 1.0 / (chance(0.2) ? 128 : 64);
         for (const auto& [substeps, sweeps] :

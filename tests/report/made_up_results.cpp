@@ -1,6 +1,5 @@
-// Writes a study and made-up results of it into a folder, as a run and a bench leave them, and what
-// was timed once more as rows of a CSV file: material of answer_test.py.
-//
+// Writes a study and made-up results into a folder, as a run and a bench would leave them, and the
+// timings again as rows of a CSV file. answer_test.py uses them.
 //     taut_made_up FOLDER SEED
 #include <fstream>
 #include <iostream>
@@ -19,7 +18,7 @@ using made_up::Maker;
 
 namespace {
 
-/// One solver alone, several, unequal work; scenes with colliders, without, and in free fall.
+/// One solver, or several with unequal work; scenes with colliders, without, and in free fall.
 std::string study_text(Maker& make) {
   std::string solvers =
       "\"jakobsen:substeps=" + std::string(make.chance(0.2) ? "5" : "1") + ",order=mesh\"";
@@ -38,11 +37,12 @@ void write_bench(Maker& make, const std::vector<Case>& cases,
   std::ofstream csv(folder / "bench.csv");
   csv << "scene,noise,key,scene_id,solver,setting,dt,status,stable,error,samples\n";
   StudyBench bench = StudyBench::here("made-up");
-  const double range = make.chance(0.5) ? 100 : 1.2;  // of costs: some are as good as equal
+  // range of costs: with 1.2 some are nearly equal
+  const double range = make.chance(0.5) ? 100 : 1.2;
   for (const Case& one : cases) {
-    if (one.scene->dt < 0.02 || make.chance(0.2)) continue;  // one time step
+    if (one.scene->dt < 0.02 || make.chance(0.2)) continue;  // one time step only
     const auto known = stored.find(one.key);
-    if (known == stored.end()) continue;  // what is timed is stored
+    if (known == stored.end()) continue;  // only stored cases are timed
     SceneBench* scene = nullptr;
     for (SceneBench& other : bench.scenes)
       if (other.scene == one.scene->name) scene = &other;

@@ -1,4 +1,4 @@
-// Iterations of one step as a report draws and lists them: what `taut converge` left, row by row.
+// Iterations of one step, as a report draws and lists the rows that `taut converge` left.
 #include "experiments/report/chart/one_step.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,8 @@
 namespace taut::report::one_step_test {
 namespace {
 
-/// Springs that come down to 1e-5 m from the exact step, in two orders, and rigid links on a floor.
+/// Answer for springs that come within 1e-5 m of the exact step, in two orders, and for rigid links
+/// with a floor.
 Answer found() {
   Answer answer{"converge", "one step of hang, cloth.span=0.7"};
   answer.add({"scene"}, "hang");
@@ -64,7 +65,7 @@ TEST(OneStep, ItsPointsAreCasesWithTheirIterationsAndValues) {
   EXPECT_THROW(step_value("distanse"), InputError);
 }
 
-// What is 0, or was not measured, has no place on a logarithmic axis.
+// A logarithmic axis has no place for zeros and unmeasured values.
 TEST(OneStep, AChartHasPositiveValuesAndWhereSolversEnd) {
   const OneStep step(found());
   const auto drawn = [&](const char* kind) { return step_records(step, kind).size(); };

@@ -1,4 +1,5 @@
-// Plots: failures are drawn, zeros stay, text is taken as it is, files appear whole or not at all.
+// Plots: failures are drawn, zeros stay, text is taken literally, and files appear whole or not at
+// all.
 #include "experiments/report/plot/plot.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ class Plots : public ::testing::Test {
     for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
     return n;
   }
-  static std::size_t fields(const std::string& line) {  // of CSV
+  static std::size_t fields(const std::string& line) {  // of a CSV file
     bool quoted = false;
     std::size_t n = 1;
     for (const char c : line) {
@@ -56,7 +57,7 @@ TEST_F(Plots, EveryKindGivesFourFilesAndACsvWithOneHeader) {
   const auto records = synthetic::time_steps("ball");
   for (const PlotKind& kind : plot_kinds()) {
     if (kind.name == "series" || kind.name == "scaling" || kind.name == "profile")
-      continue;  // these records have no such
+      continue;  // these records lack its values
     const PlotFiles plot = draw({.kind = std::string(kind.name),
                                  .y = kind.name == "contact" ? "penetration.max" : "",
                                  .file = "one"},
@@ -80,7 +81,7 @@ TEST_F(Plots, AFailedCaseIsAMarkAndARowNeverAGap) {
   EXPECT_NE(read_text(plot.svg).find("above: exploded"), std::string::npos);
 }
 
-// Nine solvers, of which each would be a row of each panel's key.
+// Nine solvers, each of which would need a row in every panel's key.
 TEST_F(Plots, PanelsShareTheirAxesAndOneKey) {
   std::vector<PlotPanel> panels;
   std::vector<std::vector<Record>> all;
@@ -96,7 +97,7 @@ TEST_F(Plots, PanelsShareTheirAxesAndOneKey) {
   }
   for (Record& r : all[1])
     if (r.status.kind == Status::Kind::ok) r.values["stretch.rms"] *= 100;
-  all[2][3].values["stretch.rms"] = 1e-14;  // as far below the others as rounding
+  all[2][3].values["stretch.rms"] = 1e-14;  // as far below the other values as rounding
   for (const std::vector<Record>& records : all) panels.push_back({records.front().scene, records});
   panels.push_back({"empty", {}});
   const PlotFiles plot = make_plot({.kind = "convergence", .file = "three"}, panels, dir_);
@@ -117,7 +118,7 @@ TEST_F(Plots, PanelsShareTheirAxesAndOneKey) {
   EXPECT_EQ(count(gp, " title '"), 3U + 10U) << "no panel has a key of its own";
   EXPECT_EQ(count(key, "below: zero, or less than "), 1U);
   EXPECT_GT(number("set yrange ["), 1e-10) << "one point does not flatten the others";
-  // The figure is wider by its key: two panels beside each other keep theirs.
+  // The key widens the figure: two panels side by side keep their width.
   const double left = number("margins screen ");
   const double right = std::stod(gp.substr(gp.find(", screen ", gp.find("margins screen ")) + 9));
   EXPECT_GE((right - left) * number("svg noenhanced size "), 500);
@@ -132,7 +133,7 @@ TEST_F(Plots, ExactZerosStayOnTheFloorOfALogarithmicAxis) {
   EXPECT_NE(read_text(plot.svg).find("exactly zero"), std::string::npos);
 }
 
-/// The commands of a script's plot, one a curve.
+/// Plot commands of a script, one per curve.
 std::vector<std::string> drawn_by(const std::string& script) {
   std::vector<std::string> all;
   std::string rest = script.substr(0, script.find("# The key"));
@@ -143,7 +144,7 @@ std::vector<std::string> drawn_by(const std::string& script) {
   return all;
 }
 
-/// A line of a script that begins so.
+/// The line of a script that starts with `begin`.
 std::string line_of(const std::string& script, const std::string& begin) {
   const auto at = script.find("\n" + begin);
   return at == script.npos ? "" : script.substr(at + 1, script.find('\n', at + 1) - at - 1);
@@ -157,7 +158,7 @@ std::string look(const std::string& solver) {
          (dash.empty() ? "solid" : "(" + dash + ")") + " pt " + std::string(style.marker);
 }
 
-/// The record of a case called so, with or without a value of stretch.
+/// Record of a case with this id, with or without a value of stretch.
 Record made(const std::string& id, const std::string& solver, int sweeps, double stretch) {
   Record r = synthetic::record("hang", solver, sweeps, 1.0 / 64);
   r.id = r.key = id;
@@ -190,7 +191,7 @@ TEST_F(Plots, AScriptDrawsEveryRowAndFailuresAbove) {
   EXPECT_EQ(line_of(gp, "set logscale x"), "set logscale x");
   EXPECT_EQ(line_of(gp, "set logscale y"), "set logscale y");
   EXPECT_EQ(line_of(gp, "set xtics"), "set xtics ('1' 1, '4' 4, '16' 16)");
-  const std::string range = line_of(gp, "set yrange");  // of 2 to 30 %, and a little air
+  const std::string range = line_of(gp, "set yrange");  // 2 to 30 %, with a margin
   const double air = std::pow(15, 0.06), top = 30 * air;
   EXPECT_NEAR(std::stod(range.substr(12)), 2 / air, 1e-12);
   EXPECT_NEAR(std::stod(range.substr(range.find(':') + 1)), top, 1e-9);
@@ -219,7 +220,7 @@ TEST_F(Plots, AScriptDrawsEveryRowAndFailuresAbove) {
   EXPECT_TRUE(drawn[3].starts_with(rows(1, "yes") + "(")) << drawn[3];
   EXPECT_NEAR(std::stod(drawn[3].substr(rows(1, "yes").size() + 1)), top, 1e-9);
   EXPECT_TRUE(drawn[3].ends_with(") with points pt 2 ps 1.2 lw 2" + ink("bullet")));
-  // 0.6 of the least y x, 0.08, in per cent
+  // 0.6 of the smallest y x, 0.08, in per cent
   EXPECT_NEAR(std::stod(drawn[4].substr(1)), std::pow(16, -0.06), 1e-12);
   EXPECT_NEAR(std::stod(drawn[4].substr(drawn[4].find("] ") + 2)), 4.8, 1e-12);
   EXPECT_EQ(drawn[4].substr(drawn[4].find('*')),
@@ -234,7 +235,7 @@ TEST_F(Plots, AScriptDrawsEveryRowAndFailuresAbove) {
                    grey + "above: exploded'\nunset multiplot\n"));
 }
 
-// Twelve in a plot of its own, eight in one of several panels.
+// All of up to twelve settings are named in a single plot, up to eight in one of several panels.
 TEST_F(Plots, EverySettingIsNamedOnTheAxisIfItFits) {
   const auto named = [&](std::size_t panels, int settings) {
     std::vector<std::vector<Record>> all(panels);
@@ -273,7 +274,7 @@ TEST_F(Plots, AxesAreAsTheirUnitsSay) {
   const auto drawn = drawn_by(gp);
   ASSERT_EQ(drawn.size(), 3u);
   EXPECT_NE(drawn[0].find("column(4)*1000 : NaN):"), std::string::npos) << drawn[0];
-  const double factor = 0.6 * 0.25 / (0.008 * 0.008) * unit.scale;  // the least y / x^2
+  const double factor = 0.6 * 0.25 / (0.008 * 0.008) * unit.scale;  // the smallest y / x^2
   EXPECT_NEAR(std::stod(drawn[1].substr(1)), 2 / 1.12, 1e-12) << drawn[1];
   EXPECT_NEAR(std::stod(drawn[1].substr(drawn[1].find("] ") + 2)), factor, 1e-9 * factor);
   EXPECT_NE(drawn[1].find("*(x/1000)**2 with"), std::string::npos);
@@ -282,7 +283,7 @@ TEST_F(Plots, AxesAreAsTheirUnitsSay) {
   const double low = std::stod(line_of(gp, "set yrange").substr(12));
   EXPECT_LT(low, 0.004 * unit.scale) << "the floor is in the picture";
   EXPECT_GT(low, 0.004 * unit.scale / 3);
-  // Values of either sign stand on a linear axis that holds zero.
+  // Values of both signs are drawn on a linear axis that includes zero.
   const std::string linear =
       read_text(draw({.kind = "work-precision", .y = "settle.time", .file = "linear"}, all).gp);
   EXPECT_EQ(line_of(linear, "set logscale y"), "");
@@ -334,14 +335,14 @@ TEST_F(Plots, AMapHasTicksColoursAndGlyphsInEachPanel) {
                               std::string(style.ink.light) + "' notitle"),
                 1u);
     }
-  // What completed is shaded by its stretch.
+  // Completed runs are shaded by their stretch.
   for (const char* shade : {"RMS stretch up to 1 %", "up to 30 %"})
     EXPECT_EQ(count(gp, " title '" + std::string(shade) + "'"), 1u) << shade;
   EXPECT_EQ(count(gp, "up to 10 %"), 0u);
   EXPECT_EQ(count(gp, " && column(11) > "), 4u) << "a box and a glyph of each of two shades";
 }
 
-// A key that is not below it is as wide as its longest text.
+// A key beside the figure is as wide as its longest text.
 TEST_F(Plots, AFigureIsAsWideAsItIsAskedToBeWithItsKeyBelow) {
   std::vector<std::vector<Record>> all;
   std::vector<PlotPanel> panels;
@@ -464,7 +465,7 @@ TEST_F(Plots, WithoutGnuplotTheErrorSaysWhatToInstall) {
   EXPECT_FALSE(fs::exists(dir_ / "x.svg"));
 }
 
-/// gnuplot does not see that a disk is full, and ends well.
+/// gnuplot does not notice a full disk and exits with success.
 TEST_F(Plots, APictureWithoutItsEndIsNone) {
   fs::create_directories(dir_);
   write_file(dir_ / "x.gp", "");

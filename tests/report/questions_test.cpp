@@ -1,5 +1,5 @@
-// The answer of results whose values are chosen; answer_test.py makes every cell of made-up ones
-// again.
+// Answers from results with chosen values; answer_test.py recomputes every cell for made-up
+// results.
 #include "experiments/report/questions/questions.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace taut::report::questions_test {
 namespace {
 
-/// One study of two solvers at 1 x 16.
+/// A study of two solvers at 1 x 16.
 struct Reported {
   Record& add(const std::string& scene, const std::string& solver,
               const std::map<std::string, double>& values) {
@@ -32,7 +32,7 @@ struct Reported {
   ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
 };
 
-// Sweeps of two solvers cost unequally: nobody is best.
+// Sweeps of two solvers cost differently: no solver is marked best.
 TEST(PageAnswers, HaveAValueOrAReasonAndMarkNobody) {
   Reported made;
   const auto stretch = [&](const std::string& scene, const char* solver, double value) -> Record& {
@@ -86,7 +86,7 @@ TEST(PageAnswers, SayTheDeepestOfTheWholeRun) {
   EXPECT_EQ(answer.table("failures").rows.back()[3].number(), 0) << "no failure";
 }
 
-// Only where a mean is taken of what may be nothing at all.
+// A note says what small values count as, and only where a mean includes values that may be zero.
 TEST(PageAnswers, SayWhatLessCountsAsWhereAMeanTakesItSo) {
   Reported made;
   for (const char* scene : {"ball", "swing"})
@@ -110,7 +110,7 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   const Record& ours = made.add("hang", "jakobsen", {{"stretch.rms", 0.005}});
   const Record cheap = ours;
   Record dear = made.add("hang", "bullet", {{"stretch.rms", 0.004}});
-  dear.sweeps = 1;  // nothing is cheaper: its cost is no upper bound
+  dear.sweeps = 1;  // nothing is cheaper, so that its cost is not an upper bound
   const auto price = [&](double ratio, double noise) {
     const std::vector<double> one(12, 1e-3), other(12, 1e-3 * ratio);
     made.input.bench =
@@ -129,7 +129,7 @@ TEST(PageAnswers, MarkACostOnlyBeyondWhatIdenticalCodeDiffersBy) {
   EXPECT_NEAR(price(1.3, 0.02)[2].number(), 1.3e-3 * 64, 1e-9);
 }
 
-/// A bench of hang: solver, substeps, sweeps, error, CPU time of a step [s].
+/// Timed case of hang: solver, substeps, sweeps, error, CPU time of a step [s].
 struct Timed {
   const char *scene, *solver;
   int substeps, sweeps;
@@ -233,7 +233,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   EXPECT_EQ(answer.table("price").rows[0][3].state, Cell::State::hardly_moves);
   EXPECT_FALSE(answer.table("price").rows[0][1].best) << "alone";
 
-  // a reference in motion decides; without one, what steps miss does
+  // a reference motion decides; without one, the motion that steps miss does
   cases[2].record.values["motion.share"] = 0.6;
   cases[2].record.values["step.share"] = 0.1;
   EXPECT_EQ(made.answer().table("price").rows[0][3].note, "8 × 1");
@@ -253,7 +253,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNeverBestAndInNoMean) {
   EXPECT_EQ(made.answer().table("price").rows[0][3].note, "8 × 1");
 }
 
-// Where work is not equal each cell says its own, beside what it says anyway.
+// Where work is unequal each cell states its own, in addition to its other notes.
 TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWork) {
   Reported made;
   made.add("swing", "jakobsen", {{"stretch.rms", 0.03}, {"motion.share", 0.9}});
@@ -265,7 +265,7 @@ TEST(PageAnswers, ClothThatHardlyMovesIsNotBestAtUnequalWork) {
   EXPECT_FALSE(row[2].best);
 }
 
-// On most scenes first; of settings that reach the error on as many the cheapest, in any order.
+// Settings that reach the error on most scenes come first; among those the cheapest, in any order.
 TEST(PageAnswers, RecommendWhatReachesTheErrorOnMostScenes) {
   Reported made;
   for (const char* solver : {"jakobsen", "bullet"})
@@ -348,7 +348,7 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   cases[0].record.resolved_settings = {{"link order", "coloured"}};
   cases[0].record.params["order"] = "coloured";
   cases[1].record.resolved_settings = {{kLinkOrder, "the scene's", "mesh order"}};
-  cases.push_back(cases[0]);  // dearer
+  cases.push_back(cases[0]);  // more expensive
   for (double& sample : cases[2].timing.samples) sample *= 2;
   cases[2].record.params["order"] = "mesh";
   cases[2].record.resolved_settings = cases[1].record.resolved_settings;
@@ -383,7 +383,7 @@ TEST(TheStudyOfTrade, BeginsWithTheCheapestSettingOfEverySolver) {
     cheapest[std::string(choice.entry->name)] +=
         one(choice.entry->accuracy.substeps) && one(choice.entry->accuracy.sweeps);
   }
-  cheapest.erase("bullet-deformable");  // its Newton iterations are not varied
+  cheapest.erase("bullet-deformable");  // the study does not vary its Newton iterations
   for (const auto& [solver, n] : cheapest) EXPECT_GE(n, 1) << solver;
 }
 
@@ -422,7 +422,7 @@ TEST(PageAnswers, AskOfCostsFirstAndOfEqualSweepsLast) {
                                              "stretch.rms", "failures"}));
 }
 
-/// The map of what was timed, and what it says.
+/// The map of timed cases and its cells.
 struct Mapped {
   explicit Mapped(const std::vector<Timed>& timed) {
     made.add("hang", "jakobsen", {{"stretch.rms", 0.01}});

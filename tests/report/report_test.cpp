@@ -1,4 +1,5 @@
-// The page and its model: one file, everything in it, nothing that the data do not say.
+// The page and its model: one file that contains everything, and nothing that the data do not
+// support.
 #include "experiments/report/report.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ std::size_t count(const std::string& text, const std::string& what) {
   return n;
 }
 
-/// What a bare run gives: two studies on two scenes, with strain over time.
+/// Report of a bare run: two studies on two scenes, with strain over time.
 ReportInput example() {
   ReportInput input;
   input.command = "./taut run iterations time-steps";
@@ -143,7 +144,7 @@ TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   EXPECT_EQ(model["scenes"][0]["maps"].size(), 2U);
 }
 
-/// Of a study over stiffness, with what a step costs where that was measured.
+/// Map of a study over stiffness, with the cost of a step where it was measured.
 TEST(Model, HasTheFailureMap) {
   ReportInput input{.studies = {{"one", "?", {}, 0, {}}}};
   for (const char* stiffness : {"1e3", "1e6"}) {
@@ -169,7 +170,7 @@ TEST(Model, HasTheFailureMap) {
   EXPECT_EQ(with_cost, 1);
 }
 
-/// Every id that something names exists, once; every quantity has its entry in the glossary.
+/// Every id that is referred to exists exactly once; every quantity has an entry in the glossary.
 void check_references(const Json& model) {
   std::map<std::string, int> ids;
   for (const char* part : {"charts", "maps", "films", "scenes"})
@@ -205,7 +206,7 @@ void check_references(const Json& model) {
 
 TEST(Model, EveryReferenceLeadsSomewhere) {
   check_references(model_of(example()));
-  ReportInput several = example();  // of one solver three ways to set it, each with a map
+  ReportInput several = example();  // three settings of a solver, each with a map
   for (const char* omega : {"1.3", "1.6"})
     for (Record r : synthetic::time_steps("hang")) {
       r.params["omega"] = omega;
@@ -266,7 +267,7 @@ TEST(Model, WhatIsMissingNamesTheCommandThatMakesIt) {
 
 TEST(Model, FiguresOfTheWholeAreCounted) {
   ReportInput input = example();
-  std::set<std::string> keys;  // the studies share some
+  std::set<std::string> keys;  // the studies share some keys
   for (const StudyResult& study : input.studies)
     for (const Record& r : study.records) keys.insert(r.key);
   const std::size_t cases = keys.size();
@@ -282,7 +283,7 @@ TEST(Model, FiguresOfTheWholeAreCounted) {
   EXPECT_EQ(model["regressions"], *input.regressions);
 }
 
-/// What the last paragraph of the method says the results say nothing of.
+/// Limits of the results, from the last paragraph of the method.
 std::string limits(const ReportInput& input) {
   std::string all;
   const Json model = model_of(input);
@@ -316,7 +317,7 @@ TEST(Model, WhatResultsSayNothingOfIsAllThatWasNotRun) {
   EXPECT_EQ(said.find("planned"), said.npos) << said;
 }
 
-// Of more cases than a page can carry all that something on it names, and others evenly.
+// If a page cannot carry all cases, it has those that something on it refers to, and others evenly.
 TEST(CasesOfAPage, AreThoseNamedAndOthersWhileThereIsRoom) {
   ReportInput input{.studies = {{"many", "?", {}, 0, {}}}};
   std::vector<Record>& records = input.studies[0].records;
@@ -334,12 +335,12 @@ TEST(CasesOfAPage, AreThoseNamedAndOthersWhileThereIsRoom) {
       list.key(records[cases - 1 - i].key);
       expected.insert(records[cases - 1 - i].key);
     }
-    std::vector<std::size_t> places;  // of others
+    std::vector<std::size_t> places;  // places of other cases
     for (const Record* r : list.listed())
       if (keys.insert(r->key).second && !expected.contains(r->key))
         places.push_back(static_cast<std::size_t>(r - part.studies[0].records.data()));
     for (const std::string& key : expected) EXPECT_TRUE(keys.contains(key)) << key;
-    for (std::size_t k = 1; k < places.size(); ++k) {  // evenly, in the study's order
+    for (std::size_t k = 1; k < places.size(); ++k) {  // even spacing in the study's order
       const double way = static_cast<double>(cases - named - 1) /
                          static_cast<double>(std::max<std::size_t>(1, places.size() - 1));
       EXPECT_NEAR(static_cast<double>(places[k] - places[k - 1]), way, 1) << k;

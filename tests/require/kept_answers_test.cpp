@@ -1,5 +1,5 @@
-// Answers that a smaller model has to keep: their units and tolerances, and how far apart two runs
-// are in each.
+// Answers that a smaller model has to keep: their units and tolerances, and the distance of two
+// runs in each.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 const double kNaN = std::nan("");
 
-/// A case with frames at these times [s]: the rest shape moved by f(x, t).
+/// Case with frames at these times [s], in which the rest shape is moved by f(x, t).
 Observation moving(const CaseSpec& spec, const std::vector<double>& times,
                    const std::function<Vec3(const Vec3&, double)>& f) {
   Observation seen{make_case(spec), {}, {}};
@@ -112,8 +112,8 @@ TEST(KeptQuantities, ShapesAreComparedAtTheCoarserGrid) {
     EXPECT_NEAR(distance(shape, fine, one_moved(vertex)), 0.5, 1e-12);
     EXPECT_NEAR(distance(shape, one_moved(vertex), fine), 0.5, 1e-12);
   }
-  // Bilinear cloth is the same on any grid; a vertex of the coarser one that is moved is seen,
-  // wherever it is.
+  // Bilinear cloth is the same on every grid. A displaced vertex of the coarser grid is noticed at
+  // any place.
   const auto bilinear = [](const Vec3& x) {
     return Vec3(x.x() + 0.5 * x.x() * x.y(), 2 * x.y(), x.x() - 0.3 * x.y());
   };
@@ -165,7 +165,7 @@ TEST(KeptQuantities, AreOfTheLastFrameAndNoneOfARunThatDidNotEnd) {
 TEST(KeptQuantities, ValuesDifferByTheirDistanceOrAsTheirMotionsDo) {
   const CaseSpec plane{"plane", {"time.duration=3"}, "jakobsen"},
       bare{"plane", {"time.duration=3", "collider=[]"}, "jakobsen"};
-  // Level cloth at these heights: the metric sees the last second alone.
+  // Level cloth at these heights: the metric looks at the last second alone.
   const auto level = [](double before, double at_end) {
     return [=](const Vec3& x, double t) { return Vec3(x.x(), t < 2.5 ? before : at_end, x.z()); };
   };

@@ -1,5 +1,5 @@
-// What can be taken away of a case and in which steps, drafts as files, and differences that mean
-// nothing.
+// Reductions of a case and their steps, drafts written as files, and differences that do not
+// matter.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Case hang(const SceneSettings& settings,
   return make_case({"hang", settings, solver});
 }
 
-/// The steps of one effect; empty: the case does not have it.
+/// Steps of one effect; empty if the case does not have it.
 Strings steps_of(const Case& one, const std::string& name) {
   Strings all;
   for (const Effect& effect : effects_of(one))
@@ -125,7 +125,7 @@ TEST(Reductions, OfAWindAreItsLawAndItself) {
   EXPECT_FALSE(less("wind").scene->wind);
   EXPECT_EQ(steps_of(hang({"wind={ velocity = [1, 0, 0], law = \"literal\" }"}), "law of the wind"),
             Strings{});
-  Draft both(full.spec);  // a wind that is gone has no law
+  Draft both(full.spec);  // without wind there is no law of wind
   for (const Effect& effect : effects_of(full))
     if (effect.name.ends_with("wind")) effect.reductions.front().apply(both);
   EXPECT_FALSE(make_case(both.write(scratch.path(), "both")).scene->wind);
@@ -219,7 +219,8 @@ TEST(Perturbed, StartsDifferByOneOfFourFreeVertices) {
 
 TEST(Perturbed, StartsGoWhereTheColliderLetsThem) {
   const Scratch scratch;
-  // It lies in the corner between a floor and a wall, both at once: only up and away is free.
+  // The cloth lies in the corner of a floor and a wall and touches both: it can only move up and
+  // away.
   const Case full =
       hang({"cloth.grid=[3, 3]", "cloth.origin=[0, 0, 0]", "cloth.v=[0, 0, 1]", "cloth.pins=[]",
             "cloth.thickness=0",

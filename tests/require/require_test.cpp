@@ -1,4 +1,4 @@
-// What can go of a model, how answers are compared, and scenes that are written as files.
+// Parts that a model can lose, the comparison of answers, and scenes written as files.
 #include "experiments/require/require.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::vector<std::string> names(const std::vector<Effect>& effects) {
   return all;
 }
 
-/// A case with a motion of one frame: the rest shape moved by f(x).
+/// Case with a motion of one frame, in which the rest shape is moved by f(x).
 Observation observation(const std::string& scene, const SceneSettings& settings,
                         const std::function<Vec3(const Vec3&)>& f) {
   Observation seen{make_case({scene, settings, "jakobsen"}), {}, {}};
@@ -121,7 +121,7 @@ TEST(Answers, ShapesOfOtherGridsAreComparedAtTheSameCloth) {
   };
   EXPECT_LT(from("[17, 17]", Vec3::Zero()), 1e-15);
   EXPECT_NEAR(from("[17, 17]", Vec3(0, 0.02, 0)), 0.02, 1e-15);
-  // Between the vertices of the finer grid a parabola is off by at most h^2/4.
+  // Between the vertices of the finer grid a parabola deviates by at most h^2/4.
   EXPECT_LE(from("[16, 16]", Vec3::Zero()), 1 / (32. * 32) / 4 + 1e-15);
   EXPECT_GT(from("[16, 16]", Vec3::Zero()), 0.1 / (32. * 32) / 4);
 }

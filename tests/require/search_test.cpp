@@ -26,13 +26,13 @@ class Requirements : public testing::Test {
   static const EffectTrial& effect(const Requirement& found, const std::string& name) {
     return *std::ranges::find(found.effects, name, &EffectTrial::name);
   }
-  /// As the store has it.
+  /// The case as stored.
   Observation seen(const CaseSpec& spec) const {
     const Case one = make_case(spec);
     return {one, *store_.find(one), store_.motion(one.key).frames};
   }
   void forget(const CaseSpec& spec) { taut::forget(store_, make_case(spec).key); }
-  /// What a scene file's comment says goes, in its order: "wind: gone".
+  /// Effects that the scene file's comment lists as removed, in order: "wind: gone".
   static std::vector<std::string> said_to_go(const Requirement& found) {
     std::vector<std::string> all;
     std::istringstream lines(read_text(found.file));
@@ -44,8 +44,8 @@ class Requirements : public testing::Test {
   Store store_{scratch_.path() / "results"};
 };
 
-// A strip on one pin in a wind that does nothing. Its last vertex is pinned by number: there is no
-// coarser grid with it.
+// Strip on one pin in a wind without effect. Its last vertex is pinned by number, so that no
+// coarser grid contains it.
 const std::string kStrip =
     "[cloth]\ngrid = [8, 3]\nsize = [1, 0.3]\nmass = 0.1\npins = [0, 23]\n[wind]\nvelocity = [3, "
     "0, 1]\nstrength = 0\n"
@@ -160,7 +160,7 @@ TEST_F(Requirements, AShapeThatRoundingMovesIsGivenUp) {
             std::vector<std::string>{"shape: a rounding error at the start moves it by " +
                                      text({kShapeAnswer}, moved)});
 
-  // With what the store has and no time, the search says what it had to do without.
+  // With stored results and no time left, the search names what it had to skip.
   options.patience = 1e-6;
   forget(effect(found, "wind").trials[0].spec);
   const Requirement part = find(kStrip, options);
@@ -184,8 +184,8 @@ TEST_F(Requirements, AShapeThatRoundingMovesIsGivenUp) {
   EXPECT_TRUE(none.effects.empty());
 }
 
-// In free fall symplectic steps of h fall g t h / 2 too far, damping slows: both at once are too
-// much.
+// In free fall, symplectic steps of h fall g t h / 2 too far and damping slows the fall; both
+// errors together exceed the tolerance.
 TEST_F(Requirements, OfTwoTooMuchTheSecondGoesAsFarAsItMay) {
   const Requirement found = find(
       "[cloth]\ngrid = [4, 3]\nsize = [1, 0.3]\nmass = 0.1\n[forces]\ndamping = 0.48\n"

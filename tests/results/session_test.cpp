@@ -1,4 +1,4 @@
-// Shards, and what a session leaves: who ran what, how far it came, what is still missing.
+// Shards, and what a session leaves: the cases that each machine ran, progress, and missing cases.
 #include "experiments/results/session.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(Shards, OfACaseFollowFromTheFirstEightDigitsOfItsKey) {
   EXPECT_TRUE(Shard{}.has(key("12345678")));
 }
 
-/// Cases that nobody runs.
+/// Planned cases that are never run.
 StudyCases planned(const std::string& study, std::initializer_list<const char*> keys) {
   StudyCases all{study, {}};
   const Case one = make_case({"hang", {"cloth.grid=[2, 2]"}, "jakobsen"});

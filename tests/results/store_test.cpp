@@ -1,5 +1,5 @@
-// The results file: whole cases or none, results that nothing replaces, numbers that keep every
-// bit.
+// The results file: whole cases or none, results that are never replaced, and numbers that keep
+// every bit.
 #include "experiments/results/store.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ Record some_record() {
   r.key = std::string(63, 'a') + "7";
   r.id = "hang jakobsen:iterations=8";
   r.spec = {"hang", {"time.dt=\"1/60\""}, "jakobsen:iterations=8"};
-  r.scene = "a sheet";  // no text is another one's
+  r.scene = "a sheet";  // each text is unique, so that a swapped field is noticed
   r.solver = "jakobsen";
   r.params = {{"iterations", "8"}};
   r.sweeps = 8;
@@ -123,7 +123,7 @@ TEST_F(StoreTest, ACaseIsThereAfterItsCommit) {
   EXPECT_EQ(names, std::vector<std::string>{"results.db"}) << "one file, and no journal stays";
 }
 
-/// Another value than that of a record which nobody filled.
+/// Sets a value that differs from that of an empty record.
 template <class Value>
 void fill(Value& value, int n) {
   const std::string text = "text " + std::to_string(n);
@@ -287,7 +287,7 @@ TEST_F(StoreTest, ADamagedFileIsRefusedOrSetAside) {
     std::string bytes = read_text(root_ / "results.db");
     if (header)
       bytes.replace(0, 100, std::string(100, 'x'));
-    else  // everything but the schema
+    else  // the rest of the file without the schema
       bytes.replace(4096, bytes.size() - 4096, std::string(bytes.size() - 4096, '\x7f'));
     write_file(root_ / "results.db", bytes);
     const auto note = [this](const std::string& text) { said_.push_back(text); };
@@ -316,7 +316,7 @@ TEST_F(StoreTest, ADamagedFileIsRefusedOrSetAside) {
 }
 
 TEST_F(StoreTest, WhereNoFileCanBeMadeIsSaidBeforeACaseRuns) {
-  fs::create_directory_symlink("/proc/self", root_);  // there, and nobody can write in it
+  fs::create_directory_symlink("/proc/self", root_);  // exists, but is writable for no one
   EXPECT_THROW(store_.prepare(), InputError);
   fs::remove(root_);
 }
@@ -331,7 +331,7 @@ TEST_F(StoreTest, OfAProcessKilledWhileWritingNothingStays) {
   const auto size = fs::file_size(store_.file());
   for (const rlim_t most : {rlim_t{10}, rlim_t{size}, rlim_t{size + 4096}}) {
     const pid_t child = fork();
-    if (child == 0) {  // ends by a signal within the write, which is larger than a file may be
+    if (child == 0) {  // a signal ends it within the write, which exceeds the limit of file sizes
       const rlimit no_core{0, 0}, limit{most, most};
       setrlimit(RLIMIT_CORE, &no_core);
       setrlimit(RLIMIT_FSIZE, &limit);

@@ -1,5 +1,4 @@
-// Files that taut reads back, damaged: an InputError that names the file or a whole value, never
-// anything else.
+// Damaged files that taut reads back: either an InputError that names the file or a whole value.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -18,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A kind of file: a good one, and how it is read and used.
+/// Kind of file: a valid example, and code that reads and uses it.
 struct Kind {
   std::string file, text;
   std::function<void(const fs::path&)> use;

@@ -1,8 +1,8 @@
 // An effect that a scene lacks costs `jakobsen` neither memory nor time: no pass, no bytes on the
-// heap, and no branch for each item in what is executed. Shown without a clock, so on any machine.
-// What this cannot show: a flag that a kernel tests once for a whole vector, or turns into a mask
-// or a factor instead of a branch; cost that the hardware adds, such as displaced caches; and
-// branches of the interleaved layout, whose kernels loop over lanes at the seams.
+// heap, and no branch executed for each item. The tests use no clock and so hold on any machine.
+// They cannot detect a flag that a kernel tests once for a whole vector or turns into a mask or a
+// factor; cost that the hardware adds, such as displaced caches; and branches of the interleaved
+// layout, whose kernels loop over lanes at the seams.
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <sys/ptrace.h>
@@ -20,10 +20,11 @@
 namespace taut::absent_is_free_test {
 namespace {
 
-/// A way to run links: an order, and for the coloured one the layout that suits the mesh.
+/// Order in which links are swept. The coloured order uses the layout that suits the mesh.
 struct Way {
   const char* order;
-  bool grid;  ///< the sheet is known to be regular: interleaved columns, else colour batches
+  /// whether the sheet is known to be regular: interleaved columns if so, else colour batches
+  bool grid;
 };
 constexpr Way kWays[] = {{"coloured", true}, {"coloured", false}, {"mesh", true}};
 
@@ -40,7 +41,7 @@ std::set<std::string> passes(const Scene& scene, const std::string& solver) {
   return names;
 }
 
-/// What a scene may have, and how its pass is called.
+/// Optional effect of a scene, and the name of its pass.
 struct Effect {
   const char* pass;
   std::function<void(Scene&)> add;
@@ -66,7 +67,7 @@ const std::vector<Effect> kEffects{
        s.links = hanging_sheet(20, 20, {true, false, true}).links;
      }}};
 
-/// A sheet that nothing holds and nothing meets, with structural links.
+/// Sheet with structural links alone: no pins, no colliders.
 Scene bare_sheet(int nu, int nv, const Way& way) {
   Scene scene = hanging_sheet(nu, nv, {.structural = true});
   scene.pins.clear();
@@ -98,7 +99,7 @@ double heap() {
 }
 
 struct Memory {
-  double held = 0, reported = 0;  ///< bytes: on the heap, and by step_cost()
+  double held = 0, reported = 0;  ///< bytes on the heap, and bytes by step_cost()
 };
 
 Memory memory(const Scene& scene, const std::string& solver) {
@@ -109,14 +110,14 @@ Memory memory(const Scene& scene, const std::string& solver) {
   return memory;
 }
 
-// What no pass reports is on the heap neither: of a larger sheet exactly that much more.
+// The heap of a larger sheet grows by the bytes that its passes report, and by nothing else.
 TEST(AbsentIsFree, TheHeapHoldsWhatThePassesReportAndNoMore) {
   if (heap() == 0) GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
   for (const Way& way : kWays)
     for (const char* precision : {"float", "double"}) {
       const std::string solver = solver_of(way) + ",precision=" + precision;
       const Scene small = bare_sheet(64, 64, way), large = bare_sheet(128, 128, way);
-      make(small, solver);  // what is made once stays
+      make(small, solver);  // allocates what is made only once per process
       const Memory a = memory(small, solver), b = memory(large, solver);
       const double held = b.held - a.held, reported = b.reported - a.reported;
       EXPECT_GT(reported, 12.0 * (128 * 128 - 64 * 64)) << solver << ": a position at least";
@@ -124,11 +125,11 @@ TEST(AbsentIsFree, TheHeapHoldsWhatThePassesReportAndNoMore) {
     }
 }
 
-/// Conditional branches that `work` executes, counted one instruction at a time in a copy of this
-/// process; nothing where that is not possible. The same for the same work, but for a constant.
+/// Number of conditional branches that `work` executes, counted by single-stepping a copy of this
+/// process; nothing where that is not possible. It is reproducible up to a constant.
 std::optional<long> branches([[maybe_unused]] const std::function<void()>& work) {
 #if !defined(__x86_64__) || defined(TAUT_SANITIZED)
-  return {};  // other instructions; or branches of the sanitizer's own
+  return {};  // other architectures have other instructions; sanitizers add branches of their own
 #else
   const pid_t child = fork();
   if (child == 0) {
@@ -146,7 +147,8 @@ std::optional<long> branches([[maybe_unused]] const std::function<void()>& work)
          waitpid(child, &status, 0) == child && WIFSTOPPED(status) && WSTOPSIG(status) == SIGTRAP) {
     user_regs_struct registers{};
     ptrace(PTRACE_GETREGS, child, nullptr, &registers);
-    const auto* code = reinterpret_cast<const unsigned char*>(registers.rip);  // ours is the same
+    // the child has the same code at the same address
+    const auto* code = reinterpret_cast<const unsigned char*>(registers.rip);
     count += (code[0] & 0xF0) == 0x70 || (code[0] == 0x0F && (code[1] & 0xF0) == 0x80);
   }
   const bool whole = WIFSTOPPED(status) && WSTOPSIG(status) == SIGSTOP;
@@ -159,11 +161,11 @@ std::optional<long> branches([[maybe_unused]] const std::function<void()>& work)
 std::optional<long> branches_of_step(const Scene& scene, const std::string& solver) {
   const auto made = make(scene, solver);
   made->load(scene.start);
-  made->step(0, scene.dt);  // the first call of a library function looks it up
+  made->step(0, scene.dt);  // resolves library functions on their first call
   return branches([&] { made->step(scene.dt, scene.dt); });
 }
 
-/// Branches for each link that another sweep adds.
+/// Branches per link of one more sweep.
 double branches_per_link(const Way& way) {
   const Scene scene = bare_sheet(18, 12, way);
   const std::string solver = solver_of(way) + ",substeps=1";
@@ -172,7 +174,7 @@ double branches_per_link(const Way& way) {
   return static_cast<double>(two - one) / static_cast<double>(scene.links.size());
 }
 
-// A loop needs one branch for each item, and a vector kernel fewer. A flag tested inside adds one.
+// A loop needs one branch per item, a vector kernel fewer. A flag tested for each item adds one.
 TEST(AbsentIsFree, NoFlagIsTestedForEachLink) {
   if (!branches([] {})) GTEST_SKIP() << "this machine does not let a process be traced";
   EXPECT_NEAR(branches_per_link({"mesh", false}), 1, 0.2);

@@ -1,4 +1,4 @@
-// Tethers, the hierarchy, and where float ends.
+// Tethers, the hierarchy of levels, and the limits of float.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ TEST(Tethers, GoFromEveryFreeVertexToEachGroupOfPins) {
   EXPECT_TRUE(make_tethers(scene).empty());
 }
 
-/// The strain that four sweeps leave once the cloth has come to rest.
+/// Strain left by four sweeps once the cloth has come to rest.
 double settled(const Scene& scene, const char* more) {
   return strain(scene, simulate(scene, listing("precision=double,iterations=4") + more, 600));
 }
@@ -50,7 +50,8 @@ double settled(const Scene& scene, const char* more) {
 TEST(Tethers, FollowTheClothWhereTheMeshIsNoGrid) {
   Scene chain = hanging_sheet(1, 5, {true, false, false});
   chain.mesh.grid.reset();
-  chain.mesh.rest[4] = chain.mesh.rest[2];  // folded back: the way along the links stays
+  // folded back; the path along the links keeps its length
+  chain.mesh.rest[4] = chain.mesh.rest[2];
   const auto tethers = make_tethers(chain);
   ASSERT_EQ(tethers.size(), 4u);
   EXPECT_NEAR(tethers.back().length, 1, 1e-12);
@@ -78,13 +79,13 @@ TEST(Tethers, FollowPinsThatMove) {
   }
 }
 
-/// A net that is held by corners closer than it is wide shears: its vertices are farther from the
-/// pins than in the flat sheet, and no link is too long.
+/// A net held by corners that are closer together than its width shears. Vertices are then farther
+/// from the pins than in the flat sheet although every link has its rest length.
 TEST(Accelerators, LeaveANetAloneThatShears) {
   Scene net = hanging_sheet(17, 17, {true, false, false});
   net.gravity.setZero();
   for (int j = 0; j < 17; ++j)
-    for (int i = 0; i < 17; ++i) {  // a V: the columns hang straight down from it
+    for (int i = 0; i < 17; ++i) {  // a V whose columns hang straight down
       const double u = i / 16.0, fall = 0.5 * std::min(u, 1 - u);
       net.start.x[static_cast<std::size_t>(17 * j + i)] +=
           Vec3((std::sqrt(0.75) - 1) * u, -fall, 0);
@@ -118,8 +119,9 @@ TEST(Hierarchy, HalvesTheVerticesAndEveryChildHasParents) {
   }
 }
 
-// 0-1-2-3-4-5-6-7-8 hangs on 0, by links of 1, 2, ... 7 m and one of none. Every other vertex after
-// the pin's neighbour stays, then every other of those.
+// The chain 0-1-2-3-4-5-6-7-8 hangs on vertex 0 by links of 1, 2, ... 7 m and one of length 0. The
+// next level keeps every other vertex after the pin's neighbour, and the level above keeps every
+// other vertex of those.
 TEST(Hierarchy, OfAChainIsThis) {
   Scene scene;
   scene.mesh.rest.assign(9, Vec3::Zero());
@@ -127,7 +129,7 @@ TEST(Hierarchy, OfAChainIsThis) {
   scene.pins = {0};
   for (int i = 0; i < 8; ++i)
     scene.links.push_back({i, i + 1, i < 7 ? i + 1.0 : 0, Family::structural});
-  scene.links.push_back({2, 6, 1, Family::bend});  // no way for a hierarchy
+  scene.links.push_back({2, 6, 1, Family::bend});  // the hierarchy ignores bend links
   std::string text;
   for (const Level& level : make_hierarchy(scene, inverse_masses(scene), 9)) {
     for (const int v : level.vertices) text += std::to_string(v) + ' ';
@@ -173,7 +175,8 @@ TEST(Accelerators, WorkInterleavedAsWellAsPacked) {
     const State interleaved = simulate(scene, method + ",layout=interleaved", 30);
     const State batches = simulate(scene, method + ",layout=batches", 30);
     const State without = simulate(scene, method.substr(0, method.size() - std::strlen(more)), 30);
-    const double apart = largest_distance(interleaved.x, batches.x);  // other orders, same cloth
+    // the same cloth in another order
+    const double apart = largest_distance(interleaved.x, batches.x);
     EXPECT_LT(3 * apart, largest_distance(interleaved.x, without.x)) << more;
     EXPECT_LT(3 * apart, largest_distance(batches.x, without.x)) << more;
   }
@@ -206,14 +209,14 @@ TEST(Float, RefusesSubstepsThatGravityCannotMove) {
   EXPECT_FALSE(refuses("jakobsen:substeps=200"));
   EXPECT_TRUE(refuses("jakobsen:substeps=400"));
   EXPECT_FALSE(refuses("jakobsen:substeps=400,precision=double"));
-  // and rightly: a cloth at rest at coordinate 1 does not begin to fall
+  // gravity is below the rounding error: a cloth at rest at coordinate 1 does not begin to fall
   for (Vec3& x : scene.start.x) x.y() += 1.5;
   scene.pins.clear();
   const State state = simulate(scene, "jakobsen:iterations=0,substeps=600", 4);
   EXPECT_EQ(state.x[0].y(), scene.start.x[0].y());
 }
 
-// Six pins, no two of them linked: each vertex below hangs from the nearest four.
+// No two of the six pins are linked, so each vertex below hangs from the nearest four.
 TEST(Tethers, GoToTheFourNearestGroupsAtMost) {
   Scene scene = hanging_sheet(11, 2);
   scene.pins = {0, 2, 4, 6, 8, 10};

@@ -1,4 +1,4 @@
-// What solvers say of their accuracy parameters, held against what they accept.
+// Accuracy parameters that solvers declare, checked against the settings that they accept.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,8 @@ TEST(AccuracyParameters, AreParametersAndTheirValuesAreAccepted) {
   for (const SolverEntry* entry : solvers()) {
     const std::string name(entry->name);
     const AccuracyParameters& accuracy = entry->accuracy;
-    if (accuracy.substeps.empty() && accuracy.sweeps.empty()) continue;  // none is searched
+    // this solver has no accuracy parameter to search
+    if (accuracy.substeps.empty() && accuracy.sweeps.empty()) continue;
     EXPECT_FALSE(accuracy.substeps.empty()) << name;
     EXPECT_FALSE(accuracy.sweeps.empty() && accuracy.stiffness.parameters.empty())
         << name << ": one of the two is what substeps are weighed against";

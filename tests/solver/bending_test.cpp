@@ -1,4 +1,5 @@
-// Bending: the elements against the plate they stand for, and every solver against the same energy.
+// Bending: the elements are compared with the plate that they discretise, and every solver with the
+// same energy.
 #include "core/model/bending.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 
 const Vec3 kWarp = -Vec3::UnitY();
 
-/// A flat sheet without links whose vertices inside are off their places in the plane.
+/// Flat sheet without links whose interior vertices are displaced at random within the plane.
 Scene irregular_sheet(int nu, int nv, double off) {
   Scene s = hanging_sheet(nu, nv, {false, false, false});
   const Scene moved = crumpled(s, off);
@@ -30,7 +31,7 @@ Scene irregular_sheet(int nu, int nv, double off) {
   return s;
 }
 
-/// x with the height q(p) = (a p_warp^2 + b p_weft^2)/2 + c p_warp p_weft.
+/// Positions x with the height q(p) = (a p_warp^2 + b p_weft^2)/2 + c p_warp p_weft.
 std::vector<Vec3> bent(const Scene& s, double a, double b, double c) {
   std::vector<Vec3> x = s.mesh.rest;
   for (Vec3& p : x) {
@@ -60,8 +61,8 @@ TEST(Bending, SecondDerivativesOfQuadraticsAreExact) {
   for (const int n : inner) EXPECT_GT(n, 80) << "of 160 triangles";
 }
 
-/// Energy of a sheet that is bent at an angle to the warp [1/m]: along that line, across it, and
-/// its twist; without the triangles at the edges.
+/// Energy of a sheet bent along a line at `angle` to the warp. Curvatures [1/m]: `along` the line,
+/// `across` it, and `twist`. The triangles at the edges are left out.
 double energy_at(double angle, const Bending& bending, double along, double across, double twist) {
   Scene s = hanging_sheet(41, 41, {false, false, false});
   s.pins.clear();
@@ -82,12 +83,13 @@ double energy_at(double angle, const Bending& bending, double along, double acro
   return energy;
 }
 
-/// Rolled up: bent along the line alone.
+/// Stiffness of a sheet that is rolled up: it bends along the line alone.
 double stiffness_at(double angle, const Bending& bending) {
   return energy_at(angle, bending, 1, 0, 0);
 }
 
-/// The same if it may bend across the line and twist as it costs least.
+/// Stiffness of a sheet that is also free to bend across the line and to twist, whichever needs
+/// least energy.
 double free_stiffness_at(double angle, const Bending& bending) {
   const auto energy = [&](double a, double b, double t) {
     return energy_at(angle, bending, a, b, t);
@@ -125,7 +127,7 @@ TEST(Bending, AGridHasSecondDifferencesAndTwists) {
   s.bending = Bending{3, 2, kWarp};
   const std::vector<BendingElement> elements = make_bending(s);
   EXPECT_EQ(elements.size(), 5u * 7 + 3 * 9 + 4 * 8) << "along v, along u, twists";
-  const double l = 0.25;  // rows 1 to 7 are bent, each l wide
+  const double l = 0.25;  // rows 1 to 7 are bent, each of width l
   EXPECT_NEAR(bending_energy(elements, bent(s, 1, 0, 0)), 3.0 / 2 * 7 * l * 1, 1e-12);
   EXPECT_NEAR(bending_energy(elements, bent(s, 0, 1, 0)), 2.0 / 2 * 3 * l * 2, 1e-12);
   for (const BendingElement& e : elements) EXPECT_LE(e.size, 4u);
@@ -147,7 +149,7 @@ TEST(Bending, AShellIsUnfoldedAndFixedPinsCostNothing) {
   EXPECT_LT(make_bending(s).size(), of_flat.size());
 }
 
-/// A sheet that is bent and moves, on soft links, two rows pinned.
+/// Bent sheet in motion on soft links, with two rows pinned.
 Scene clamped(double stiffness) {
   Scene s = crumpled(hanging_sheet(5, 8, {true, true, false}), 0.03);
   s.pins.clear();
@@ -162,7 +164,7 @@ Scene clamped(double stiffness) {
   return s;
 }
 
-/// What is left of the energy's gradient after a step [N], its bending part by differences.
+/// Gradient of the energy after a step [N]; the bending part is taken by finite differences.
 double left(const Scene& s, const std::vector<Vec3>& x) {
   const ElasticStep step(s, s.stiffness);
   Eigen::VectorXd g = step.gradient(x);
@@ -174,7 +176,8 @@ double left(const Scene& s, const std::vector<Vec3>& x) {
         y[v][c] += by;
         return bending_energy(elements, y);
       };
-      g[3 * static_cast<int>(v) + c] += (moved(1e-4) - moved(-1e-4)) / 2e-4;  // quadratic: exact
+      // exact, as the energy is quadratic
+      g[3 * static_cast<int>(v) + c] += (moved(1e-4) - moved(-1e-4)) / 2e-4;
     }
   return g.norm();
 }
@@ -195,7 +198,7 @@ TEST(Bending, EverySolverOfEnergiesTakesTheSameStep) {
   }
 }
 
-// Without links the step is one linear system, which projections solve exactly, too.
+// Without links the step is one linear system, which projections solve exactly as well.
 TEST(Bending, AloneItIsTheSameStepForEverySolver) {
   Scene s = clamped(1e-3);
   s.links.clear();
@@ -234,7 +237,7 @@ TEST(Bending, MovesNoCentreOfMassAndHasTheSameBits) {
   }
 }
 
-// What decides is the curvature of a wave from vertex to vertex: h < 2/w, w^2 ~ 64 B/(m/A l^4).
+// The shortest wave, from vertex to vertex, decides: h < 2/w, w^2 ~ 64 B/(m/A l^4).
 TEST(Bending, ExplicitStepsAreStableUpToLinearTheory) {
   Scene s = hanging_sheet(8, 8, {true, false, false});
   s.bending = Bending{0.02, 0.02, kWarp};

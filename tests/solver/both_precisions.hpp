@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// In float the solver computes what it does in double, but for rounding.
+/// Expects that the solver in float follows itself in double up to rounding.
 inline void expect_float_follows_double(const std::string& solver) {
   const Scene scene = crumpled(hanging_sheet(12, 10), 0.01);
   const State in_double = simulate(scene, solver, 16);
@@ -19,7 +19,8 @@ inline void expect_float_follows_double(const std::string& solver) {
   EXPECT_GT(largest_distance(in_float.x, in_double.x), 0) << solver;
 }
 
-/// A link without a length has no direction, and pulls nowhere in either precision.
+/// Expects that a link without a length, which has no direction, exerts no force in either
+/// precision.
 inline void expect_link_of_no_length_is_harmless(const std::string& solver) {
   Scene scene = hanging_sheet(6, 5);
   scene.start.x[14] = scene.start.x[15];

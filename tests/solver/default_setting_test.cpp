@@ -1,4 +1,4 @@
-// What a user gets who names no setting: the table behind it is in
+// The setting that a user gets without naming one. The table behind it is in
 // results/benchmarks/default-setting.md.
 #include <gtest/gtest.h>
 

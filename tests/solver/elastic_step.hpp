@@ -1,6 +1,6 @@
 #pragma once
 
-// A step of implicit Euler of springs once more, dense and from the equations:
+// One implicit Euler step of springs, implemented a second time, dense and from the equations:
 //     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 (|x_b - x_a| - r)^2,   y = x_t + h v_t + h^2 g
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace taut {
 
-/// A net that is no grid: random places, masses, rest lengths and velocities, neighbours linked,
-/// two pins. Some links are stretched at the start, some compressed.
+/// Irregular net: random places, masses, rest lengths and velocities, linked neighbours, two pins.
+/// Some links are stretched at the start, some compressed.
 inline Scene irregular_net(unsigned seed, int vertices = 40) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {
@@ -25,7 +25,7 @@ inline Scene irregular_net(unsigned seed, int vertices = 40) {
   scene.name = "net";
   scene.dt = 1.0 / 64;
   scene.steps = 1;
-  // One after the other: compilers evaluate arguments in orders of their own.
+  // Draws in sequence: the order in which compilers evaluate arguments is unspecified.
   const auto point = [&](double side, double height, double low) {
     const double z = uniform(-height, height), y = uniform(low, side), x = uniform(low, side);
     return Vec3(x, y, z);
@@ -61,7 +61,7 @@ inline State after_one_step(const Scene& scene, const std::string& solver) {
 
 class ElasticStep {
  public:
-  /// Without contact, wind and damping; pins at rest. stiffness: N/m by family.
+  /// Requires no contact, wind or damping, and pins at rest. stiffness: N/m by family.
   ElasticStep(const Scene& scene, const std::array<double, 3>& stiffness)
       : scene_(scene), w_(inverse_masses(scene)), y_(scene.start.x) {
     const double h = scene.dt;
@@ -70,7 +70,7 @@ class ElasticStep {
     for (const Link& l : scene.links) k_.push_back(stiffness[static_cast<std::size_t>(l.family)]);
   }
 
-  /// m, where inertia and gravity alone lead; pins stay.
+  /// Positions [m] that inertia and gravity alone lead to; pins stay.
   const std::vector<Vec3>& prediction() const { return y_; }
 
   double energy(const std::vector<Vec3>& x) const {
@@ -81,7 +81,7 @@ class ElasticStep {
     return sum;
   }
 
-  /// [3 n] N; zero for pins.
+  /// Gradient of G, [3 n] N; zero for pins.
   Eigen::VectorXd gradient(const std::vector<Vec3>& x) const {
     Eigen::VectorXd g = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(x.size()));
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -95,7 +95,8 @@ class ElasticStep {
     return g;
   }
 
-  /// H^-1 g [3 n] m; `clamped`: transverse parts of compressed links left out of H.
+  /// Newton direction H^-1 g, [3 n] m. `clamped` leaves the transverse parts of compressed links
+  /// out of H.
   Eigen::VectorXd newton_direction(const std::vector<Vec3>& x, bool clamped = true) const {
     const auto n = 3 * static_cast<Eigen::Index>(x.size());
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
@@ -125,7 +126,7 @@ class ElasticStep {
     return x;
   }
 
-  /// Down with the clamped Hessian, then Newton's method as it is.
+  /// Minimum of G: descends with the clamped Hessian, then applies the full Newton method.
   std::vector<Vec3> minimum() const {
     std::vector<Vec3> x = y_;
     for (int k = 0; k < 500 && gradient(x).norm() > 1e-3; ++k) {
@@ -140,7 +141,7 @@ class ElasticStep {
 
   const std::vector<Vec3>& y() const { return y_; }
   double stiffness(std::size_t link) const { return k_[link]; }
-  /// C [m] of a link.
+  /// Constraint value C [m] of a link.
   double stretch(const std::vector<Vec3>& x, std::size_t link) const {
     const auto [a, b] = ends(link);
     return (x[b] - x[a]).norm() - scene_.links[link].rest;

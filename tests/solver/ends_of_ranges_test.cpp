@@ -1,6 +1,6 @@
-// Every solver where its parameters and the scene's numbers end: what moves, moves right, or the
-// solver says that it cannot, or it fails so that a status says so. A scene that moves wrongly
-// and looks well is the one thing that is not allowed.
+// Every solver at the limits of its parameters and of the scene's numbers. Each scene has to move
+// correctly, or the solver refuses it, or the run fails with a status. A scene that moves wrongly
+// and looks plausible is the only outcome that is not allowed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,9 +19,9 @@
 namespace taut::ends_of_ranges_test {
 namespace {
 
-/// In double where there is a choice. The adaptive start of vertex solvers is for cloths that
-/// something holds: of what it takes away few sweeps bring back little
-/// (results/benchmarks/methods.md).
+/// The solver's text, in double precision where it offers one. By default vertex solvers start
+/// inertially here: their adaptive start suits cloths that something holds, since few sweeps
+/// restore little of what it removes (results/benchmarks/methods.md).
 std::string exact(const SolverEntry& entry, bool inertia = true) {
   std::string text(entry.name);
   for (const ParamSpec& param : entry.params) {
@@ -35,7 +35,7 @@ bool has(const SolverEntry& entry, std::string_view name) {
   return std::ranges::find(entry.params, name, &ParamSpec::name) != entry.params.end();
 }
 
-/// Whether this program has the solver, and it takes the scene.
+/// Whether this program has the solver and the solver accepts the scene.
 bool takes(const std::string& solver, const Scene& scene) {
   const SolverChoice choice = parse_solver(solver);
   if (choice.entry->program && choice.entry->program(choice.params) == "taut-f32") return false;
@@ -63,7 +63,7 @@ Scene free_sheet() {
   return scene;
 }
 
-/// The velocity of the centre of mass follows v' = exp(-damping h) v + h g.
+/// Expects that the velocity of the centre of mass follows v' = exp(-damping h) v + h g.
 void falls_freely(const std::string& solver, const Scene& scene) {
   if (!takes(solver, scene)) return;
   constexpr int kSteps = 32;
@@ -101,7 +101,7 @@ TEST(EndsOfRanges, FreeFallIsFreeFallAtEveryStiffness) {
   }
 }
 
-/// Bullet's deformable is left out: of sheets of 1e-9 kg on springs of 1e12 N/m it falls wrongly.
+/// Leaves out Bullet's deformable: sheets of 1e-9 kg on springs of 1e12 N/m fall wrongly in it.
 TEST(EndsOfRanges, FreeFallIsFreeFallOfEveryMass) {
   for (const SolverEntry* entry : solvers())
     for (const double mass : {1e-12, 1e-9, 1e9}) {  // kg
@@ -123,7 +123,7 @@ TEST(EndsOfRanges, FreeFallIsFreeFallUnderEveryDamping) {
     }
 }
 
-/// A sheet on a slope of 30 degrees, linked, not one particle: stiff along, soft across.
+/// Sheet of linked particles on a slope of 30 degrees: stiff along the slope, soft across it.
 Scene on_a_slope(double friction) {
   Scene scene = hanging_sheet(9, 9);
   scene.pins.clear();
@@ -137,7 +137,7 @@ Scene on_a_slope(double friction) {
   return scene;
 }
 
-/// Of our solvers; Bullet's friction is one of its own (truth incline-friction).
+/// Tests our solvers only; Bullet has a friction model of its own (truth incline-friction).
 TEST(EndsOfRanges, FrictionIsCoulombsAtEveryNumberOfSweeps) {
   for (const SolverEntry* entry : solvers()) {
     if (entry->name.starts_with("bullet")) continue;
@@ -154,14 +154,14 @@ TEST(EndsOfRanges, FrictionIsCoulombsAtEveryNumberOfSweeps) {
         };
         const State state = simulate(scene, solver, 64);
         const double way = (mean(scene, state.x) - mean(scene, scene.start.x)).norm();
-        // what friction takes of the way
+        // tolerance, as a share of the distance without friction
         const double share = sweeps == 10 ? 0.1 : 1e-3;
         EXPECT_NEAR(way, way_at(mu), share * way_at(0)) << solver << ", mu = " << mu;
       }
   }
 }
 
-/// A sheet of springs between rigid diagonals hangs as it does between very stiff ones.
+/// A sheet of springs between rigid diagonals hangs like one whose diagonals are very stiff.
 TEST(EndsOfRanges, APartlyRigidSceneIsRightOrRefused) {
   Scene scene = hanging_sheet(6, 5);
   scene.damping = 4;
@@ -180,7 +180,7 @@ TEST(EndsOfRanges, APartlyRigidSceneIsRightOrRefused) {
     ++right;
     EXPECT_LT(largest_distance(simulate(rigid, solver, 192).x, exact_state.x), 2e-3) << solver;
   }
-  EXPECT_GE(right, 2);  // xpbd and admm
+  EXPECT_GE(right, 2);  // xpbd and admm at least
   const SolverChoice pd = parse_solver("pd");
   EXPECT_EQ(pd.entry->unsupported(rigid, pd.params).front(),
             "shear links are rigid: springs need their stiffness in [links] stiffness");
@@ -188,8 +188,8 @@ TEST(EndsOfRanges, APartlyRigidSceneIsRightOrRefused) {
   EXPECT_TRUE(own.entry->unsupported(rigid, own.params).empty());
 }
 
-/// A free sheet twice as large as at rest is pulled together, or the step fails and says so: where
-/// m/h^2 is below the rounding of the stiffness there may be no factor.
+/// A free sheet at twice its rest size contracts, or the step fails with a status. Where m/h^2 is
+/// below the rounding error of the stiffness, the matrix may have no factor.
 TEST(EndsOfRanges, AFactorThatBreaksDownIsNoStepWithoutLinks) {
   int failed = 0;
   for (const std::string solver : {"pd", "admm:links=elastic", "implicit"})
@@ -211,9 +211,9 @@ TEST(EndsOfRanges, AFactorThatBreaksDownIsNoStepWithoutLinks) {
   EXPECT_GT(failed, 0);
 }
 
-/// Of what the solver takes as much as possible at once: a crumpled sheet in the wind that sinks
-/// into a ball which turns and rubs, held by a pin and by one that moves, with damping, bending and
-/// self-collision.
+/// Scene with as many features at once as the solver accepts: a crumpled sheet in the wind that
+/// sinks into a spinning ball with friction, one pin at rest and one that moves, damping, bending
+/// and self-collision.
 std::optional<Scene> with_everything(const std::string& solver, bool elastic) {
   Scene scene = crumpled(hanging_sheet(9, 9), 0.05);
   scene.name = "everything";
@@ -226,11 +226,11 @@ std::optional<Scene> with_everything(const std::string& solver, bool elastic) {
   scene.colliders = {{Ball{middle + Vec3(0.05, 0.02, 0.1), 0.2},
                       {.velocity = {0.1, 0, -0.2}, .spin = {0, 3, 0}, .pivot = middle},
                       0.3}};
-  const std::size_t thrown = 40;  // through a small ball within a step
+  const std::size_t thrown = 40;  // passes through a small ball within a step
   scene.start.v[thrown].z() = 3;
   scene.colliders.push_back({Ball{scene.start.x[thrown] + Vec3(0.004, 0.003, 0.025), 0.01}});
   const auto& [a, b, c] =
-      scene.mesh.triangles[14];  // near a pin; its corners are outside of this one
+      scene.mesh.triangles[14];  // near a pin; its corners are outside of this triangle
   const Vec3 on_face =
       (scene.start.x[to_index(a)] + scene.start.x[to_index(b)] + scene.start.x[to_index(c)]) / 3;
   scene.colliders.push_back({Ball{on_face - Vec3(0, 0, 0.015), 0.02}});
@@ -240,12 +240,12 @@ std::optional<Scene> with_everything(const std::string& solver, bool elastic) {
   scene.self_collision = SelfCollision{.radius = 0.05};
   if (takes(solver, scene)) return scene;
   scene.bending.reset();
-  scene.self_collision.reset();  // Bullet
+  scene.self_collision.reset();  // Bullet refuses it
   if (takes(solver, scene)) return scene;
   return {};
 }
 
-/// A value that is not the default, for a parameter of a solver, and what it takes to count.
+/// Value other than the default for a parameter, and the settings with which it has an effect.
 struct Other {
   std::string value, with;
 };
@@ -253,18 +253,20 @@ std::vector<Other> others(const SolverEntry& entry, const ParamSpec& param) {
   const std::string key = std::string(entry.name) + "." + std::string(param.name);
   if (param.name == "simd" || param.name == "threads" || key == "bullet.faces" ||
       key == "bullet.reorder")
-    return {};                                   // the same bits
-  if (key == "implicit.line-search") return {};  // the same while the energy falls: implicit_test
+    return {};  // the same bits
+  // the same while the energy falls; see implicit_test
+  if (key == "implicit.line-search") return {};
   if (param.name == "seed") return {{"2", "order=random"}};
   if (key == "avbd.k-max") return {{"2", ""}};
   if (key == "xpbd.multipliers") return {{"reset", "iterations=3,structural=1e-3"}};
   if (key == "mass-spring.drag-at") return {{"central", "drag=0.01"}};
-  if (key == "mass-spring.integrator") return {{"explicit-euler", ""}};  // the third is Verlet
+  // the third integrator is Verlet
+  if (key == "mass-spring.integrator") return {{"explicit-euler", ""}};
   if (key == "implicit.linear") return {{"cg", ""}};
   if (key == "pd.history") return {{"1", "method=lbfgs"}};
   if (key == "pd.preconditioner") return {{"factor", "method=ncg"}};
   if (param.name == "layout") return {{"batches", ""}};
-  if (key == "implicit.self") return {{"octree", ""}};  // the grid finds nothing to part
+  if (key == "implicit.self") return {{"octree", ""}};  // the grid finds no particles to separate
   if (param.kind == ParamSpec::Kind::choice) {
     std::vector<Other> all;
     for (const std::string& value : parts_of(param.choices))
@@ -280,8 +282,8 @@ std::vector<Other> others(const SolverEntry& entry, const ParamSpec& param) {
   return {{shortest(number == 0 ? 0.01 : number / 2), more}};
 }
 
-/// No value of a parameter is ignored: each changes what comes out. And whatever the setting, a
-/// solver that is loaded again forgets what was: it returns the same bits as before.
+/// Every value of a parameter changes the result, so none is ignored. With every setting, a solver
+/// that is loaded again forgets its former run and returns the same bits.
 TEST(EveryParameter, CountsAndNoneIsRememberedFromAnotherRun) {
   int seen = 0;
   const auto run = [](Solver& solver, const Scene& scene) -> State {

@@ -1,4 +1,4 @@
-// Projective Dynamics and ADMM: where their iterations go, and how fast.
+// Projective Dynamics and ADMM: the limit of their iterations and the rate of convergence.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,12 +39,12 @@ TEST(ProjectiveDynamics, ByOtherMethodsItGoesToTheSamePoint) {
                                  exact),
                 1e-8)
           << method;
-    // without pairs L-BFGS is Projective Dynamics
+    // without correction pairs L-BFGS is Projective Dynamics
     EXPECT_LT(largest_distance(
                   after_one_step(scene, "pd:iterations=10,method=lbfgs,history=0," + kSoftText).x,
                   after_one_step(scene, "pd:iterations=10," + kSoftText).x),
               1e-13);
-    // and with them it goes faster
+    // and with pairs it converges faster
     const auto error = [&](const std::string& more) {
       return largest_distance(after_one_step(scene, "pd:" + kSoftText + more).x, exact);
     };
@@ -73,8 +73,7 @@ TEST(ProjectiveDynamics, AcceleratedItGoesToTheSamePointFaster) {
   EXPECT_LT(error(",iterations=100,anderson=5"), 0.5 * error(",iterations=100"));
 }
 
-/// All directions are right from the start, and along them the energy is quadratic.
-/// Iteration k has k - 1 differences to combine: a window of m cuts them off from m + 2 on.
+/// Iteration k can combine k - 1 differences: a window of m first drops one in iteration m + 2.
 TEST(ProjectiveDynamics, AndersonCombinesAsManyIterationsAsItIsTold) {
   const Scene scene = irregular_net(9);
   const auto after = [&](int window, int iterations) {
@@ -97,8 +96,8 @@ TEST(ProjectiveDynamics, AStraightLoadedChainIsExactAfterOnePass) {
   EXPECT_GT(largest_distance(mine.x, step.y()), 1e-4);
 }
 
-/// A chain between two pins, stretched: motion across it in a mode with the Laplacian's eigenvalue
-/// lambda.
+/// A stretched chain between two pins, moved across its line in the mode of the Laplacian's
+/// eigenvalue lambda.
 TEST(ProjectiveDynamics, ContractsAcrossAStretchedChainAsItShould) {
   constexpr int kLinks = 9;
   constexpr double kStrain = 0.05, kMass = 0.01;
@@ -127,7 +126,7 @@ TEST(ProjectiveDynamics, ContractsAcrossAStretchedChainAsItShould) {
       const double lambda = 2 - 2 * std::cos(std::numbers::pi * mode / kLinks);
       const double s = scene.dt * scene.dt * stiffness / kMass, e = kStrain / (1 + kStrain);
       const double rate = s * lambda * (1 - e) / (1 + s * lambda);
-      // differences of successive iterates shrink as their errors do
+      // differences of successive iterates shrink at the rate of their errors
       EXPECT_NEAR((after(3) - after(2)) / (after(2) - after(1)), rate, 0.01 * rate)
           << stiffness << " N/m, mode " << mode;
     }
@@ -143,8 +142,8 @@ TEST(Admm, FixedPointOfSpringsIsNewtonsStep) {
   }
 }
 
-/// Rigid links: the nearest placement, in the masses' norm, that keeps all lengths. There
-/// m (x - y) is a combination of the lengths' gradients.
+/// With rigid links the limit is the nearest placement, in the norm of the masses, that keeps all
+/// lengths. There m (x - y) is a linear combination of the gradients of the lengths.
 TEST(Admm, RigidLinksEndAtTheConstrainedMinimum) {
   Scene scene = hanging_sheet(1, 10, {true, false, false});
   for (std::size_t i = 1; i < scene.start.x.size(); ++i)
@@ -168,7 +167,7 @@ TEST(Admm, RigidLinksEndAtTheConstrainedMinimum) {
   EXPECT_GT(pull.norm(), 1e-4);
 }
 
-/// The first step of both, written down: factor, links, factor.
+/// The first step of both solvers, written out: factor, links, factor.
 TEST(Admm, AgreesWithADenseProgramOnAnIrregularMesh) {
   const Scene scene = irregular_net(7);
   const ElasticStep step(scene, {1, 1, 1});
@@ -238,14 +237,15 @@ TEST(GlobalSolvers, StepCostCountsTheFactor) {
     const SolverChoice choice = parse_solver(solver);
     const auto costs = choice.entry->make(scene, choice.params)->step_cost();
     const auto& factor = costs.back();
-    EXPECT_GT(factor.items, 62u) << solver;  // more than a diagonal of the vertices that move
+    EXPECT_GT(factor.items, 62u) << solver;  // more than the diagonal of the moving vertices
     EXPECT_GE(factor.bytes, 12 * factor.items) << solver;
     EXPECT_EQ(projections_per_step(*choice.entry->make(scene, choice.params)), 0u) << solver;
   }
 }
 
-/// Links are inner forces. Systems for all vertices at once keep that at any number of iterations;
-/// vbd only once it has converged: vertex after vertex is moved against its own inertia.
+/// Links are internal forces and must not change the fall of the centre of mass. Solvers that solve
+/// for all vertices at once satisfy this after any number of iterations. vbd does so only once it
+/// has converged, as it moves vertex after vertex against its own inertia.
 TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMass) {
   Scene scene = hanging_sheet(6, 5, {true, true, false});
   scene.pins.clear();
@@ -257,7 +257,7 @@ TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMass) {
       way += scene.mesh.mass[i] * (scene.start.x[i] - end.x[i]).y();
       mass += scene.mesh.mass[i];
     }
-    return way / mass / (9.81 / 2 * (1 + 1.0 / 64));  // of the steps' sum
+    return way / mass / (9.81 / 2 * (1 + 1.0 / 64));  // distance that the steps sum up to
   };
   for (const char* solver : {"implicit:iterations=3", "pd:iterations=2", "admm:iterations=2"})
     EXPECT_NEAR(fall(solver), 1, 1e-9) << solver;
@@ -265,13 +265,14 @@ TEST(GlobalSolvers, KeepTheFallOfTheCentreOfMass) {
   EXPECT_NEAR(fall("vbd:iterations=4000"), 1, 1e-3);
 }
 
-/// The factor and what it solves are in double; in float are places and what links pull with.
+/// The factor and its right-hand sides are in double; positions and forces of links are in float.
 TEST(GlobalSystems, FloatFollowsDouble) {
   for (const char* solver : {"pd:iterations=20", "admm:iterations=20"})
     expect_float_follows_double(solver);
 }
 
-/// Springs so stiff that a factor in float would say nothing of the masses: the cloth falls still.
+/// With springs this stiff a factor in float would lose the masses; the cloth has to fall all the
+/// same.
 TEST(GlobalSystems, InFloatStiffLinksDoNotHoldUpAFall) {
   Scene scene = hanging_sheet(9, 8);
   scene.pins.clear();

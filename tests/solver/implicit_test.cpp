@@ -1,4 +1,4 @@
-// Newton's method for implicit Euler against a second program: dense, from the equations.
+// Newton's method for implicit Euler against a second implementation, dense and from the equations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ TEST(Implicit, ConjugateGradientsFindTheSameStep) {
   EXPECT_LT(largest_distance(cg.x, factor.x), 1e-9);
 }
 
-/// One linear system about x_t: H p = -g with the springs' Hessian clamped.
+/// One iteration solves one linear system about x_t: H p = -g with the clamped Hessian of springs.
 TEST(Implicit, OneIterationIsBaraffAndWitkinsStep) {
   const Scene scene = irregular_net(5);
   const ElasticStep step(scene, kSoft);
@@ -44,7 +44,7 @@ TEST(Implicit, OneIterationIsBaraffAndWitkinsStep) {
   const State mine = after_one_step(scene, "implicit:iterations=1,line-search=off," + kSoftText);
   EXPECT_LT(largest_distance(mine.x, linear), 1e-9);
   EXPECT_GT(largest_distance(step.minimum(), linear), 1e-5);  // it is not the minimum
-  // where the whole way would raise the energy, too
+  // where the full step, too, would raise the energy
   Scene thrown = scene;
   for (Vec3& v : thrown.start.v) v *= 100;
   const ElasticStep far(thrown, kSoft);
@@ -70,7 +70,7 @@ TEST(Implicit, BeginsWhereInertiaLeadsIfItIsTold) {
   EXPECT_LT(largest_distance(after("start=inertia"), step.minimum()), 1e-9);
 }
 
-/// Where anything touches, the step begins where the last one ended.
+/// With contact, the step starts at the end of the last step.
 TEST(Implicit, RestsOnABallWhereverItsStepsBegin) {
   Scene scene = hanging_sheet(9, 9);
   scene.stiffness = {1e3, 1e3, 1};
@@ -86,8 +86,8 @@ TEST(Implicit, RestsOnABallWhereverItsStepsBegin) {
   EXPECT_NEAR(deepest, 0.305, 1e-6) << "it touches";
 }
 
-/// What convergence is measured against is the step of the scene: with damping, wind and pins that
-/// move, each alone and together.
+/// The reference for convergence is the minimum of the scene's step with damping, wind and moving
+/// pins, each alone and all combinations of them.
 TEST(Implicit, ConvergesToTheMinimumOfTheReference) {
   for (int effects = 0; effects < 8; ++effects) {
     Scene scene = hanging_sheet(5, 4);
@@ -103,7 +103,7 @@ TEST(Implicit, ConvergesToTheMinimumOfTheReference) {
     EXPECT_EQ(minimum.problem, "");
     std::vector<Vec3> mine = after_one_step(scene, "implicit").x;
     EXPECT_LT(largest_distance(mine, minimum.x), 1e-8) << effects;
-    // pins, which nobody moves, count neither as near nor as mass
+    // pins count neither in the distance nor in the mass
     std::vector<Vec3> shifted = mine;
     for (std::size_t i = 0; i < mine.size(); ++i) shifted[i] += Vec3(0.3, 0, 0.4);
     for (const int pin : scene.pins) shifted[to_index(pin)] = mine[to_index(pin)];
@@ -111,8 +111,8 @@ TEST(Implicit, ConvergesToTheMinimumOfTheReference) {
   }
 }
 
-/// A frame that moves steadily is a frame at rest, also where pins go several links a step: a cape
-/// that is linearised with pins ahead of it ends upside down over them.
+/// A steadily moving frame is equivalent to a frame at rest, even if pins cross several links per
+/// step. A cape linearised with its pins ahead of it would end upside down above them.
 TEST(EverySolver, SeesASteadilyMovingClothAsOneAtRest) {
   Scene still = hanging_sheet(5, 5);
   for (std::size_t i = 0; i < still.start.x.size(); ++i) still.start.v[i] = {0, 0, 0.3};
@@ -133,7 +133,7 @@ TEST(EverySolver, SeesASteadilyMovingClothAsOneAtRest) {
   }
 }
 
-/// In equilibrium tension is fixed by the weight, so strain is tension / (K r).
+/// In equilibrium the weight determines the tension, so strain is tension / (K r).
 TEST(Implicit, StrainOfAHungSheetIsInverseToItsStiffness) {
   Scene scene = hanging_sheet(16, 16, {true, true, false});
   scene.dt = 0.25;
@@ -161,7 +161,8 @@ TEST(KeptMultipliers, ConvergeToTheSameStep) {
   }
 }
 
-/// Out to the side and let go, as stiff as Newton's method from x_t needs many iterations for.
+/// The sheet is drawn to the side and released; at this stiffness Newton's method from x_t needs
+/// many iterations.
 TEST(KeptMultipliers, MoveStiffClothRightWithThreeIterations) {
   Scene scene = hanging_sheet(12, 12, {true, true, false});
   scene.pins.clear();
@@ -180,7 +181,7 @@ TEST(KeptMultipliers, MoveStiffClothRightWithThreeIterations) {
   }
 }
 
-/// Slack cloth: its tensions of the step before keep it from folding at random.
+/// The tensions of the last step keep slack cloth from folding at random.
 TEST(KeptMultipliers, HoldSlackClothWithTwoIterations) {
   Scene scene = crumpled(hanging_sheet(12, 12, {true, false, false}), 1e-3);
   scene.damping = 0.5;
@@ -190,8 +191,8 @@ TEST(KeptMultipliers, HoldSlackClothWithTwoIterations) {
     EXPECT_LT((end.x[to_index(l.b)] - end.x[to_index(l.a)]).norm(), 1.02 * l.rest);
 }
 
-/// A step in which anything touches is Newton's own, and tensions begin anew: what falls on a ball
-/// and what lies on it is where it is without them, if iterations are enough.
+/// A step with contact is plain Newton, and tensions start again at zero. With enough iterations a
+/// cloth that falls on a ball, or lies on it, is where it is without kept multipliers.
 TEST(KeptMultipliers, FallOnABallAndRestThereAsWithoutThem) {
   for (const bool rests : {false, true}) {
     Scene scene = hanging_sheet(9, 9);
@@ -220,7 +221,8 @@ TEST(KeptMultipliers, RefuseRigidLinksAsSpringsDo) {
   EXPECT_EQ(why[0], "shear links are rigid: springs need their stiffness in [links] stiffness");
 }
 
-/// Along its axis a spring between a pin and a mass is linear: z of a step is known.
+/// A mass on a spring from a pin. The spring is linear along its axis, so that the z of a step is
+/// known.
 Scene oscillator(double dt) {
   Scene scene = hanging_sheet(1, 2, {true, false, false});
   scene.gravity.setZero();
@@ -244,7 +246,7 @@ TEST(Integrators, KeepWhatTheyShouldOfASwing) {
     };
     EXPECT_NEAR(ratio("midpoint", 64), 1, 1e-9);
     EXPECT_NEAR(ratio("euler", 10), std::pow(1 + w2 * dt * dt, -10), 1e-9);
-    // BDF2's root that is no parasite: (3 - 2 i w dt) z^2 - 4 z + 1 = 0
+    // BDF2's principal root: (3 - 2 i w dt) z^2 - 4 z + 1 = 0
     const std::complex<double> a(3, -2 * w * dt), z = (2.0 + std::sqrt(4.0 - a)) / a;
     EXPECT_NEAR(ratio("bdf2", 200) / ratio("bdf2", 100), std::pow(std::norm(z), 100),
                 0.02 * std::pow(std::norm(z), 100));

@@ -1,5 +1,5 @@
-// In which order links are visited and where vertices lie in memory, by the rules in the headers
-// and a second implementation of them.
+// Order of the links in a sweep and layout of the vertices in memory, against the rules in the
+// headers and a second implementation of them.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -20,7 +20,8 @@ std::vector<Link3> ends(const std::vector<Link>& links) {
   return all;
 }
 
-/// Jolt Physics 5, SoftBodySharedSettings::Optimize, in plain loops: what jolt_order.cpp says.
+/// Jolt Physics 5, SoftBodySharedSettings::Optimize, in plain loops, as jolt_order.cpp describes
+/// it.
 class Jolt {
  public:
   explicit Jolt(const Scene& scene) : scene_(scene), batch_(scene.start.x.size(), -1) {
@@ -50,7 +51,7 @@ class Jolt {
   int batches() const { return last_; }
 
  private:
-  /// Those of different batches and of what is left over belong to none.
+  /// Batch of a link. Links between batches, and those of vertices left over, belong to none.
   int batch_of(const Link& l) const {
     const int a = batch_[to_index(l.a)], b = batch_[to_index(l.b)];
     return a == b ? a : last_;
@@ -101,7 +102,7 @@ class Jolt {
     }
   }
 
-  /// Bellman and Ford.
+  /// Bellman-Ford algorithm for the distances from the pins.
   void find_ways() {
     way_.assign(x_.size(), std::numeric_limits<float>::infinity());
     for (const int pin : scene_.pins) way_[to_index(pin)] = 0;
@@ -126,7 +127,8 @@ class Jolt {
   std::vector<float> way_;
 };
 
-// Whole batches and a rest that is less than half of one; long and short sides along each axis.
+// Sheets with whole batches and a rest of less than half a batch; long and short sides lie along
+// each axis.
 TEST(Order, OfJoltIsThatOfASecondImplementation) {
   for (const auto& [nu, nv, axis] :
        {std::tuple{26, 23, 0}, {11, 60, 1}, {40, 20, 2}, {19, 30, 1}, {9, 9, 0}, {5, 30, 2}}) {
@@ -150,7 +152,7 @@ TEST(Order, AtRandomIsFisherYatesWithMersennesTwister) {
   }
 }
 
-// Small sheets have as many vectors as their links need; bend links reach two columns.
+// Small sheets have as many vectors as their links need; bend links span two columns.
 TEST(InterleavedLayout, OfASmallSheetHasAVectorMoreThanColumns) {
   for (const bool bend : {false, true})
     for (const int columns : {8, 12, 16}) {
@@ -161,8 +163,8 @@ TEST(InterleavedLayout, OfASmallSheetHasAVectorMoreThanColumns) {
     }
 }
 
-// Sixteen columns side by side if each lane has at least four of them, else eight; a vector more
-// than a row needs where rows would be 32 vectors apart.
+// Sixteen columns lie side by side if each lane has at least four columns, otherwise eight. The
+// stride grows by one vector where rows would be 32 vectors apart.
 TEST(InterleavedLayout, HasTheLanesThatItsColumnsFill) {
   struct Case {
     int columns, lanes, vectors, stride;
@@ -209,7 +211,7 @@ TEST(InterleavedLayout, BlocksAreOfEightRowsAndTheLastHasTheRest) {
   EXPECT_EQ(layout_of(17).blocks(), 3u);
 }
 
-// A row of the longer side lies along the lanes, if both are long enough the first.
+// Rows of the longer side lie along the lanes; if both sides are long enough, those of the first.
 TEST(InterleavedLayout, TakesTheSideThatIsLongEnough) {
   const auto sides = [](int nu, int nv) -> std::string {
     const Scene scene = hanging_sheet(nu, nv);

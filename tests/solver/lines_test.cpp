@@ -1,4 +1,4 @@
-// Relaxation line by line, and Chebyshev's semi-iteration: against closed forms on chains.
+// Relaxation line by line, and Chebyshev's semi-iteration, against closed forms on chains.
 #include "core/solver/constraints/lines.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 namespace taut::lines_test {
 namespace {
 
-/// Free masses along x, link j strained by 1e-3 strain(j): along a line every method is linear.
+/// Free masses along x whose link j has the strain 1e-3 strain(j). On a line every method is
+/// linear.
 template <class Strain>
 Scene free_chain(int links, const Strain& strain) {
   Scene s = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
@@ -25,7 +26,7 @@ Scene free_chain(int links, const Strain& strain) {
   return s;
 }
 
-/// Root mean square strain after one step.
+/// Root mean square strain left after one step.
 double left(const Scene& s, const std::string& solver) {
   const State end = simulate(s, solver, 1);
   double sum = 0;
@@ -45,7 +46,8 @@ std::string with_sweeps(const std::string& more, int sweeps) {
 
 TEST(Chebyshev, OfJacobiFollowsItsRecurrenceAndItsRate) {
   constexpr int kLinks = 31;
-  const double rho = std::cos(std::numbers::pi / (kLinks + 1));  // of strains, all at once
+  // spectral radius if all strains are relaxed at once (Jacobi)
+  const double rho = std::cos(std::numbers::pi / (kLinks + 1));
   const Scene s = free_chain(
       kLinks, [&](int j) { return std::sin(std::numbers::pi * (j + 1) / (kLinks + 1)); });
   const double start = left(s, with_sweeps("method=jacobi", 0));
@@ -98,7 +100,8 @@ TEST(Lines, AStraightChainBetweenPinsSharesItsStretch) {
   }
 }
 
-/// A chain that hangs on one pin with nearly all of its weight at its end: the same pull all along.
+/// Chain on one pin with nearly all of its weight at the free end: the tension is constant along
+/// it.
 Scene weighted_chain() {
   Scene s = hanging_sheet(1, 33, {true, false, false}, Lumping::equal);
   s.mesh.mass.back() *= 1e6;
@@ -132,7 +135,7 @@ TEST(Lines, AreRefusedWithoutAGridAndBeyondTheirLimit) {
   s = weighted_chain();
   ASSERT_EQ(reasons(s).size(), 1u);
   EXPECT_NE(reasons(s)[0].find("above 1/3"), std::string::npos) << reasons(s)[0];
-  // The number of substeps that it names is the least that it takes.
+  // The number of substeps in the message is the smallest that is accepted.
   const std::string said = reasons(s)[0].substr(reasons(s)[0].find("substeps="));
   const int enough = std::stoi(said.substr(9));
   const auto taken = [&](int substeps) {
@@ -146,7 +149,7 @@ TEST(Lines, AreRefusedWithoutAGridAndBeyondTheirLimit) {
 
 TEST(Lines, AndChebyshevAreCountedAsWhatTheyDo) {
   Scene s = hanging_sheet(9, 9);
-  s.pins = {0, 1, 2, 3, 4, 5, 6, 7, 8};  // the upper row: its links do not move
+  s.pins = {0, 1, 2, 3, 4, 5, 6, 7, 8};  // the upper row; its links do not move
   const auto costs_of = [&](const std::string& solver) {
     const SolverChoice choice = parse_solver(solver);
     return choice.entry->make(s, choice.params)->step_cost();
@@ -191,7 +194,7 @@ TEST(Lines, TakeNoOmega) {
                 "method=lines solves its links at once, without omega: leave it at 1"});
 }
 
-/// Of accelerators the theory of linear stability knows nothing, and says so.
+/// Linear stability theory does not cover accelerators, and the solver says so.
 TEST(Accelerators, HaveNoTheory) {
   const Scene s = hanging_sheet(9, 9);
   const auto known = [&](const std::string& more) {

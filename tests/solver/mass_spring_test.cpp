@@ -1,4 +1,4 @@
-// Vasilovici's section 3 and XPBD, held to each other and to what their formulas say.
+// Vasilovici's section 3 and XPBD, compared with each other and with their formulas.
 #include <gtest/gtest.h>
 
 #include "experiments/truths/truth.hpp"
@@ -76,9 +76,9 @@ TEST(Xpbd, AConvergedCompliantLinkIsASpring) {
   EXPECT_NEAR(sim.x(1).y(), -1 - 0.01 * 0.5 * kG, 1e-8);
 }
 
-// A link of compliance a at rest under m g: n sweeps from the place that Verlet predicts leave
-// (at/(w + at))^n of the way to the rest length if each begins with no multiplier, and end where
-// the spring ends if it is kept.
+// A link of compliance a rests under m g. If each sweep starts without a multiplier, n sweeps from
+// Verlet's prediction leave (at/(w + at))^n of the way to the rest length. If the multiplier is
+// kept, they end where the spring ends.
 TEST(Xpbd, WithoutMultipliersTheComplianceIsLostBySweeps) {
   Scene s = bare::chain(1, 1, 0.5);
   const double stretch = 0.1, at = 0.01 / (s.dt * s.dt), w = 2;

@@ -14,13 +14,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A matrix of blocks in the order of elimination: random, with a diagonal that makes it positive.
+/// Random block matrix in the order of elimination, with a diagonal that makes it positive
+/// definite.
 struct Problem {
   std::vector<PanelFactor::Pair> pairs;
   std::size_t unknowns;
   int block;
 
-  /// A grid whose numbers say nothing of where they are, and a few long pairs.
+  /// Grid with scrambled numbers, and a few pairs of distant unknowns.
   Problem(int columns, int rows, int of_block)
       : unknowns(static_cast<std::size_t>(columns * rows)), block(of_block) {
     const int n = columns * rows;
@@ -79,7 +80,7 @@ TEST(PanelFactor, SolvesWhatADenseFactorSolves) {
     std::vector<double> first;
     for (const Simd simd : all_available()) {
       PanelFactor factor(problem.unknowns, problem.pairs, 1, simd);
-      for (int again = 0; again < 2; ++again) {  // a factor is used for many matrices
+      for (int again = 0; again < 2; ++again) {  // one factor is used for several matrices
         const MatrixXd dense = problem.fill(factor, 9 + again);
         ASSERT_TRUE(factor.factor());
         std::vector<double> rows_of_four(4 * problem.unknowns);
@@ -134,7 +135,7 @@ TEST(PanelFactor, SaysWhereThereIsNone) {
   }
 }
 
-/// Minimum degree: in the order of its rows a grid of 30 x 30 has 31 entries a column.
+/// Minimum degree ordering; in row order a grid of 30 x 30 has 31 entries per column.
 TEST(PanelFactor, KeepsItsFactorSparse) {
   const Problem problem(30, 30, 1);
   EXPECT_LT(PanelFactor(problem.unknowns, problem.pairs, 1, Simd::scalar).entries(), 20u * 900);

@@ -1,5 +1,5 @@
-// What a solver says of its steps: which passes, over what, how often, in how much memory, and when
-// each substep ends.
+// The plan that a solver reports for its steps: which passes, over which items, how often, with how
+// much memory, and the end of each substep.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -53,7 +53,7 @@ TEST(Plan, SubstepsEndAtEvenTimesWhereShorterStepsEnd) {
   }
 }
 
-/// pass -> its line; "collide ball" and the like by their first word.
+/// Cost of each pass by its name; passes such as "collide ball" are listed by their first word.
 std::map<std::string, PassCost> plan(const Scene& scene, const std::string& solver) {
   const auto made = make(scene, solver);
   made->load(scene.start);
@@ -165,7 +165,7 @@ struct Memory {
   double held = 0, reported = 0;  ///< bytes
 };
 
-/// Of what works, after a step.
+/// Memory of a solver that has made a step.
 Memory memory(const Scene& scene, const std::string& solver) {
   const auto heap = [] {
     const struct mallinfo2 info = mallinfo2();
@@ -180,7 +180,8 @@ Memory memory(const Scene& scene, const std::string& solver) {
   return memory;
 }
 
-/// What a sheet of 2n x 2n holds more than one of n x n, by what its passes report more.
+/// Additional memory of a sheet of 2n x 2n over one of n x n, as a share of the addition that its
+/// passes report.
 double held_by_reported(const std::string& solver, int n, bool contact, bool wind) {
   const auto sheet = [&](int vertices) {
     Scene scene = hanging_sheet(vertices, vertices);
@@ -189,12 +190,12 @@ double held_by_reported(const std::string& solver, int n, bool contact, bool win
     return scene;
   };
   const Scene small = sheet(n), large = sheet(2 * n);
-  memory(small, solver);  // what is made once stays
+  memory(small, solver);  // allocates what is made only once per process
   const Memory a = memory(small, solver), b = memory(large, solver);
   return (b.held - a.held) / (b.reported - a.reported);
 }
 
-// Of a larger sheet contact and accelerators hold as much more as their passes say.
+// The memory of contact and accelerators grows with the sheet as their passes report.
 TEST(Plan, MemoryOfOtherPassesIsWhatTheyReport) {
   if (mallinfo2().uordblks == 0)
     GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
@@ -212,7 +213,7 @@ TEST(Plan, MemoryOfOtherPassesIsWhatTheyReport) {
   check("jakobsen:order=mesh", false, true);
 }
 
-// Bullet keeps some more beside what its passes visit.
+// Bullet allocates more than the data that its passes visit.
 TEST(Plan, MemoryOfBulletIsMostlyWhatItsPassesReport) {
   if (mallinfo2().uordblks == 0)
     GTEST_SKIP() << "this allocator does not say what it holds (sanitizers)";
@@ -221,8 +222,8 @@ TEST(Plan, MemoryOfBulletIsMostlyWhatItsPassesReport) {
       EXPECT_NEAR(held_by_reported(solver, 24, windy, windy), 1.13, 0.1) << solver;
 }
 
-// Each link of a compliant family has a multiplier more, and a share of it; unless it is 0 in every
-// sweep, as in the one of a substep.
+// Each link of a compliant family adds a multiplier and a share of it, unless the multiplier is
+// zero in every sweep, as with one sweep per substep.
 TEST(Plan, MultipliersAreThereForLinksThatComply) {
   const Scene scene = hanging_sheet(64, 64);
   for (const auto& [precision, real] : {std::pair{"float", 4.0}, {"double", 8.0}})

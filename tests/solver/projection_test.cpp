@@ -1,4 +1,4 @@
-// One link: the two forms of the projection, their limits, and the sign errors in print.
+// One link: both forms of the projection, their limits, and the sign errors in print.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,8 @@ TEST(Projection, WithoutTheRootTheErrorIsSquared) {
     EXPECT_NEAR(after, -e * e / (2 + 2 * e + e * e), 1e-15);
     EXPECT_LE(after, 0);
   }
-  EXPECT_NEAR(projected<Projection::sqrt_free>(5, 1), 0.385, 5e-4);  // far overshoot: a collapse
+  // overshoots so far that the link collapses
+  EXPECT_NEAR(projected<Projection::sqrt_free>(5, 1), 0.385, 5e-4);
 }
 
 TEST(Projection, RepeatedWithoutTheRootItIsAHyperbolicTangent) {
@@ -57,7 +58,7 @@ TEST(Projection, ThePrintedSignsDiverge) {
   const double wrong = -excess<Projection::sqrt_free>((1 + e) * (1 + e), 1.0);
   EXPECT_NEAR((1 + e) * (1 - wrong) - 1, (4 * e + 5 * e * e + 2 * e * e * e) / (2 + 2 * e + e * e),
               1e-14);
-  // Vasilovici's splice of both listings, with diff = (d - r)/d from the exact one
+  // Vasilovici's combination of both listings, with diff = (d - r)/d of the exact one
   const double l = 1 + e, diff = excess<Projection::exact>(l * l, 1.0);
   const double spliced = l - l * (1 / (l * l + 1) - 0.5) * diff - 1;
   EXPECT_NEAR(spliced, e + e * e / 2, e * e * e);

@@ -1,4 +1,4 @@
-// The generic path against the literal listing, and what every method must conserve.
+// The generic path against the published listing, and the quantities that every method conserves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,8 @@ TEST(Relaxation, WithoutPinsTheCentreOfMassFollowsTheParabola) {
   }
 }
 
-/// Shares are by mass wherever a heavy vertex lies, in every lane of an interleaved sheet.
+/// Shares follow the masses for every position of a heavy vertex, in every lane of an interleaved
+/// sheet.
 TEST(Relaxation, KeepsTheCentreOfMassWhereverAHeavyVertexLies) {
   for (const int columns : {9, 20, 33})
     for (int heavy = 0; heavy < 3 * columns; ++heavy) {
@@ -174,7 +175,7 @@ TEST(Relaxation, AVertexWithoutLinksFalls) {
 
 TEST(Relaxation, LinksThatCannotMoveOrHaveNoLengthDoNoHarm) {
   Scene scene = hanging_sheet(3, 3);
-  scene.pins = {0, 1, 2};                                // 0-1 and 1-2 cannot move
+  scene.pins = {0, 1, 2};                                // links 0-1 and 1-2 cannot move
   scene.links.push_back({3, 4, 0, Family::structural});  // welds 3 and 4
   scene.start.x[7] = scene.start.x[4];                   // coincident
   for (const char* projection : {"exact", "sqrt-free"})
@@ -202,11 +203,12 @@ TEST(Order, ListsPhasesThenTilesThenColours) {
     EXPECT_EQ(backwards[k].a, scene.links[backwards.size() - 1 - k].a);
 }
 
-/// The vertices of each tile, by their places in memory: those that lie at 0 to 1023 and so on.
+/// Vertices of each tile by their places in memory: places 0 to 1023, the next 1024, and so on.
 TEST(Order, TilesAreSquaresOfAGridOrNeighbourhoods) {
   const Scene grid = hanging_sheet(70, 35);
   const std::vector<std::uint32_t> rank = tile_ranks(grid.mesh);
-  std::vector<std::uint32_t> expected;  // squares of 32, row after row, each vertex by vertex
+  // squares of 32, row after row, and row by row inside a square
+  std::vector<std::uint32_t> expected;
   std::uint32_t next = 0;
   expected.resize(rank.size());
   for (const auto& [v0, v1] : {std::pair{0, 32}, {32, 35}})

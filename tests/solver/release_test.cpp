@@ -1,5 +1,5 @@
-// Pins that let go, in every solver: where the cloth is free, with what velocity, and that nothing
-// else has changed.
+// Pins that release the cloth, in every solver: the position and the velocity with which vertices
+// become free, and that nothing else changes.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace taut::release_test {
 namespace {
 
-/// A sheet on two pins, one of which moves until both, or the first alone, let go after 12 steps.
+/// Sheet on two pins, one of which moves. After 12 steps both are released, or only the first.
 Scene let_go(std::vector<int> vertices) {
   Scene scene = hanging_sheet(6, 6, {true, true, false});
   Motion aside;
@@ -63,8 +63,9 @@ TEST(Release, APinHoldsToTheBoundaryAndMovesBehindIt) {
   }
 }
 
-/// What is left of the pins decides alone: a scene that never had the others, from the state at the
-/// release, is the same motion; of avbd, which keeps multipliers, nearly.
+/// After a release the remaining pins alone determine the motion: a scene that never had the other
+/// pins, started from the state at the release, moves the same. avbd keeps multipliers and only
+/// follows nearly, so that it is left out.
 TEST(Release, BehindItIsTheSceneWithThePinsThatAreLeft) {
   const Scene scene = let_go({0});
   Scene rest = scene;
@@ -72,7 +73,8 @@ TEST(Release, BehindItIsTheSceneWithThePinsThatAreLeft) {
   rest.pins = {5};
   for (std::string text : kEverySolver) {
     if (text.starts_with("avbd")) continue;
-    if (text.starts_with("vbd")) text += ",start=inertia";  // its own looks at the step before
+    // the adaptive start depends on the step before
+    if (text.starts_with("vbd")) text += ",start=inertia";
     const auto whole = made(scene, text), alone = made(rest, text);
     alone->load(after(*whole, scene, 0, 12));
     const State a = after(*whole, scene, 12, 30), b = after(*alone, rest, 12, 30);
@@ -81,8 +83,8 @@ TEST(Release, BehindItIsTheSceneWithThePinsThatAreLeft) {
   }
 }
 
-/// A vertex without links that lets go beside a cloth in contact changes nothing of it: whatever
-/// the solver keeps from step to step, multipliers and forces of contact, goes on.
+/// Releasing a vertex without links beside a cloth in contact does not affect the cloth: the solver
+/// keeps its multipliers and contact forces from step to step.
 TEST(Release, WhatIsKeptGoesOn) {
   Scene scene = hanging_sheet(6, 6, {true, true, false});
   scene.mesh.grid.reset();
@@ -130,7 +132,7 @@ TEST(Release, SubstepsAreVisitedBeforeAndBehindIt) {
   EXPECT_EQ(visits, 2 * 20);
 }
 
-/// Contact has kept its forces: a cloth that lies on a plane, held by one corner, lies on.
+/// Contact forces are kept: a cloth that lies on a plane, held by one corner, stays at rest.
 TEST(Release, AClothThatLiesLiesOn) {
   Scene scene = hanging_sheet(6, 6, {true, true, false});
   for (auto* points : {&scene.mesh.rest, &scene.start.x})

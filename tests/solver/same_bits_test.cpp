@@ -1,4 +1,4 @@
-// One result: whatever computes it, on one thread or several, in whatever layout.
+// The result does not depend on the instruction set, the number of threads, or the layout.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,10 +25,10 @@ constexpr bool kSanitized = false;
 struct Case {
   int nu, nv;
   Lumping lumping;
-  bool sanitized = true;  ///< with sanitizers, too, which take ten times as long
+  bool sanitized = true;  ///< also run with sanitizers, which take ten times as long
 };
 
-/// Sheets of awkward sizes, and one mesh that is no grid.
+/// Sheets of awkward sizes, and one mesh that is not a grid.
 std::vector<Scene> scenes() {
   std::vector<Scene> all;
   for (const auto& [nu, nv, lumping, sanitized] : {Case{2, 2, Lumping::area},
@@ -60,7 +60,7 @@ bool same_bits(const State& a, const State& b) {
   return same(a.x, b.x) && same(a.v, b.v);
 }
 
-/// `method` computes the bits of `reference` with each of these parameters added.
+/// Expects that `method` with each of these parameters computes the bits of `reference`.
 void expect_same(const Scene& scene, const std::string& method, const std::string& reference,
                  int steps, const std::vector<std::string>& parameters) {
   const State want = simulate(scene, reference, steps);
@@ -79,8 +79,8 @@ void expect_same_in_threads(const Scene& scene, const std::string& method, int s
   expect_same(scene, method, method, steps, in_threads(threads));
 }
 
-/// Every instruction set that this machine has, and each of these numbers of threads, computes the
-/// bits of the scalar path in one thread.
+/// Expects that every instruction set of this machine, with each of these numbers of threads,
+/// computes the bits of the scalar path in one thread.
 void expect_same_everywhere(const Scene& scene, const std::string& method, int steps,
                             const std::vector<int>& threads = {}) {
   std::vector<std::string> parameters = in_threads(threads);
@@ -123,7 +123,7 @@ TEST(SameBits, OfTethersForEveryInstructionSet) {
       }
 }
 
-/// A torus of triangles that grows.
+/// Growing torus of triangles.
 Collider growing(const Vec3& center) {
   const Triangles body = torus(0.15, 0.06, 12, 8);
   auto frames = std::make_shared<BodyFrames>();
@@ -135,8 +135,8 @@ Collider growing(const Vec3& center) {
   return {.shape = MeshBody{body.mesh(), center}, .friction = 0.3, .frames = frames};
 }
 
-/// A plane, balls, a capsule, and a turned box and tori of triangles that rise, spin and grow,
-/// where the sheet falls past them.
+/// Plane, balls, a capsule, and a turned box and tori of triangles that rise, spin and grow, in the
+/// path of the falling sheet.
 std::vector<Collider> obstacles(const Scene& scene) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& x : scene.start.x) middle += x / static_cast<double>(scene.start.x.size());
@@ -190,7 +190,7 @@ TEST(SameBits, OfWindAndContactThatThreadsShare) {
   }
 }
 
-/// Everything that a sweep over vertices takes: bending, contact, wind and pins that move.
+/// Adds every effect that a sweep over vertices supports: bending, contact, wind and moving pins.
 Scene with_everything(Scene scene) {
   scene.colliders = obstacles(scene);
   scene.thickness = 0.002;
@@ -246,7 +246,7 @@ TEST(SameBits, OfForcesThatThreadsShare) {
 }
 
 TEST(SameBits, OfVertexSweepsThatThreadsShare) {
-  const Scene plain = crumpled(hanging_sheet(160, 150), 0.002);  // large colours, with bending too
+  const Scene plain = crumpled(hanging_sheet(160, 150), 0.002);  // large colours, also with bending
   for (const bool everything : {false, true}) {
     if (kSanitized && !everything) continue;
     for (const char* solver : {"vbd:iterations=2", "avbd:iterations=2"})
@@ -259,14 +259,16 @@ TEST(SameBits, OfVertexSweepsThatThreadsShare) {
 }
 
 TEST(SameBits, OfSelfCollisionThatThreadsShare) {
-  // Without shear links, diagonal neighbours are close at rest: two searches' lists are swept.
+  // Without shear links diagonal neighbours are close at rest, so that lists of two searches are
+  // swept.
   Scene scene = crumpled(hanging_sheet(92, 90, {true, false, true}), 0.005);
   const double middle = (scene.start.x.front().y() + scene.start.x.back().y()) / 2;
   for (Vec3& x : scene.start.x)  // folded
     if (x.y() < middle) x = {x.x(), 2 * middle - x.y(), x.z() + 0.01};
   scene.self_collision = SelfCollision{.radius = 0.008};
   for (const char* layout : {"auto", "batches"})
-    for (const char* substeps : {"1", "15"}) {  // searched for one step, and for several
+    // searched once per step, and once for several substeps
+    for (const char* substeps : {"1", "15"}) {
       const std::string method =
           std::string("jakobsen:iterations=2,layout=") + layout + ",substeps=" + substeps;
       const State want = simulate(scene, method, 4);
@@ -276,7 +278,7 @@ TEST(SameBits, OfSelfCollisionThatThreadsShare) {
     }
 }
 
-/// Runs the scene's links in the given order through the generic path, one link at a time.
+/// Runs the scene with its links in the given order through the generic path, one link at a time.
 State one_by_one(Scene scene, std::vector<Link> order, const std::string& more) {
   scene.links = std::move(order);
   return simulate(scene, listing("iterations=4,simd=scalar," + more), 20);
@@ -342,8 +344,8 @@ TEST(SameBits, InterleavedSheetsAreTheGenericPath) {
     }
 }
 
-/// A mesh of 90 000 vertices that is no grid, whose numbers say nothing of where they are: many
-/// tiles, and links whose ends 16 bits cannot tell apart.
+/// Mesh of 90 000 vertices that is not a grid, with scrambled numbers: it has many tiles, and 16
+/// bits cannot tell the ends of all links apart.
 Scene shuffled_mesh() {
   const int side = 300, n = side * side;
   Scene scene = hanging_sheet(side, side, {true, false, false});
@@ -364,7 +366,7 @@ Scene shuffled_mesh() {
     for (int& v : face) v = renamed(v);
   scene.pins = {renamed(0), renamed(side - 1)};
   std::sort(scene.pins.begin(), scene.pins.end());
-  // A seam from the first tile to the last: between the lower left and the upper right corner.
+  // A seam from the first tile to the last, between the lower left and the upper right corner.
   for (int i = 0; i < 50; ++i)
     scene.links.push_back({renamed(n - side + i), renamed(side - 1 - i), 1.4});
   return crumpled(scene, 0.001);
@@ -432,9 +434,9 @@ TEST(SameBits, NarrowAndIncompleteSheetsAreNotInterleaved) {
   EXPECT_FALSE(regular_links(cut.mesh, cut.links));
 }
 
-// Multipliers of links that hardly comply are lost beside the lengths that they are added to, so
-// that the kernels that keep them compute the bits of those that have none; and with them, all
-// instruction sets, layouts and numbers of threads agree.
+// With a tiny compliance, multipliers are below the rounding error of the lengths that they are
+// added to. Kernels with multipliers then compute the bits of those without. With a compliance that
+// matters, all instruction sets, layouts and numbers of threads agree.
 TEST(SameBits, XpbdIsTheExactProjectionWithoutCompliance) {
   for (const Scene& scene : scenes())
     for (const char* precision : {",precision=float", ",precision=double"})
@@ -462,7 +464,8 @@ TEST(SameBits, OfCompliantLinksEverywhere) {
       }
 }
 
-/// The links of a sheet as its sweep visits them, one by one, comply as in mesh order.
+/// Compliant links of a sheet, taken one by one in the order of its sweep, give the same as in mesh
+/// order.
 TEST(SameBits, CompliantSheetsAreTheGenericPathInTheirOrder) {
   for (const auto& [nu, nv] : {std::pair{31, 33}, {65, 7}, {24, 9}, {9, 24}, {16, 11}, {5, 8}}) {
     const Scene scene = crumpled(hanging_sheet(nu, nv, {true, true, true}), 0.3 / nu);
@@ -481,7 +484,7 @@ TEST(SameBits, CompliantSheetsAreTheGenericPathInTheirOrder) {
   }
 }
 
-/// FNV-1a of the positions' bits.
+/// FNV-1a hash of the positions' bits.
 std::uint64_t hash(const State& state) {
   std::uint64_t value = 14695981039346656037u;
   const auto* bytes = reinterpret_cast<const unsigned char*>(state.x.data());
@@ -490,7 +493,8 @@ std::uint64_t hash(const State& state) {
   return value;
 }
 
-// The same numbers from g++ and clang++, from every instruction set, today and next year.
+// Recorded once: g++, clang++ and every instruction set have to compute these numbers, now and
+// later.
 TEST(SameBits, AsRecorded) {
   const Scene scene = crumpled(hanging_sheet(31, 33), 0.01);
   const auto run = [&](const std::string& solver) { return hash(simulate(scene, solver, 32)); };
@@ -501,8 +505,8 @@ TEST(SameBits, AsRecorded) {
   EXPECT_EQ(run(listing("order=coloured,layout=batches,projection=exact,precision=double")),
             7898678465999565491u);
   EXPECT_EQ(run(listing("method=jacobi-averaged")), 1211506826981364154u);
-  // Three vectors in a row and five, eight lanes and sixteen: what is at the end of a strip has a
-  // particle in common with what comes before it.
+  // Three vectors per row and five; eight lanes and sixteen. The end of a strip shares a particle
+  // with the strip before it.
   for (const auto& [nu, nv, want] : {std::tuple{17, 41, std::uint64_t{72121683038813057u}},
                                      {33, 40, std::uint64_t{7369157318980948830u}},
                                      {65, 9, std::uint64_t{1729169306995266907u}}})
@@ -512,7 +516,8 @@ TEST(SameBits, AsRecorded) {
         << nu;
 }
 
-/// The benchmark's measure of traffic: each end of a link is loaded, changed and stored once.
+/// Each end of a link counts as loaded, changed and stored once, the measure of traffic of the
+/// benchmark.
 template <class Real>
 void expect_both_ends_stored(Simd simd) {
   NearBatch<Real> batch{};

@@ -1,6 +1,7 @@
 #pragma once
 
-// The solvers of core/solver once more, as their papers and documents state them, in plain loops.
+// Second implementation of the solvers in core/solver, in plain loops, as papers and documents
+// state them.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,7 @@
 
 namespace taut::second {
 
-/// Rodrigues' formula.
+/// Rotates a point by Rodrigues' formula.
 inline Vec3 turned(const Vec3& p, const Vec3& spin, double t) {
   const double angle = spin.norm() * t;
   if (angle == 0) return p;
@@ -34,8 +35,8 @@ inline Vec3 displacement(const Motion& m, double t) {
   return d + m.path.front().displacement;
 }
 
-/// Where the point that starts at `start` is at time t, and where the point that is at `p` then
-/// started.
+/// Position at time t of the point that starts at `start`. Its inverse, started(), takes the point
+/// at `p` at time t back to its start.
 inline Vec3 moved(const Motion& m, const Vec3& start, double t) {
   return turned(start - m.pivot, m.spin, t) + m.pivot + displacement(m, t);
 }
@@ -48,7 +49,7 @@ struct Hit {
   Vec3 normal;
 };
 
-/// The surface of a collider at time t, seen by the point of it that is at p.
+/// Surface of a collider at time t, as seen from the point p.
 inline Hit surface_at(const Collider& c, const Vec3& p, double t) {
   const Vec3 q = started(c.motion, p, t);
   Vec3 normal;
@@ -62,7 +63,7 @@ inline Hit surface_at(const Collider& c, const Vec3& p, double t) {
   } else if (const auto* capsule = std::get_if<Capsule>(&c.shape)) {
     const Vec3 axis = (capsule->to - capsule->from).normalized();
     const double along = axis.dot(q - capsule->from);
-    Vec3 out = q - capsule->from - along * axis;  // from the line
+    Vec3 out = q - capsule->from - along * axis;  // from the capsule's axis
     if (along < 0) out = q - capsule->from;
     if (along > (capsule->to - capsule->from).norm()) out = q - capsule->to;
     normal = out.normalized();
@@ -88,7 +89,7 @@ inline Hit surface_at(const Collider& c, const Vec3& p, double t) {
   return {distance, turned(normal, c.motion.spin, t)};
 }
 
-/// What all of them share: positions, the pins' places, wind.
+/// Base of all solvers here: positions, places of the pins, wind.
 struct Cloth {
   explicit Cloth(const Scene& s) : scene(s), x(s.start.x), v(s.start.v) {
     for (const double mass : s.mesh.mass) w.push_back(1 / mass);
@@ -99,7 +100,8 @@ struct Cloth {
       for (const int pin : group.vertices)
         x[to_index(pin)] = moved(group.motion, scene.start.x[to_index(pin)], t);
   }
-  /// Gravity and Vasilovici's wind, a third of each face's at each corner.
+  /// Accelerations by gravity and by Vasilovici's wind; each corner takes a third of its face's
+  /// force.
   std::vector<Vec3> accelerations(const std::vector<Vec3>& velocity) const {
     std::vector<Vec3> a(x.size(), scene.gravity);
     if (!scene.wind) return a;
@@ -130,7 +132,7 @@ struct Settings {
   std::map<Family, double> compliance;  ///< m/N
 };
 
-/// Position-based: Jakobsen's algorithm, and XPBD where links comply.
+/// Position-based dynamics: Jakobsen's algorithm, and XPBD where links comply.
 class Relaxing : public Cloth {
  public:
   Relaxing(const Scene& s, const Settings& settings) : Cloth(s), set_(settings) {
@@ -210,7 +212,7 @@ class Relaxing : public Cloth {
       }
   }
 
-  /// Cubes with more than eight particles are halved along each axis, twelve times at most.
+  /// Cubes with more than eight particles are split along each axis, at most twelve times.
   void plant(const std::vector<std::size_t>& in, const Eigen::AlignedBox3d& box, int depth) {
     if (in.size() <= 8 || depth == 12) {
       leaves_.push_back(in);
@@ -230,7 +232,7 @@ class Relaxing : public Cloth {
     }
   }
 
-  /// Two that overlap stay where they were.
+  /// Two particles that overlap go back to their places before the step.
   void part(const std::vector<std::size_t>& leaf) {
     const double diameter = 2 * scene.self_collision->radius;
     for (std::size_t k = 0; k < leaf.size(); ++k)
@@ -246,7 +248,8 @@ class Relaxing : public Cloth {
            });
   }
 
-  /// To the nearest pin of every group of linked pins (SCA 2012), the nearest group first.
+  /// Links each vertex to the nearest pin of every group of linked pins, the nearest group first
+  /// (SCA 2012).
   void find_tethers() {
     const std::size_t n = x.size();
     std::vector<std::vector<double>> way(n, std::vector<double>(n, 1e300));
@@ -260,7 +263,7 @@ class Relaxing : public Cloth {
           for (int& g : group)
             if (g == group[to_index(l.b)] && &g != &group[to_index(l.a)]) g = group[to_index(l.a)];
       }
-    for (std::size_t k = 0; k < n; ++k)  // Floyd and Warshall
+    for (std::size_t k = 0; k < n; ++k)  // Floyd-Warshall algorithm
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j) way[i][j] = std::min(way[i][j], way[i][k] + way[k][j]);
     for (std::size_t i = 0; i < n; ++i) {
@@ -282,7 +285,7 @@ class Relaxing : public Cloth {
     }
   }
 
-  /// Mueller 2008: every pin and a greedy independent set of the level below.
+  /// Each level is a greedy independent set of the level below, plus all pins (Mueller 2008).
   void find_levels() {
     std::vector<Link> links;
     for (const Link& l : scene.links)
@@ -365,7 +368,7 @@ class Relaxing : public Cloth {
   double h_;
   std::vector<Vec3> before_;
   std::vector<Tether> tethers_;
-  std::vector<Level> levels_;  ///< the coarsest first
+  std::vector<Level> levels_;  ///< coarsest first
   std::vector<std::vector<std::size_t>> leaves_;
 };
 

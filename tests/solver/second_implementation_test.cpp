@@ -1,5 +1,5 @@
-// A second implementation of every solver of core/solver takes the same path, step for step: pins
-// and colliders that move and turn, wind, damping, substeps, friction, accelerators.
+// Every solver in core/solver against a second implementation, step for step, with moving and
+// turning pins and colliders, wind, damping, substeps, friction and accelerators.
 #include "tests/solver/second_implementation.hpp"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 using second::Cloth;
 using second::Relaxing;
 
-/// A sheet whose vertices weigh differently and start anywhere near, with pins that go their way
-/// and air that flows; so many times as heavy.
+/// Sheet whose vertices have different masses and random starts, with moving pins and wind; all
+/// masses are multiplied by `heavier`.
 Scene busy_sheet(bool shear, bool bend, double heavier = 1) {
   Scene s = crumpled(hanging_sheet(6, 5, {true, shear, bend}), 0.03);
   for (std::size_t i = 0; i < s.mesh.mass.size(); ++i) {
@@ -67,7 +67,7 @@ TEST(SecondImplementation, OfPinsWindDampingAndSubsteps) {
   }
 }
 
-// Vertices of kilograms have inverse masses below 1, others far above.
+// Masses above 1 kg give inverse masses below 1; all other tests have inverse masses far above 1.
 TEST(SecondImplementation, OfHeavyCloth) {
   Scene scene = busy_sheet(true, true, 1000);
   scene.thickness = 0.02;
@@ -81,7 +81,7 @@ TEST(SecondImplementation, OfHeavyCloth) {
 }
 
 TEST(SecondImplementation, OfTethersAndLevels) {
-  for (const bool shear : {true, false}) {  // a sheet, and a net: other lengths
+  for (const bool shear : {true, false}) {  // a sheet and a net, which have other shortest paths
     Scene scene = busy_sheet(shear, true);
     expect_same_path(scene, in_double("iterations=2,substeps=2,tethers=on"),
                      Relaxing(scene, {.iterations = 2, .substeps = 2, .tethers = true}));
@@ -95,7 +95,7 @@ TEST(SecondImplementation, OfTethersAndLevels) {
   }
 }
 
-/// One collider of each kind that moves, turns and rubs, under and in front of the sheet.
+/// One collider of each kind, moving, turning and with friction, below and in front of the sheet.
 std::vector<Collider> moving_colliders(double friction) {
   return {{.shape = Plane{Vec3(0.2, 1, 0.1).normalized(), -0.5},
            .motion = {.velocity = {0.3, 0.2, 0}, .spin = {0.3, 0.2, -0.5}, .pivot = {1, 0, 2}},
@@ -124,7 +124,8 @@ TEST(SecondImplementation, OfContactWithWhatMovesTurnsAndRubs) {
       const std::string params = "iterations=3,substeps=" + std::to_string(substeps);
       expect_same_path(scene, in_double(params + ",contact=discrete"),
                        Relaxing(scene, {.substeps = substeps}), 30);
-      if (!std::holds_alternative<Box>(collider.shape))  // nothing is passed; boxes are entered
+      // no vertex passes through these; vertices enter boxes
+      if (!std::holds_alternative<Box>(collider.shape))
         expect_same_path(scene, in_double(params + ",contact=continuous"),
                          Relaxing(scene, {.substeps = substeps}), 30);
       expect_same_path(scene, in_double(params + ",contact=after"),
@@ -156,7 +157,7 @@ TEST(SecondImplementation, OfXpbd) {
     scene.wind = Wind{.velocity = {3, -1, 2}, .strength = 0.2};
     scene.thickness = 0.02;
     scene.colliders = moving_colliders(0.4);
-    for (const int iterations : {1, 3})  // one has no use for multipliers
+    for (const int iterations : {1, 3})  // a single iteration does not use multipliers
       expect_same_path(scene,
                        "xpbd:precision=double,order=mesh,contact=discrete,structural=0.0001,"
                        "shear=0.002,bend=0.05,substeps=" +
@@ -170,7 +171,7 @@ TEST(SecondImplementation, OfXpbd) {
   }
 }
 
-// F = -k x - c v on every particle; the velocity after a step is (x - x')/h.
+// Checks springs with F = -k x - c v on every particle; the velocity after a step is (x - x')/h.
 void expect_springs(const std::string& integrator, double heavier) {
   const std::map<Family, double> stiffness{{Family::structural, 20 * heavier},
                                            {Family::shear, 9 * heavier},

@@ -1,5 +1,5 @@
-// What solvers say of themselves on a scene: what they make of each setting, what they refuse and
-// why, and which theory holds for them.
+// What solvers report about a scene: the settings in effect, refusals with their reasons, and the
+// applicable theory.
 #include "tests/support/settings.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,8 @@ TEST(SolverSettings, OfJakobsenAreTheseLines) {
             all);
 }
 
-/// A sheet 1000 m out falls for a tenth of a second: its coordinate keeps its exponent.
+/// A sheet 1000 m from the origin falls for a tenth of a second, too short to change its
+/// coordinate's exponent.
 TEST(SolverSettings, SayHowFarGravityIsOffInFloatAndItIs) {
   Scene scene = hanging_sheet(3, 3);
   scene.pins.clear();
@@ -123,8 +124,8 @@ TEST(SolverRefusals, AreSaidForEachThingThatASolverWouldMisread) {
             std::vector<std::string>{"drag-at=central needs integrator=verlet"});
 }
 
-// A coordinate of 1 m has units of 2^-23 m in the last place below it, half of one being 2^-25 m:
-// g (dt/n)^2 is more up to n = 283.
+// Coordinates just below 1 m are rounded to multiples of 2^-24 m, so that half of a unit is 2^-25
+// m: g (dt/n)^2 is more than this up to n = 283.
 TEST(SolverRefusals, OfSubstepsThatFloatLosesSayHowManyItKeeps) {
   Scene scene = hanging_sheet(3, 3);
   const auto reason = [&](int substeps) {
@@ -142,7 +143,7 @@ TEST(SolverRefusals, OfSubstepsThatFloatLosesSayHowManyItKeeps) {
   EXPECT_EQ(reason(400), "") << "nothing to lose";
 }
 
-/// By the vertices that move, not by those that there are.
+/// The limit counts moving vertices, not all vertices.
 TEST(SolverSettings, ImplicitFactorsUpToAHundredThousandVertices) {
   Scene scene = hanging_sheet(317, 317);  // 100489
   scene.pins.clear();
@@ -172,7 +173,7 @@ TEST(SolverSettings, AnInstructionSetThatTheMachineLacksIsAnError) {
   }
 }
 
-/// A chain that hangs from its first vertex, without gravity or damping.
+/// Chain on its first vertex, without gravity or damping.
 Scene chain(int links) {
   Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
   scene.gravity.setZero();
@@ -212,8 +213,8 @@ TEST(LinearTheory, HoldsForSweepsInTheScenesOrder) {
   EXPECT_EQ(growth(chain(129), listing()), -1) << "too many links for a dense sweep";
 }
 
-/// Explicit Euler with drag is stable while no mode grows: across the chain, where nothing pulls,
-/// too. z = 1 + h l with l^2 + y l + w^2 = 0, y = c/m.
+/// Explicit Euler with drag is stable while no mode grows, including modes across the chain, where
+/// no force acts. z = 1 + h l with l^2 + y l + w^2 = 0, y = c/m.
 TEST(LinearTheory, OfDraggedExplicitEulerIsThatOfAllModes) {
   const Scene scene = chain(3);
   const double k = 92, mass = 0.05, h = scene.dt;

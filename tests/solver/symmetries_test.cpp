@@ -1,6 +1,6 @@
-// What no physics sees, no solver may see: a scene described in other axes, from another place,
-// from a frame that moves, or in other units has the same motion, the same status and the same
-// values of metrics. Every registered solver, on scenes that combine their features pairwise.
+// Physical symmetries, for every registered solver: a scene described in other axes, from another
+// origin, in a moving frame or in other units has the same motion, the same status and the same
+// metric values. The scenes combine their features pairwise.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,18 +16,19 @@
 namespace taut::symmetries_test {
 namespace {
 
-/// Another description of the same scene: x becomes turn (metre x) + away + t speed.
+/// Change of description of a scene: x becomes turn (metre x) + away + t speed.
 struct Change {
   const char* name;
-  double kilogram = 1, metre = 1, second = 1;  ///< how many new units the old ones are
+  double kilogram = 1, metre = 1, second = 1;  ///< numbers of new units per old unit
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Vec3 away = Vec3::Zero();   ///< new m
   Vec3 speed = Vec3::Zero();  ///< new m/s
-  /// How far apart motions may be [old m]; 0: the same bits. Of values relative to their size.
+  /// Tolerance of motions [old m], where 0 demands the same bits; of values, relative to their
+  /// size.
   double within = 0;
 };
 
-/// "N s/m^3" in new units.
+/// Factor that converts a unit such as "N s/m^3" to new units.
 double factor(const Change& c, std::string_view unit) {
   const std::map<std::string, double> factors{{"kg", c.kilogram},
                                               {"m", c.metre},
@@ -45,7 +46,7 @@ double factor(const Change& c, std::string_view unit) {
   return product;
 }
 
-/// The solver with its parameters in new units.
+/// The solver's text with its parameters in new units.
 std::string changed(const std::string& solver, const Change& c) {
   const SolverChoice choice = parse_solver(solver);
   std::string text = std::string(choice.entry->name) + ":";
@@ -84,7 +85,7 @@ Scene changed(Scene s, const Change& c) {
   for (double& m : s.mesh.mass) m *= c.kilogram;
   for (Link& l : s.links) l.rest *= c.metre;
   for (double& k : s.stiffness) k *= stiffness;
-  if (!c.speed.isZero(0)) {  // pins that rest go along
+  if (!c.speed.isZero(0)) {  // pins at rest move with the frame
     PinMotion& resting = s.pin_motions.emplace_back();
     for (const int pin : s.pins)
       if (std::ranges::none_of(s.pin_motions, [&](const PinMotion& m) {
@@ -131,7 +132,7 @@ Scene changed(Scene s, const Change& c) {
   return s;
 }
 
-/// In [-1, 1], made of whole numbers: the same on every machine.
+/// Noise in [-1, 1] from integers, the same on every machine.
 double noise(std::size_t i, std::size_t k) {
   return static_cast<double>((i * 7919 + k * 104729 + i * i * 31) % 2001) / 1000 - 1;
 }
@@ -154,7 +155,7 @@ void add_cloth(Scene& s, const SheetShape& shape) {
   s.start.v.assign(s.start.x.size(), Vec3::Zero());
 }
 
-/// On the rest shape or on the whole scene; in this order.
+/// Feature that is added to the rest shape or to the whole scene, in this order.
 struct Feature {
   const char* name;
   void (*add)(Scene&);
@@ -243,9 +244,9 @@ const Feature kFeatures[] = {
 
 constexpr unsigned kScenes = 16;
 
-/// Feature f is in scene n where the bits that f + 1 and n share are odd in number: any two
-/// features come together, alone, and not at all, in a quarter of the scenes each (Sylvester,
-/// 1867).
+/// Scene n has feature f if f + 1 and n have an odd number of common bits. Any two features then
+/// occur together, each without the other, and not at all, in a quarter of the scenes each
+/// (Sylvester, 1867).
 Scene scene_of(unsigned n) {
   Scene s;
   add_cloth(s, {.nu = 5, .nv = 5, .width = 1, .height = 1, .v = Vec3::UnitZ(), .mass = 0.3});
@@ -261,7 +262,7 @@ Scene scene_of(unsigned n) {
   return s;
 }
 
-/// Every registered solver as it is, and what else it can do.
+/// Every registered solver with its default settings and with further ones.
 std::vector<std::string> texts() {
   std::vector<std::string> all{
       "jakobsen:order=mesh,substeps=1,projection=exact,faces=on",
@@ -279,7 +280,8 @@ std::vector<std::string> texts() {
       "bullet:reorder=on,faces=off",
       "bullet-deformable:implicit=false,substeps=16,spring-damping=0.01"};
   for (const SolverEntry* entry : solvers()) all.emplace_back(entry->name);
-  std::ranges::replace(all, "implicit", "implicit:iterations=6");  // 50 cost as much as all others
+  // 50 iterations would take as long as all other solvers together
+  std::ranges::replace(all, "implicit", "implicit:iterations=6");
   return all;
 }
 
@@ -287,8 +289,8 @@ CaseRun run(const Scene& scene, const std::string& solver) {
   return run_case(scene, parse_solver(solver));
 }
 
-/// Largest distance of the second run from what the first one is in the new description, old m and
-/// old m/s times the duration.
+/// Largest difference between the second run and the first one in the new description. Positions
+/// count in old m, velocities in old m/s times the duration.
 double apart(const CaseRun& was, const CaseRun& is, const Change& c, const Scene& scene) {
   const double duration = is.record.dt * is.record.steps;
   double most = 0;
@@ -301,8 +303,9 @@ double apart(const CaseRun& was, const CaseRun& is, const Change& c, const Scene
   return most;
 }
 
-/// Whether a metric has to return the same: a speed is relative to the frame, the thresholds of
-/// settle.time are in m and s, and rounding decides who is below a surface that all lie on.
+/// Whether a metric has to return the same value. Speeds are relative to the frame, the thresholds
+/// of settle.time are in m and s, and rounding decides which vertices are below a surface that all
+/// of them lie on.
 bool sees_no(const Change& c, const std::string& metric) {
   const auto is = [&](const char* name) { return metric.rfind(name, 0) == 0; };
   if (is("penetration.share")) return c.within == 0;
@@ -312,19 +315,19 @@ bool sees_no(const Change& c, const std::string& metric) {
 
 bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-/// What a solver does see, and why.
+/// Whether a solver is known to break the symmetry; the reason stands at each case.
 bool sees(const std::string& solver, const Scene& scene, const Change& c) {
   const bool touches = !scene.colliders.empty(), moves = !c.speed.isZero(0);
-  // mass-spring's drag and VBD's damping act on a vertex' own velocity, as published
+  // mass-spring's drag and VBD's damping act on a vertex' absolute velocity, as published
   if (moves && (scene.damping > 0 || has(solver, "drag=") || has(solver, ",damping="))) return true;
-  // the first Newton iteration is from x_t with pins where they will be: what the iterations that
-  // come before contact leave depends on how far those are ahead
+  // the first Newton iteration starts at x_t with pins already in their new places; the error left
+  // by iterations before contact depends on how far the pins have moved
   if (moves && has(solver, "implicit:") && !scene.pins.empty() && !has(solver, "bullet"))
     return true;
-  // falls back if the energy grew after contact: of iterates as good as each other, rounding
-  // chooses
+  // Anderson acceleration falls back if the energy grew after contact; rounding chooses between
+  // equally good iterates
   if (has(solver, "anderson") && touches) return true;
-  // Bullet compares with constants of its own in m, kg and s, and the deformable body's contact is
+  // Bullet compares with its own constants in m, kg and s, and contact of its deformable body is
   // unstable
   return has(solver, "bullet-deformable") && touches;
 }
@@ -333,11 +336,12 @@ double tolerance(const std::string& solver, const Change& c) {
   return has(solver, "bullet") ? std::max(1e-9, c.within) : c.within;
 }
 
-/// Solvers with contact as a constraint of their own decide anew in every iteration who touches,
-/// sticks and slips: of what has not converged, rounding chooses sooner or later, and at once where
-/// two colliders hold a vertex.
+/// Number of steps for which solvers with contact constraints are compared. They decide in every
+/// iteration which vertices touch, stick and slip; before convergence rounding takes that decision
+/// sooner or later, and at once where two colliders hold a vertex.
 constexpr int kStepsInContact = 3;
-constexpr double kWithinSeveral = 1e-3;  ///< m
+/// Tolerance of positions where several colliders can hold a vertex [m].
+constexpr double kWithinSeveral = 1e-3;
 bool decides_who_touches(const std::string& solver) {
   return std::ranges::any_of(std::array{"implicit", "pd", "admm", "vbd", "avbd"},
                              [&](auto name) { return solver_name(solver) == name; });
@@ -359,7 +363,7 @@ void compare(Scene scene, const std::string& solver, const Change& c) {
   if (!(far <= within)) return;
   for (const auto& [name, value] : was.record.values) {
     if (!sees_no(c, name)) continue;
-    // whether an edge that lies on one of a box passes through it is rounding's choice
+    // rounding decides whether an edge that lies on an edge of a box passes through it
     if (within > 0 && name == "edge.passages") continue;
     const double now = is.record.value(name);
     const double want = value * factor(c, find_value(name).second->unit.si);
@@ -400,7 +404,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{.name = "in_large_units", .kilogram = 0x1p-16, .metre = 0x1p-5, .second = 0x1p-5}),
     [](const auto& change) { return std::string(change.param.name); });
 
-/// Of solvers with a float path: nothing but rounding of the places is lost in half a second.
+/// Solvers with a float path lose only the rounding of positions within half a second.
 TEST(Symmetries, FloatIsDoubleButForRounding) {
   for (unsigned n = 0; n < kScenes; ++n) {
     for (const std::string& solver : texts()) {
@@ -418,7 +422,7 @@ TEST(Symmetries, FloatIsDoubleButForRounding) {
   }
 }
 
-/// The others of core/README.md: who does see, sees much.
+/// The solvers that core/README.md lists as breaking a symmetry break it by much.
 TEST(Symmetries, AreBrokenWhereItIsSaid) {
   const Change train{.name = "from a train", .speed = Vec3(3, -1, 2)};
   const auto gap = [&](unsigned n, const std::string& solver) {

@@ -15,13 +15,13 @@ namespace taut::thread_pool_test {
 
 namespace {
 
-/// Long enough for the others to come in time.
+/// Works for long enough that the other threads arrive.
 void dawdle() {
   volatile int work = 0;
   for (int n = 0; n < 300; ++n) work = work + 1;
 }
 
-/// More threads than cores, so that some are always late.
+/// Has more threads than cores, so that some threads always arrive late.
 TEST(ThreadPool, DoesEveryItemOfEveryRoundOnce) {
   ThreadPool pool(6);
   std::vector<int> visits(50, 0);
@@ -44,7 +44,8 @@ TEST(ThreadPool, RoundsDoNotOverlap) {
   std::vector<std::size_t> value(97);
   std::iota(value.begin(), value.end(), std::size_t{0});
   std::vector<std::size_t> next(value.size());
-  for (int round = 0; round < 2000; ++round) {  // each item reads what another one wrote before
+  // each item reads what another item wrote in the round before
+  for (int round = 0; round < 2000; ++round) {
     pool.run(value.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         dawdle();
@@ -58,10 +59,10 @@ TEST(ThreadPool, RoundsDoNotOverlap) {
   for (std::size_t i = 0; i < value.size(); ++i) ASSERT_EQ(value[i], (i + 2000) % value.size());
 }
 
-/// Stages of blocks alone and of a block and the one after it, in an order without a pattern: what
-/// each does to a block has to find it as all before it have left it.
+/// Stages over single blocks and over a block with its successor, in an irregular order. Each stage
+/// of a block has to find the block as all earlier stages left it.
 TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeIt) {
-  static constexpr std::size_t kStages = 300;  // more than are kept
+  static constexpr std::size_t kStages = 300;  // more than the pool keeps
   for (const std::size_t blocks : {23U, 24U, 3U, 1U})
     for (const int threads : {2, 5}) {
       ThreadPool pool(threads);
@@ -98,7 +99,7 @@ TEST(ThreadPool, AStageOfABlockFollowsThoseBeforeIt) {
     }
 }
 
-/// One less than are kept: the two stages of a pair do not fit both.
+/// Starts one stage below the number that the pool keeps: the two stages of a pair do not both fit.
 TEST(ThreadPool, PairsStayTogetherAfterManyStages) {
   constexpr std::uint32_t kBlocks = 23, kBefore = 127;
   ThreadPool pool(2);
@@ -153,7 +154,8 @@ TEST(ThreadPool, WithoutMemoryForItsThreadsThrows) {
   getrlimit(RLIMIT_AS, &before);
   rlim_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  const rlimit little{pages * 4096 + (rlim_t{200} << 20), before.rlim_max};  // stacks: 8 MiB each
+  // stacks take 8 MiB each
+  const rlimit little{pages * 4096 + (rlim_t{200} << 20), before.rlim_max};
   setrlimit(RLIMIT_AS, &little);
   EXPECT_THROW(ThreadPool(200), std::system_error);
   setrlimit(RLIMIT_AS, &before);

@@ -1,4 +1,4 @@
-// Vertex Block Descent and its augmented form: against the papers' algorithms in plain loops.
+// Vertex Block Descent and its augmented form against the papers' algorithms in plain loops.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 constexpr std::array kSoft{800.0, 300.0, 50.0};
 const std::string kSoftText = "structural=800,shear=300,bend=50";
 
-/// Both papers' algorithms, vertex after vertex in the scene's order, all links of the scene
-/// looked through for each.
+/// Both papers' algorithms, vertex by vertex in the scene's order. Each vertex searches all links
+/// of the scene.
 struct Textbook {
   Scene scene;
   bool augmented = false;

@@ -1,4 +1,4 @@
-// jakobsen's wind: core/model/wind.hpp face by face, whatever the layout.
+// Wind in jakobsen against core/model/wind.hpp, face by face, in every layout.
 #include "core/model/wind.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Scene windy(Scene scene, Wind::Law law) {
   return scene;
 }
 
-/// Velocities after a step in which only wind and gravity act.
+/// Velocities after a step under wind and gravity alone.
 std::vector<Vec3> expected(const Scene& s) {
   const std::vector<double> w = inverse_masses(s);
   std::vector<Vec3> v = s.start.v;

@@ -1,5 +1,5 @@
-// XPBD's links solved all at once: what one solution is, where iterations go, and how many it
-// takes.
+// XPBD with a global solve of all links: the result of one solve, the limit of the iterations, and
+// how many of them are needed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 const std::string kGlobal = "xpbd:method=global,substeps=1,precision=double,";
 
-/// A chain that hangs straight from its first vertex, drawn out by its own weight.
+/// Chain that hangs straight from its first vertex, stretched by its own weight.
 Scene loaded_chain(double stiffness) {
   Scene scene = hanging_sheet(1, 12, {true, false, false});
   scene.stiffness = {stiffness, stiffness, stiffness};
@@ -31,7 +31,7 @@ Scene loaded_chain(double stiffness) {
   return scene;
 }
 
-/// -lambda/h^2 is K C: along the links the problem is linear, so one solution holds the chain.
+/// -lambda/h^2 is K C: along the links the problem is linear, so one solve holds the chain.
 TEST(GlobalXpbd, HoldsALoadedChainWithOneSolution) {
   const Scene scene = loaded_chain(1e4);
   const State end = after_one_step(scene, kGlobal + "iterations=1");
@@ -42,7 +42,7 @@ TEST(GlobalXpbd, HoldsALoadedChainWithOneSolution) {
     const double excess = (end.x[i] - end.x[i - 1]).norm() - scene.links[i - 1].rest;
     EXPECT_NEAR(1e4 * excess / below, 1, 1e-9);
   }
-  // from unloaded lengths, too, one solution is the step; sweeps need as many as there are links
+  // from unloaded lengths one solve is the step, too; sweeps need as many iterations as links
   Scene unloaded = scene;
   unloaded.start = {scene.mesh.rest, scene.start.v};
   const std::vector<Vec3> exact = ElasticStep(unloaded, unloaded.stiffness).minimum();
@@ -52,7 +52,8 @@ TEST(GlobalXpbd, HoldsALoadedChainWithOneSolution) {
             1e-5);
 }
 
-/// The weight below over K = 1/(a h^2), a = 1e-9 of the mean of 1/m + 1/m of a link's ends.
+/// The strain is the weight below over K = 1/(a h^2), where a is 1e-9 of the mean of 1/m + 1/m over
+/// the ends of links.
 TEST(GlobalXpbd, LeavesRigidLinksTheStrainOfItsRegularisation) {
   Scene scene = loaded_chain(1e6);
   scene.stiffness = kRigid;
@@ -69,7 +70,7 @@ TEST(GlobalXpbd, LeavesRigidLinksTheStrainOfItsRegularisation) {
   }
 }
 
-/// Pinned along its top edge, let go 45 degrees from rest; equal masses.
+/// Sheet with equal masses, pinned along its top edge and released at 45 degrees from rest.
 Scene swinging(int n, double k) {
   Scene scene = hanging_sheet(n, n, {true, true, false}, Lumping::equal);
   scene.stiffness = {k, k, k};
@@ -79,7 +80,7 @@ Scene swinging(int n, double k) {
   return scene;
 }
 
-/// Where Newton's method that has converged ends after a second: (-0.7932, -0.5972), for any K.
+/// Converged Newton's method reaches (-0.7932, -0.5972) after a second, for any K.
 TEST(GlobalXpbd, MovesStiffClothRightWithThreeSolutions) {
   for (const double k : {1e4, 1e6}) {
     const Scene scene = swinging(32, k);
@@ -90,8 +91,8 @@ TEST(GlobalXpbd, MovesStiffClothRightWithThreeSolutions) {
   }
 }
 
-/// Sweeps and solutions alike come to rest where directions are those of the path; with the primal
-/// residual they come to the step itself.
+/// Without the primal residual both sweeps and solves converge to a point that depends on the
+/// directions along their path; with it they converge to the implicit Euler step.
 TEST(GlobalXpbd, WithThePrimalResidualGoesToImplicitEulersStep) {
   for (const double k : {1e4, 1e6}) {
     Scene scene = swinging(16, k);
@@ -109,7 +110,7 @@ TEST(GlobalXpbd, WithThePrimalResidualGoesToImplicitEulersStep) {
     EXPECT_GT(off("iterations=64"), 1e-4) << k;
     EXPECT_NEAR(off("iterations=64"), off("iterations=32"), 1e-7) << k;
   }
-  for (const unsigned seed : {1u, 2u, 3u}) {  // slack, too
+  for (const unsigned seed : {1u, 2u, 3u}) {  // including slack nets
     Scene scene = irregular_net(seed);
     scene.stiffness = {800, 300, 50};
     EXPECT_LT(largest_distance(after_one_step(scene, kGlobal + "primal=on,iterations=300").x,
@@ -119,7 +120,7 @@ TEST(GlobalXpbd, WithThePrimalResidualGoesToImplicitEulersStep) {
   }
 }
 
-/// Iterations of one step until links keep their lengths to 1e-4 of what they were off at first.
+/// Iterations of one step until the error of the links' lengths is 1e-4 of its initial value.
 int needed(const Scene& scene, const std::string& solver) {
   const auto off = [&](int iterations) {
     const State end = after_one_step(scene, solver + std::to_string(iterations));
@@ -139,7 +140,7 @@ int needed(const Scene& scene, const std::string& solver) {
 }
 const std::string kSweeps = "xpbd:substeps=1,precision=double,order=mesh,iterations=";
 
-/// Rigid links, after half a second of motion.
+/// Sheet with rigid links after half a second of motion.
 TEST(GlobalXpbd, NeedsAsManySolutionsOnAFinerSheet) {
   const auto both = [&](int links) {
     Scene scene = swinging(links + 1, 1e6);
@@ -154,9 +155,10 @@ TEST(GlobalXpbd, NeedsAsManySolutionsOnAFinerSheet) {
   EXPECT_NEAR(std::log(1.0 * fine.second / coarse.second) / std::log(4), 2, 0.2);
 }
 
-/// A chain that is let go from the side turns at its pin by h^2 g/l in the first step, which the
-/// pull of all N links below takes across: the first solution is off by N^3 (h^2 g)^2/(2 L^2) of a
-/// link. In steps that keep this the finest chain needs as many solutions as the coarsest.
+/// A chain released from the side turns at its pin by h^2 g/l in the first step, and the tension of
+/// all N links below acts across this angle: the first solve has an error of N^3 (h^2 g)^2/(2 L^2)
+/// of a link. With time steps that keep this constant, the finest chain needs as many solves as the
+/// coarsest.
 TEST(GlobalXpbd, NeedsAsManySolutionsOnAFinerFallingChain) {
   const auto chain = [](int links, double dt) {
     Scene scene = hanging_sheet(1, links + 1, {true, false, false}, Lumping::equal);
@@ -168,12 +170,12 @@ TEST(GlobalXpbd, NeedsAsManySolutionsOnAFinerFallingChain) {
     const double dt = std::pow(16.0 / links, 0.75) / 64;
     EXPECT_EQ(needed(chain(links, dt), kGlobal + "iterations="), 2) << links;
   }
-  // in steps as long, where it is a link and more
+  // at 1/64 s, 64 links make this error a link and more
   EXPECT_EQ(needed(chain(64, 1.0 / 64), kGlobal + "iterations="), 7);
   EXPECT_GT(needed(chain(64, 1.0 / 64), kSweeps), 10000);
 }
 
-/// Pins are where they have to be before the first solution.
+/// Pins are in their places before the first solve.
 TEST(GlobalXpbd, FollowsPinsThatMoveAndTheSceneDamping) {
   Scene scene = loaded_chain(1e4);
   scene.damping = 5;
@@ -185,8 +187,8 @@ TEST(GlobalXpbd, FollowsPinsThatMoveAndTheSceneDamping) {
   EXPECT_NEAR(end.x[0].z(), 2 * scene.dt, 1e-12);
 }
 
-/// Solutions of links and projections of bending take turns, as sweeps do: a sheet that is held
-/// level at one edge.
+/// Solves of links and projections of bending alternate, as with sweeps; the sheet is held level at
+/// one edge.
 TEST(GlobalXpbd, BendsAsSweepsDo) {
   Scene scene = hanging_sheet(6, 6, {true, true, false});
   scene.stiffness = {1e3, 1e3, 1e3};
@@ -200,9 +202,9 @@ TEST(GlobalXpbd, BendsAsSweepsDo) {
   EXPECT_LT(largest_distance(sweeps, global), 1e-6);
 }
 
-/// A sheet that is held by its corners lies on a ball. With the primal residual contact is part of
-/// the solve; without it is projected after each solution, as after sweeps, and the sheet is still
-/// nearer to where it has to be than after ten times as many sweeps.
+/// A sheet held by its corners lies on a ball. With the primal residual contact is part of the
+/// solve. Without it contact is projected after each solve, as after sweeps, and the sheet is still
+/// nearer to the exact result than after ten times as many sweeps.
 TEST(GlobalXpbd, LiesOnABallWhereItHasTo) {
   Scene scene = hanging_sheet(9, 9, {true, true, false});
   scene.stiffness = {1e3, 1e3, 1e3};
@@ -223,7 +225,7 @@ TEST(GlobalXpbd, LiesOnABallWhereItHasTo) {
   EXPECT_LT(off(kGlobal + "primal=on,iterations=20"), 1e-6);
 }
 
-/// Contact a thousand million times as stiff as inertia left the links' matrix without a factor.
+/// Regression: contact 1e9 times as stiff as inertia left the matrix of links without a factor.
 TEST(GlobalXpbd, LaysRigidClothOnABall) {
   Scene scene = hanging_sheet(9, 9, {true, true, false});
   scene.pins.clear();
@@ -242,8 +244,8 @@ TEST(GlobalXpbd, LaysRigidClothOnABall) {
   EXPECT_LT(longest, 0.02);
 }
 
-/// Compressed links push their ends apart along directions that turn: what that does to a sheet
-/// with much of it slack is a status, not a silent result.
+/// Compressed links push their ends apart along directions that turn. Where this makes a mostly
+/// slack sheet explode, the run reports a status instead of a wrong result.
 TEST(GlobalXpbd, SaysThatASlackSheetBlowsUp) {
   Scene scene = crumpled(hanging_sheet(32, 32, {true, false, false}), 1e-3);
   scene.stiffness = {1e4, 1e4, 1e4};

@@ -55,9 +55,9 @@ def values(program):
 
 
 def wrong_values(file, known):
-    """A name that no metric has would be NaN for ever, and every comparison with it false."""
+    """A name that no metric has would always give NaN, and every comparison with it would be false."""
     for name in re.findall(r'\b(?:value|now|add)\("([a-z_]+(?:\.[a-z0-9_]+)+)"', file.read_text()):
-        if name not in known and not name.startswith(("cpu.", "wall.")):  # costs are no values of a metric
+        if name not in known and not name.startswith(("cpu.", "wall.")):  # costs are not values of a metric
             yield f"asks for the value {name}, which no metric has"
 
 

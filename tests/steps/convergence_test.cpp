@@ -1,5 +1,5 @@
-// Error over iterations inside one step: the exact step, gaps and rates against other programs and
-// closed forms.
+// Error over iterations within one step: the exact step, gaps and rates compared with other
+// programs and closed forms.
 #include "experiments/steps/convergence.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 namespace taut::convergence_test {
 namespace {
 
-/// By one solver, from the scene's start.
+/// Convergence of one solver, starting from the scene's start.
 Convergence of_one(const Scene& scene, const std::string& solver, int most) {
   return converge(scene, scene.start, 0, {solver}, most).front();
 }
@@ -66,7 +66,7 @@ TEST(Convergence, GapIsThatOfTheEnergyAndNewtonsMethodClosesIt) {
   EXPECT_EQ(reached(vbd, 1e-12), -1);
 }
 
-/// A sheet that hangs by its first row, turned by 45 degrees.
+/// Sheet that hangs by its first row, released at 45 degrees.
 Scene let_go(int nu, int nv, const LinkChoice& families) {
   Scene scene = hanging_sheet(nu, nv, families);
   scene.pins.resize(to_index(nu));
@@ -76,9 +76,9 @@ Scene let_go(int nu, int nv, const LinkChoice& families) {
   return scene;
 }
 
-/// Newton's method on the whole KKT system, dense, of least norm where constraints are redundant:
-/// the nearest placement to y with (|d|^2 - r^2)/2 = 0, and with each cell of a sheet whose cells
-/// are rigid a parallelogram.
+/// Nearest placement to y with (|d|^2 - r^2)/2 = 0 for each link. If `cells` is set, each cell of
+/// the sheet is rigid and stays a parallelogram. Newton's method on the whole dense KKT system;
+/// redundant constraints take the solution of least norm.
 std::vector<Vec3> nearest_placement(const Scene& scene, const std::vector<Vec3>& y, bool cells) {
   const std::vector<double> w = inverse_masses(scene);
   std::vector<Vec3> x = scene.start.x;
@@ -141,7 +141,7 @@ std::vector<Vec3> nearest_placement(const Scene& scene, const std::vector<Vec3>&
   return x;
 }
 
-/// Sheets that fold along their rows, and chains and nets, with velocities at random.
+/// Sheets that fold along their rows, chains and nets, with random velocities.
 TEST(Convergence, ExactStepOfRigidLinksAgreesWithDenseKkt) {
   Stiffness rigid;
   rigid.fill(std::numeric_limits<double>::infinity());
@@ -163,8 +163,8 @@ TEST(Convergence, ExactStepOfRigidLinksAgreesWithDenseKkt) {
     }
 }
 
-/// A sweep minimises over one vertex after the other: it lowers the energy, and may lead away from
-/// the exact step at first, where stretch goes before bends do.
+/// A sweep minimises over one vertex after another and so lowers the energy. The distance from the
+/// exact step may grow at first, since stretch disappears before bending.
 TEST(Convergence, VertexBlockDescentLowersTheGapInEverySweep) {
   const Scene scene = let_go(6, 6, {true, true, false});
   const State state = state_at(scene, parse_solver("implicit:structural=1e5,shear=1e5"), 0.5);
@@ -181,7 +181,7 @@ TEST(Convergence, VertexBlockDescentLowersTheGapInEverySweep) {
   }
 }
 
-// The state from which all solvers step: the scene's own time went by, as its pins show.
+// All solvers step from the state to which the scene's own motion leads, as the pins show.
 TEST(Convergence, BeginsWhereTheScenesOwnMotionHasBroughtIt) {
   Scene scene = let_go(4, 4, {true, true, false});
   PinMotion pins{{1}, {}};
@@ -194,7 +194,7 @@ TEST(Convergence, BeginsWhereTheScenesOwnMotionHasBroughtIt) {
   }
 }
 
-/// All goes along the chain: strains shrink as the sweep's matrix says.
+/// Motion is along the chain: strains shrink as the sweep's matrix predicts.
 TEST(Convergence, GaussSeidelAndJacobiContractAsPrinted) {
   constexpr int kLinks = 8;
   const Scene scene = hanging_sheet(1, kLinks + 1, {true, false, false}, Lumping::equal);
@@ -233,7 +233,7 @@ TEST(Convergence, ProjectiveDynamicsContractsAsItsFormulaSays) {
   EXPECT_NEAR(pd.contraction, rate, 0.01 * rate);
 }
 
-/// Projection along the directions of the moment depends on the order: not the nearest placement.
+/// Projection along current directions depends on the order and misses the nearest placement.
 TEST(Convergence, GaussSeidelOfRigidLinksEndsOnAFloor) {
   Scene scene = hanging_sheet(1, 6, {true, false, false});
   for (std::size_t i = 1; i < scene.start.v.size(); ++i)
@@ -248,7 +248,7 @@ TEST(Convergence, GaussSeidelOfRigidLinksEndsOnAFloor) {
   EXPECT_LT(admm.points.back().distance, 1e-3 * floored.floor);
 }
 
-/// Its distance hardly falls, but it is on its way.
+/// The distance hardly falls, but the solver is still converging and not on a floor.
 TEST(Convergence, AFrozenSolverIsOnNoFloor) {
   Scene scene = hanging_sheet(1, 6, {true, false, false});
   for (std::size_t i = 1; i < scene.start.v.size(); ++i) scene.start.v[i] = {3, 0, 0};
@@ -259,7 +259,8 @@ TEST(Convergence, AFrozenSolverIsOnNoFloor) {
   EXPECT_EQ(pd.floor, 0);
 }
 
-/// Its last third hardly falls, as on a floor, but twice as many iterations still move the cloth.
+/// The last third of the distances hardly falls, as on a floor, but twice as many iterations still
+/// move the cloth.
 TEST(Convergence, ACreepingSolverIsOnNoFloor) {
   const Scene scene = load_scene(find_scene("swing"));
   const State state = state_at(scene, parse_solver("implicit:structural=1e5,shear=1e5"), 0.5);

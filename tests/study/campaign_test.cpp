@@ -1,4 +1,4 @@
-// How much work a case is expected to be: what its steps visit.
+// Expected work of a case: the number of items that its steps visit.
 #include "experiments/study/campaign.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A case in a process of its own: what it is told, what it may use, and what each end is taken for.
+// A case in a process of its own: its arguments, its limits, and the status for each way to end.
 #include "experiments/study/isolate.hpp"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST_F(Isolated, IsToldAllOfTheCaseAndBound) {
   };
   EXPECT_EQ(words(0), common);
   EXPECT_EQ(limit("Max cpu time"), 3u);
-#ifndef TAUT_SANITIZED  // its shadow alone is terabytes
+#ifndef TAUT_SANITIZED  // the sanitizer's shadow memory alone takes terabytes
   EXPECT_EQ(limit("Max data size"), 400u << 20);
 #endif
   EXPECT_EQ(limit("Max file size"), 256u << 20);
@@ -90,7 +90,7 @@ TEST_F(Isolated, EveryEndHasItsStatus) {
   }
 }
 
-// What somebody else does to a case is no property of it: it is run again the next time.
+// A case that was ended from outside has no record and runs again the next time.
 TEST_F(Isolated, WhatIsEndedFromOutsideHasNoRecord) {
   for (const char* script : {"kill -KILL $$", "kill -TERM $$", "kill -INT $$", "kill -HUP $$",
                              "exit 130", "echo why >&2; exit 78"}) {
@@ -178,7 +178,7 @@ TEST_F(Isolated, WhatIsNoPropertyOfTheCaseIsNoRecord) {
             folder_.string() + ": vanished while its case was running");
 }
 
-// The test program runs it (tests/support/main.cpp).
+// The test program itself runs the case (tests/support/main.cpp).
 TEST(IsolatedRun, GivesWhatTheCaseGivesAndItsMotion) {
   const Scratch scratch;
   const Case one = make_case({kSmall.scene, kSmall.settings, "jakobsen:iterations=2"});

@@ -1,4 +1,4 @@
-// What scenes accept, and what `--keep VALUE:LIMIT` says instead.
+// Limits that scenes accept by default, and limits given by `--keep VALUE:LIMIT`.
 #include "experiments/study/limits.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@ namespace {
 
 Scene scene_of(const char* name) { return *make_case({name, {}, "jakobsen"}).scene; }
 
-// A strain is small of a cloth that stands still, too: so a motion is kept where one is known.
+// A frozen cloth has small strains as well, so the error of the motion is limited where a reference
+// exists.
 TEST(Limits, AreByDefaultOfContactAndOfMotion) {
   const auto limits = [](const char* scene) {
     std::map<std::string, double> all;

@@ -1,5 +1,4 @@
-// What `taut run` without a study runs: the keys of main-job.toml, and what is said of one that is
-// wrong.
+// What `taut run` runs without a study: the keys of main-job.toml, and errors in that file.
 #include "experiments/study/main_job.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ class MainJobFile : public testing::Test {
     write_file(folder_.path() / "main-job.toml", text);
     return main_job();
   }
-  /// Line, column and message of each thing that is wrong.
+  /// Line, column and message of each error.
   std::vector<std::string> wrong(const std::string& text) const {
     std::vector<std::string> all;
     try {

@@ -1,4 +1,4 @@
-// Which cases of a list are run, in what order, how many at a time, and what is counted of them.
+// The cases of a list that are run, their order, the number at a time, and the counts of results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Case scripted_case(int iterations) {
                     "scripted:iterations=" + std::to_string(iterations)});
 }
 
-/// Notes the case and gives the record that lies ready under its solver's text.
+/// Script that logs the case and returns the record prepared under its solver's text.
 const std::string kCopy = "echo \"$3\" >>$folder/order\ncp \"$folder/$3.json\" $5/case.json\n";
 
 class Runs : public testing::Test {
@@ -40,13 +40,13 @@ class Runs : public testing::Test {
     store_.prepare();
     return run_cases(cases, store_, options);
   }
-  /// What the script will give for a case.
+  /// Prepares the record that the script returns for a case.
   void give(const Case& one, Kind kind = Kind::ok, double value = 1) const {
     Record record = unfinished(one, {kind, kind == Kind::ok ? "" : "made up", -1, -1});
     record.values = {{"a", value}};
     write_file(scripted_.folder() / (one.spec.solver + ".json"), to_json(record));
   }
-  /// Numbers of sweeps of the cases that were started, in order.
+  /// Numbers of sweeps of the started cases, in order.
   std::vector<int> order() const {
     std::vector<int> all;
     std::istringstream lines(scripted_.told("order"));
@@ -54,7 +54,8 @@ class Runs : public testing::Test {
       all.push_back(parse_solver(line).params.integer("iterations"));
     return all;
   }
-  /// No case has left anything in the store's folder for them, which holds this one alone.
+  /// Whether no case has left anything in the store's staging folder: it contains this test's own
+  /// entry alone.
   bool nothing_staged() {
     const fs::path mine = store_.stage("mine");
     const auto entries = std::distance(fs::directory_iterator(mine.parent_path()), {});
@@ -170,7 +171,7 @@ TEST_F(Runs, AShardIsItsPartAlone) {
 }
 
 TEST_F(Runs, NoMoreAtATimeThanAreAllowed) {
-  // Each waits until there are two, and a moment longer for a third.
+  // Each case waits until there are two, and a moment longer in case a third starts.
   scripted_.write(
       "touch $folder/on.$$\nfor i in 1 2 3 4 5 6 7 8 9; do\n[ $(ls $folder/on.* | wc -l) -ge 2 ] "
       "&& break\nsleep 0.05\n"
@@ -249,14 +250,14 @@ TEST(FrontierOfCases, LooksAtFourPlacesAboveEvenlySpread) {
     if (probe.value >= found.unstable) above.push_back(probe.value);
   ASSERT_GE(above.size(), 6u);
   EXPECT_EQ(found.above, above.size() - 1);
-  const double next = above[5];  // the smallest beyond the bracket that was tried before
+  const double next = above[5];  // smallest value above the bracket that was tried earlier
   for (std::size_t i = 1; i < 5; ++i)
     EXPECT_NEAR(above[i], above[0] * std::pow(next / above[0], static_cast<double>(i) / 5),
                 1e-4 * above[i])
         << i;
 }
 
-// Cases of the test program itself: a mass on a spring, whose longest stable step is known.
+// Cases run by the test program itself: a mass on a spring, whose longest stable step is known.
 TEST(FrontierOfCases, BracketsWhatTheoryPredictsAndRunsNothingTwice) {
   const Scratch scratch;
   Store store(scratch.path());

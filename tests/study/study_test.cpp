@@ -1,4 +1,4 @@
-// Studies: what a file asks for becomes exactly these cases.
+// Studies: the exact cases that a file asks for.
 #include "experiments/study/study.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What a study's file says is what is varied, value by value; and what is wrong with it is said
-// with its place, all at once.
+// Values that a study's file varies. All errors in a file are reported at once, each with its
+// place.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ class StudyFile : public testing::Test {
     write_file(file_, text);
     return load_study(file_, preset);
   }
-  /// Line, column and message of each thing that is wrong.
+  /// Line, column and message of each error.
   std::string wrong(const std::string& text) const {
     std::string all;
     try {
@@ -36,7 +36,7 @@ class StudyFile : public testing::Test {
   const std::string file_ = folder_.path() / "asked.toml";
 };
 
-// Whatever rounding does in between: a range begins and ends where it says.
+// A range has the exact ends that the file states, whatever rounding does in between.
 TEST_F(StudyFile, ARangeHasItsEndsToTheLastDigit) {
   for (const std::string scale : {"linear", "log"})
     for (const std::string from : {"0.1", "0.3", "0.007", "3"})
@@ -177,7 +177,7 @@ solvers = ["bullet"]
   }
 }
 
-// Two solvers that spell a parameter alike may mean different things by it.
+// Parameters of the same name may mean different things in two solvers.
 TEST_F(StudyFile, AnAxisMayBeOfOneSolverAndNeverMixesUnits) {
   const auto asked = [](const std::string& axes) {
     return "question = \"?\"\nscenes = [\"hang\"]\n"
@@ -238,13 +238,13 @@ TEST_F(StudyFile, ASceneMayHaveSettingsOfItsOwn) {
             "2:20: scene 'drape' stands twice: vary a setting by an axis\n");
   EXPECT_EQ(wrong(asked("\"drape:cloth.span=0.7\"") + "axes.\"cloth.span\" = [0.8, 0.9]\n"),
             "2:11: 'cloth.span' of scene 'drape' is an axis of the study\n");
-  // The hem of `hang` has no collider; the ball has one, under the same setting.
+  // The hem of `hang` has no collider; the ball has one with the same setting.
   EXPECT_EQ(
       wrong(asked("\"ball:collider.0.radius=0.3\", \"hang:collider.0.radius=0.3\"")).substr(0, 5),
       "2:41:");
 }
 
-// Of a scene's key a list is one value; of scenes, solvers and parameters it is several.
+// A list is one value for a key of a scene, and several values for scenes, solvers and parameters.
 TEST_F(StudyFile, AnExclusionNamesAnyOfSomeValues) {
   const auto left = [&](const std::string& exclusion) {
     std::string all;

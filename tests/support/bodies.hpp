@@ -13,7 +13,7 @@
 #include "core/model/scene.hpp"
 #include "core/model/triangle_mesh.hpp"
 
-// Bodies of triangles that tests know in closed form.
+// Bodies of triangles with closed forms for tests.
 
 namespace taut {
 
@@ -25,7 +25,7 @@ struct Triangles {
   }
 };
 
-/// Two triangles for each side of the box.
+/// Box with two triangles per side.
 inline Triangles box_of_triangles(const Vec3& half) {
   Triangles box;
   for (const int v : {0, 1, 2, 3, 4, 5, 6, 7})
@@ -47,7 +47,7 @@ inline Triangles pyramid(double side, double height) {
           {{0, 1, 2}, {0, 2, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}}};
 }
 
-/// An octahedron whose triangles are cut in four so many times, on the sphere.
+/// Octahedron on a sphere, with triangles split into four `times` times.
 inline Triangles ball_of_triangles(double radius, int times) {
   Triangles ball{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
@@ -73,7 +73,7 @@ inline Triangles ball_of_triangles(double radius, int times) {
   return ball;
 }
 
-/// A torus about the y axis. `bumps` [m] moves its vertices along the radius of the tube.
+/// Torus about the y axis. `bumps` [m] displaces its vertices along the tube's radius.
 inline Triangles torus(double radius, double tube, int around, int across, double bumps = 0) {
   Triangles body;
   for (int i = 0; i < around; ++i)
@@ -89,7 +89,7 @@ inline Triangles torus(double radius, double tube, int around, int across, doubl
   return body;
 }
 
-/// Walls that rise by this [m] on both sides of grooves of a fifth of their height, along z.
+/// Height [m] of the walls on both sides of grooves along z. The grooves are a fifth as wide.
 constexpr double kGrooves = 0.5;
 inline Triangles grooved_sheet() {
   Triangles body;
@@ -104,7 +104,7 @@ inline Triangles grooved_sheet() {
   }
   return body;
 }
-/// How many vertices are below it.
+/// Number of vertices below the grooved sheet.
 inline int below_grooves(const State& state) {
   return static_cast<int>(std::ranges::count_if(state.x, [](const Vec3& x) {
     return std::abs(x.x()) < 1 &&

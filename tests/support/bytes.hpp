@@ -4,7 +4,7 @@
 
 namespace taut {
 
-/// Bytes from hexadecimal digits; blanks are for the reader.
+/// Bytes from hexadecimal digits; blanks are ignored.
 inline std::string bytes(const std::string& digits) {
   std::string all, pair;
   for (const char c : digits) {

@@ -7,8 +7,8 @@
 
 namespace taut {
 
-/// A sheet of nu x nv vertices, 1 m wide, flat and at rest, all three families, pinned by its two
-/// upper corners; dt = 1/64 s.
+/// Sheet of nu x nv vertices, 1 m wide, flat and at rest, with all three families of links, pinned
+/// by its two upper corners; dt = 1/64 s.
 inline Scene hanging_sheet(int nu, int nv, const LinkChoice& families = {true, true, true},
                            Lumping lumping = Lumping::area) {
   Scene scene;
@@ -25,10 +25,10 @@ inline Scene hanging_sheet(int nu, int nv, const LinkChoice& families = {true, t
   return scene;
 }
 
-/// Pushes every vertex off its place by up to `amount` [m]: a fixed pattern without symmetry.
+/// Displaces every vertex by up to `amount` [m] in a fixed pattern without symmetry.
 inline Scene crumpled(Scene scene, double amount) {
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
-    const auto noise = [&](std::size_t axis) {  // in whole numbers: the same on every machine
+    const auto noise = [&](std::size_t axis) {  // computed from integers, the same on every machine
       return static_cast<double>((i * 7919 + axis * 104729 + i * i * 31) % 2001) / 1000 - 1;
     };
     const Vec3 wave(noise(0), noise(1), noise(2));
@@ -38,7 +38,7 @@ inline Scene crumpled(Scene scene, double amount) {
   return scene;
 }
 
-/// A level sheet at this height [m] that is about to meet what is below.
+/// Level sheet at this height [m], about to meet an obstacle below.
 inline Scene sheet_above(double y) {
   Scene scene = hanging_sheet(13, 13);
   for (std::vector<Vec3>* places : {&scene.mesh.rest, &scene.start.x})
@@ -49,8 +49,8 @@ inline Scene sheet_above(double y) {
   return scene;
 }
 
-/// "jakobsen:..." as Jakobsen lists it, unless `params` ("iterations=8,order=reversed") say
-/// otherwise: one substep, the links in the scene's own order.
+/// "jakobsen:..." as in Jakobsen's listing, with one substep and links in the scene's own order,
+/// unless `params` ("iterations=8,order=reversed") sets these.
 inline std::string listing(const std::string& params = "") {
   const auto open = [&](const char* key) { return params.find(key) == std::string::npos; };
   std::string text = "jakobsen:";

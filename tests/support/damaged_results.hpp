@@ -7,7 +7,7 @@
 
 namespace taut {
 
-/// What nobody but a test does to a results file: one statement of SQL.
+/// Changes a results file by one SQL statement, as no program but a test does.
 template <class... Values>
 void change(Store& store, const std::string& sql, const Values&... values) {
   Database(store.file(), Database::Access::write).run(sql, values...);

@@ -6,7 +6,7 @@
 
 namespace taut {
 
-/// A variable of the environment, as long as this lives; nullptr: there is none.
+/// Sets a variable of the environment for its own lifetime; nullptr unsets it.
 class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {

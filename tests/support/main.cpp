@@ -1,5 +1,6 @@
-// The test program. It is also what its tests start: cases and timing workers are processes of the
-// program that asks for them, so it answers to the two verbs of `taut` that run one.
+// The test program, which is also the program that its tests start. Cases and timing workers are
+// processes of the program that requests them, so it implements the two verbs of `taut` that run
+// one.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -10,8 +11,8 @@
 
 namespace {
 
-/// "case SCENE SOLVER --into FOLDER [--set KEY=VALUE]... [--frames N]", "bench --worker SCENE
-/// SOLVER [--set KEY=VALUE]..."
+/// Runs one of the verbs "case SCENE SOLVER --into FOLDER [--set KEY=VALUE]... [--frames N]",
+/// "bench --worker SCENE SOLVER [--set KEY=VALUE]..."
 int serve(std::vector<std::string> words) try {
   taut::CaseSpec spec;
   std::string folder, frames = "0";

@@ -1,9 +1,8 @@
 #pragma once
 
-// CPU time of a step in thousandths of each case's median, ten samples a case in the order taken
-// (two per round, ABBA), eight cases of each scene in a row: three runs of `taut bench
-// trade
-// --preset quick --seconds 0.015` on two shared cores under loads of 2 to 7.
+// CPU time of a step in thousandths of each case's median. Each case has ten samples in the order
+// taken (two per round, ABBA), and each scene has eight cases in a row. Recorded in three runs of
+// `taut bench trade --preset quick --seconds 0.015` on two shared cores under loads of 2 to 7.
 namespace taut {
 
 inline constexpr int kRecorded[][10] = {{984, 976, 1004, 1020, 1000, 1056, 1107, 964, 792, 1000},

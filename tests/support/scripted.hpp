@@ -8,9 +8,9 @@
 
 namespace taut {
 
-/// As long as it lives there is a solver "scripted" with jakobsen's parameters, and the program
-/// that runs its cases and times them is a shell script. In the script $folder is a folder that the
-/// test reads; of a case $3 is the solver's text and $5 where its files go.
+/// For its lifetime registers a solver "scripted" with jakobsen's parameters, and makes a shell
+/// script the program that runs and times its cases. In the script $folder is a folder that the
+/// test reads, $3 is the text of a case's solver, and $5 is the folder for its files.
 class Scripted {
  public:
   explicit Scripted(const std::string& body) {
@@ -24,7 +24,7 @@ class Scripted {
   Scripted(const Scripted&) = delete;
   Scripted& operator=(const Scripted&) = delete;
 
-  /// From now on the script is this one.
+  /// Replaces the script.
   void write(const std::string& body) {
     file() = (scratch_.path() / "script").string();
     write_file(file(), "#!/bin/sh\nfolder='" + folder().string() + "'\n" + body);
@@ -32,7 +32,7 @@ class Scripted {
     make_folder(folder());
   }
   std::filesystem::path folder() const { return scratch_.path() / "told"; }
-  /// What the script has left there; "": nothing.
+  /// Text that the script left in this file; "" if there is none.
   std::string told(const std::string& name) const {
     return std::filesystem::exists(folder() / name) ? read_text(folder() / name) : "";
   }

@@ -13,7 +13,7 @@ namespace taut {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;  ///< name and value of a setting
 
-/// What a solver makes of its parameters on a scene.
+/// Settings that a solver reports for its parameters on a scene.
 inline Lines settings(const Scene& scene, const std::string& solver) {
   const SolverChoice choice = parse_solver(solver);
   Lines lines;
@@ -22,7 +22,7 @@ inline Lines settings(const Scene& scene, const std::string& solver) {
   return lines;
 }
 
-/// In double where there is a choice; nothing of Bullet's.
+/// All solvers except Bullet's, in double where they have a choice.
 inline std::vector<std::string> our_solvers() {
   std::vector<std::string> all;
   for (const SolverEntry* entry : solvers()) {
@@ -35,7 +35,7 @@ inline std::vector<std::string> our_solvers() {
   return all;
 }
 
-/// Why a solver cannot run a scene; empty: it can.
+/// Reasons for which a solver refuses a scene; empty if it accepts it.
 inline std::vector<std::string> refused(const Scene& scene, const std::string& solver) {
   const SolverChoice choice = parse_solver(solver);
   return choice.entry->unsupported(scene, choice.params);

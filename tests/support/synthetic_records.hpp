@@ -6,7 +6,7 @@
 
 #include "experiments/case/record.hpp"
 
-// Records as a study would give them, from closed forms: what figures and reports are tested with.
+// Records of a study from closed forms, for tests of figures and reports.
 namespace taut::synthetic {
 
 inline Record record(const std::string& scene, const std::string& solver, int sweeps, double dt) {
@@ -37,7 +37,8 @@ inline void fail(Record& r, Status::Kind kind, const std::string& reason, int st
   r.values.clear();
 }
 
-/// Stretch falls as 1/k; Bullet's is three times as large. The last but one Bullet case explodes.
+/// Stretch falls as 1/k; Bullet's is three times as large. The last but one of Bullet's cases
+/// explodes.
 inline std::vector<Record> iterations(const std::string& scene) {
   std::vector<Record> all;
   for (const std::string solver : {"jakobsen", "bullet"})
@@ -52,7 +53,7 @@ inline std::vector<Record> iterations(const std::string& scene) {
   return all;
 }
 
-/// Long steps and few sweeps fail, Bullet's sooner.
+/// Cases with long steps and few sweeps fail; Bullet's fail sooner.
 inline std::vector<Record> time_steps(const std::string& scene) {
   std::vector<Record> all;
   for (const std::string solver : {"jakobsen", "bullet"})

@@ -1,4 +1,4 @@
-// Keys and groups in order of appearance.
+// Distinct keys and groups in order of first appearance.
 #include "experiments/system/distinct.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Files are whole or absent, temporary names are unique, and shipped data are found.
+// Files are complete or absent, temporary names are unique, and shipped data are found.
 #include "experiments/system/files.hpp"
 
 #include <fcntl.h>

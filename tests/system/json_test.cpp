@@ -1,5 +1,4 @@
-// JSON that is written and read back: texts to the letter, and of what is wrong the file, the line
-// and the place.
+// JSON that is written and read back: texts are unchanged, and errors have file, line and place.
 #include "experiments/system/json.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +40,7 @@ TEST(JsonText, AFieldIsAddedUnlessItIsEmpty) {
   EXPECT_EQ(to_text(object), R"({"first":1,"a":" ","b":0,"c":false,"d":[null],"e":{"a":""}})");
 }
 
-/// What is said of a value that `read` does not take; "": it takes it.
+/// Message about a value that `read` refuses; "" if it accepts the value.
 template <class Read>
 std::string wrong(const Json& json, const Read& read) {
   try {

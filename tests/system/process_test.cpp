@@ -1,4 +1,4 @@
-// Processes that this one starts: what they may use, what comes of them and how they end.
+// Child processes: their limits, their results, and the ways in which they end.
 #include "experiments/system/process.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using Stream = ProcessOptions::Stream;
 
 std::vector<std::string> shell(const std::string& script) { return {"sh", "-c", script}; }
 
-/// What a shell script prints.
+/// Output of a shell script.
 std::string said(const std::string& script, ProcessOptions options = {}) {
   options.output = Stream::piped;
   Process process(shell(script), options);
@@ -39,7 +39,7 @@ ProcessEnd end_of(const std::string& script) { return *Process(shell(script)).wa
 
 bool lives(pid_t pid) { return kill(pid, 0) == 0; }
 
-/// Whether it is gone within ten seconds; reaps it if it has become a child of this process.
+/// Whether the process is gone within ten seconds; reaps it if it has become a child of this one.
 bool ends(pid_t pid) {
   for (const auto end = in_seconds(10); seconds_until(end) > 0; usleep(1000)) {
     if (!lives(pid)) return true;
@@ -48,7 +48,7 @@ bool ends(pid_t pid) {
   return false;
 }
 
-/// A signal to this thread every millisecond, after which system calls do not go on by themselves.
+/// Sends a signal to this thread every millisecond; interrupted system calls are not restarted.
 class Interruptions {
  public:
   Interruptions() {
@@ -73,7 +73,7 @@ class Interruptions {
   std::thread sender_;
 };
 
-/// As a shell's ulimit prints it, in units of so many bytes.
+/// Limit as printed by a shell's ulimit, in multiples of `unit` bytes.
 std::string printed(int limit, rlim_t unit) {
   rlimit both{};
   getrlimit(static_cast<__rlimit_resource>(limit), &both);
@@ -85,7 +85,7 @@ TEST(Processes, MayUseWhatTheyAreAllowed) {
   options.limits = {.cpu_seconds = 6.2, .memory = 300 << 20, .file_bytes = 40 << 10};
   EXPECT_EQ(said("ulimit -St; ulimit -Ht; ulimit -c; ulimit -f", options), "7\n8\n0\n80\n")
       << "whole seconds, one more until it is killed; blocks of 512 bytes";
-#ifndef TAUT_SANITIZED  // its shadow alone is terabytes
+#ifndef TAUT_SANITIZED  // the sanitizer's shadow memory alone takes terabytes
   EXPECT_EQ(said("ulimit -Sd; ulimit -Hd", options), "307200\n307200\n") << "kB";
 #endif
   EXPECT_EQ(said("ulimit -t; ulimit -d; ulimit -f"), printed(RLIMIT_CPU, 1) + "\n" +
@@ -109,7 +109,8 @@ TEST(Processes, SayHowTheyEnded) {
   EXPECT_EQ(killed.text(), "SIGSEGV");
   EXPECT_FALSE(killed.good());
   EXPECT_EQ((ProcessEnd{-1, SIGRTMIN + 1}).text(), "signal " + std::to_string(SIGRTMIN + 1));
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) {  // ignored here, not there
+  // ignored in this process, not in the child
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     std::signal(signal, SIG_IGN);
@@ -156,7 +157,8 @@ TEST(Processes, OutputIsReadByLinesByBytesAndToTheEnd) {
 }
 
 TEST(Processes, WhoeverTakesTooLongIsNotWaitedFor) {
-  const auto seconds = [](const auto& what) {  // the least of three: others use this machine too
+  // shortest of three, as other processes use this machine too
+  const auto seconds = [](const auto& what) {
     double least = 1e9;
     for (int i = 0; i < 3; ++i) {
       const auto start = SteadyClock::now();
@@ -168,7 +170,7 @@ TEST(Processes, WhoeverTakesTooLongIsNotWaitedFor) {
   std::string got;
   Process silent(shell("exec sleep 1000"), {.input = Stream::piped, .output = Stream::piped});
   EXPECT_FALSE(silent.poll());
-  for (const double limit : {0.0, 0.0009, 0.06})  // a part of a millisecond counts as well
+  for (const double limit : {0.0, 0.0009, 0.06})  // fractions of a millisecond count as well
     for (const auto& wait : std::vector<std::function<void()>>{
              [&] { EXPECT_FALSE(silent.read_line(got, limit)); },
              [&] { EXPECT_FALSE(silent.read_bytes(got, 1, limit)); },
@@ -256,7 +258,7 @@ TEST(Processes, ASignalMeanwhileCutsNothingShort) {
 
 TEST(Processes, AnInterruptionOfBeforeIsNone) {
   Process process(shell("exit 3"));
-  process.wait(0.001);  // whoever reads errno reads that of an earlier call
+  process.wait(0.001);  // errno is still that of an earlier call
   for (const char* script : {"exit 3", "sleep 0.02; exit 3"}) {
     Process other(shell(script));
     errno = EINTR;
@@ -354,7 +356,7 @@ TEST(Clocks, AFutureIsNeverBeforeItsStart) {
     clock_gettime(CLOCK_MONOTONIC, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
   };
-  for (int i = 0; i < 20; ++i, usleep(10000)) {  // over a fifth of a second
+  for (int i = 0; i < 20; ++i, usleep(10000)) {  // lasts a fifth of a second
     const double before = shown(), between = seconds_of(CLOCK_MONOTONIC), now = shown();
     EXPECT_LE(before, between);
     EXPECT_LE(between, now);

@@ -1,5 +1,5 @@
-// A session's numbers: what counts, what is compared, how far a search went, and what is stored of
-// it.
+// Numbers of a bench session: valid timings, comparisons, the progress of a search, and what is
+// stored.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -126,7 +126,7 @@ TEST(BenchSessions, RecordsCarryCostsOfWhatWasTimed) {
   EXPECT_EQ(records[2].values.at("cpu.per_second"), 8);
 }
 
-/// A results folder that has these records.
+/// Results folder that contains these records.
 class Kept {
  public:
   explicit Kept(const StudyBench& session) {
@@ -232,7 +232,7 @@ TEST(Costs, AreMediansForWhoeverAsks) {
              "zeus",
              "b"});
   Database file(kept.store.file(), Database::Access::read);
-  file.script("PRAGMA trusted_schema = ON");  // as for whoever opens it
+  file.script("PRAGMA trusted_schema = ON");  // as every client opens the file
   Database::Rows row = file.rows(
       "SELECT solver, cpu, cpu_per_second, wall, samples, memory, host FROM costs ORDER BY solver");
   std::string all;

@@ -1,4 +1,4 @@
-// A bench: what was timed and what it says about the cost of an error.
+// A bench: what was timed, and the cost of an error that follows.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
@@ -27,7 +27,7 @@ BenchedCase benched(const std::string& solver, double stretch, double cost_per_s
   c.record.dt = dt;
   c.record.steps = 10;
   c.record.values["stretch.rms"] = stretch;
-  const double t = cost_per_step;  // the median; the mean is another
+  const double t = cost_per_step;  // the median; the mean differs
   c.timing = {.samples = {t, t / 2, t, 5 * t},
               .wall = {7 * t, 7 * t, 7 * t, 7 * t},
               .peak_bytes = 1000,
@@ -59,7 +59,7 @@ TEST(Bench, RecordsCarryTheirCost) {
 }
 
 TEST(Bench, OnlyStepIsInsideTheClock) {
-  /// Burns CPU outside of step() as much as inside.
+  /// Burns as much CPU time outside of step() as inside.
   class Burner final : public Solver {
    public:
     void load(const State&) override { burn(0.02); }
@@ -80,7 +80,7 @@ TEST(Bench, OnlyStepIsInsideTheClock) {
 }
 
 TEST(Bench, AProcessStaysOnTheCoresThatItIsBoundTo) {
-  std::thread([] {  // a thread's own set of cores
+  std::thread([] {  // a thread of its own, as the set of cores belongs to a thread
     cpu_set_t before, after;
     ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
     bind_to_cores(CPU_COUNT(&before) + 1);

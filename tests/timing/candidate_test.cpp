@@ -1,4 +1,4 @@
-// Candidates for a target: who is chosen, and who is not.
+// Candidates for a target: which is chosen and which is not.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -11,15 +11,16 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The ends of the interval fall as the cost rises: whoever takes one of them for the cost is seen.
+/// Both ends of the interval fall as the cost rises, so that a search that mistakes an end for the
+/// cost fails.
 Candidate candidate(const char* solver, double cost, double error, const char* failure = "") {
   return {solver, solver, {0.01 / cost, cost, 100 / cost}, error, failure};
 }
 
 const std::vector<Candidate> kAll{
     candidate("a", 1, 0.2),   candidate("a", 2, 0.02),
-    candidate("a", 4, 0.05),  // dominated by the one before
-    candidate("b", 3, 0.02),  // as good, dearer
+    candidate("a", 4, 0.05),  // dominated by the candidate before
+    candidate("b", 3, 0.02),  // same error at a higher cost
     candidate("b", 8, 0.001), candidate("c", 0.1, 0.0, "exploded (energy)"),  // failed fast
     candidate("c", 0.2, kNaN)};
 

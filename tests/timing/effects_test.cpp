@@ -1,4 +1,4 @@
-// `taut bench effects`: what is timed together.
+// `taut bench effects`: which runs are timed together.
 #include "experiments/timing/bench/effects.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace taut::effects_test {
 namespace {
 
-/// Jakobsen's, and the steps that it makes.
+/// Jakobsen's solver, counting its steps.
 class Counting final : public Solver {
  public:
   Counting(std::unique_ptr<Solver> solver, int& steps)
@@ -28,7 +28,7 @@ class Counting final : public Solver {
   int& steps_;
 };
 
-/// As long as it lives there is a solver "counting" with jakobsen's parameters.
+/// Registers a solver "counting" with jakobsen's parameters for its lifetime.
 class Counted {
  public:
   Counted() {
@@ -41,12 +41,12 @@ class Counted {
   ~Counted() { set_solver_source({}); }
   Counted(const Counted&) = delete;
   Counted& operator=(const Counted&) = delete;
-  /// Of every one that was made, in that order.
+  /// Steps of every instance that was made, in order of creation.
   std::vector<int> steps() const { return {steps_of().begin(), steps_of().end()}; }
 
  private:
   static std::deque<int>& steps_of() {
-    static std::deque<int> steps;  // which stay where they are
+    static std::deque<int> steps;  // a deque, so that references stay valid
     return steps;
   }
   static const SolverEntry& entry() {
@@ -71,12 +71,13 @@ TEST(BenchEffects, EveryCopyMakesEveryStep) {
                                    .rounds = 5,
                                    .seconds = 0.001});
   ASSERT_EQ(rows.size(), 1u);
-  const std::vector<int> steps = counted.steps();  // the whole, without effects, the copies
+  const std::vector<int> steps = counted.steps();  // whole scene, without effects, copies
   ASSERT_EQ(steps.size(), 2u + 16);
   EXPECT_GT(steps[1], 0);
   for (std::size_t copy = 2; copy < steps.size(); ++copy) EXPECT_EQ(steps[copy], steps[1]);
   EXPECT_EQ(rows[0].copies.size(), rows[0].whole.size());
-  EXPECT_GT(rows[0].times_one().mid, 4);  // two threads are at best eight sheets' time
+  // two threads save at most half of the time of eight sheets
+  EXPECT_GT(rows[0].times_one().mid, 4);
 }
 
 TEST(BenchEffects, LookingInVainCostsLessThanContact) {
@@ -90,7 +91,7 @@ TEST(BenchEffects, LookingInVainCostsLessThanContact) {
   EXPECT_LT(interleaved_ratio(rows[1].touching_nothing, rows[1].whole).mid, 0.9);
 }
 
-// The thickness of `ball` would fill the gaps of so fine a sheet.
+// The thickness of `ball` would fill the gaps between vertices of so fine a sheet.
 TEST(BenchEffects, ASceneThatCannotBeTimedCostsItselfAlone) {
   const EffectBenchOptions options{.scenes = {"hang", "no-such-scene", "ball"},
                                    .solver = "jakobsen:iterations=1,substeps=2",

@@ -1,4 +1,4 @@
-// Performance profiles of made-up solvers whose costs are known.
+// Performance profiles of made-up solvers with known costs.
 #include "experiments/timing/profile.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,8 @@ TEST(Profiles, AreSharesOfProblemsWithinAFactorOfTheBest) {
       {scene({timed("a", 1, 0.05), timed("a", 4, 0.005), timed("b", 2, 0.05), timed("b", 2, 0.01)}),
        scene({timed("a", 6, 0.05), timed("a", 7, 0.05), timed("b", 2, 0.1), timed("b", 3, 0.2)})},
       "e", levels);
-  // Problems: 0.1 and 0.01 on the first scene, 0.1 on the second; 0.01 on it nobody reaches.
+  // Problems: 0.1 and 0.01 on the first scene, 0.1 on the second. No solver reaches 0.01 on the
+  // second.
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].ratios, (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(found[1].ratios, (std::vector<double>{2, 1, 1}));

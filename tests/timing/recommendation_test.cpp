@@ -1,4 +1,4 @@
-// Who is recommended, and how sure that is.
+// The recommended setting, and its certainty.
 #include "experiments/timing/recommendation.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace taut::recommendation_test {
 namespace {
 
-/// A finalist whose samples are `cost` [CPU s per step of 1 s] with a ripple of one per cent.
+/// Finalist whose samples are `cost` [CPU s per step of 1 s] with a ripple of one per cent.
 BenchedCase finalist(const std::string& solver, double cost, double error) {
   BenchedCase c;
   c.record.solver = solver;
@@ -24,7 +24,7 @@ SceneBench bench(std::vector<BenchedCase> cases, double noise = 0.01) {
   return {"scene", {1 - noise, 1, 1 + noise}, std::move(cases), true, std::vector<Limit>{}};
 }
 
-/// The rows of the table that people see.
+/// Rows of the printed table.
 std::string rows(const Recommendation& found, const SceneBench& bench) {
   Table table = recommendations("e");
   add(table, found, bench, "e");
@@ -45,7 +45,8 @@ TEST(Recommendation, TheCheapestWinsAndTheRivalIsAnotherSolver) {
   EXPECT_EQ(found.certainty, Certainty::clear);
 }
 
-// However narrow the interval is: 0.1 % is a difference that nobody should choose by.
+// A difference of 0.1 % is below the tolerance, however narrow the interval: no one should choose
+// by it.
 TEST(Recommendation, LessThanTheToleranceIsNoDifferenceAndSaidSo) {
   const auto said = [](double cost, double tolerance) {
     const SceneBench b = bench({finalist("jakobsen", 1, 0.01), finalist("bullet", cost, 0.01)});
@@ -60,7 +61,7 @@ TEST(Recommendation, LessThanTheToleranceIsNoDifferenceAndSaidSo) {
   EXPECT_TRUE(said(1.001, 0).ends_with("; too noisy to compare with bullet"));
 }
 
-// Equal in the middle is not the same: half of the blocks of one are dearer by a fifth.
+// Equal medians do not prove equality: in half of the blocks one setting costs a fifth more.
 TEST(Recommendation, NothingIsToldFromAWideIntervalOrUnderNoise) {
   BenchedCase wide = finalist("bullet", 1, 0.01);
   for (std::size_t i = 0; i < wide.timing.samples.size(); ++i)
@@ -97,7 +98,8 @@ TEST(Recommendation, NobodyIsRecommendedForWhatNobodyReaches) {
 TEST(Recommendation, EverySolverIsNamedWithCostOrNearestError) {
   SceneBench b = bench({finalist("jakobsen", 1, 0.01), finalist("bullet", 3, 0.001),
                         finalist("xpbd", 0.1, 0.02), finalist("mass-spring", 0.01, 0.001)});
-  b.cases[3].record.status.kind = Status::Kind::exploded;  // a fast failure never ranks
+  // a setting that failed fast is never ranked
+  b.cases[3].record.status.kind = Status::Kind::exploded;
   const Recommendation found = recommend(b, {0.01, {}}, "e");
   EXPECT_EQ(found.best, 0u);
   EXPECT_EQ(found.solvers[1].at, 1u);
@@ -113,7 +115,7 @@ TEST(Recommendation, EverySolverIsNamedWithCostOrNearestError) {
   EXPECT_EQ(rows(recommend(b, {1e-9, {}}, "e"), b).find("cheaper"), std::string::npos);
 }
 
-/// A case whose samples are all alike.
+/// Case whose samples are all equal.
 BenchedCase still(const std::string& solver, double cost, double error) {
   BenchedCase c = finalist(solver, cost, error);
   c.record.solver = solver.substr(0, solver.find(':'));
@@ -121,7 +123,7 @@ BenchedCase still(const std::string& solver, double cost, double error) {
   return c;
 }
 
-// 20 ms a step of 1 s are 20 ms per simulated second; two settings of one solver are one line.
+// 20 ms for a step of 1 s are 20 ms per simulated second. Two settings of one solver share a line.
 TEST(Recommendation, ReadsLineByLineAsThis) {
   SceneBench b = bench({still("bullet", 0.06, 0.001), still("jakobsen:iterations=4", 0.02, 0.01),
                         still("xpbd", 0.002, 0.03), still("xpbd:substeps=1024", 0.004, 0.02),
@@ -168,13 +170,13 @@ TEST(Recommendation, TheWordsSayOfWhatItIsSure) {
   EXPECT_TRUE(said(bench({a}), {0.01, {}}).ends_with("; nothing else timed reaches it"));
 }
 
-/// Times of a case whose cost is 1, in a session of so many rounds on a machine with noise: every
-/// sample strays by about `sigma`, one in ten is interrupted and takes up to twice as long.
+/// Times of a case of cost 1 in `rounds` rounds on a noisy machine: every sample varies by about
+/// `sigma`, and one in ten is interrupted and takes up to twice as long.
 std::vector<double> session(int rounds, double sigma, std::mt19937_64& random) {
   const auto uniform = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
   std::vector<double> samples;
   for (int i = 0; i < 2 * rounds; ++i) {
-    double normal = -6;  // of twelve uniform numbers the sum has variance 1
+    double normal = -6;  // the sum of twelve uniform numbers has variance 1
     for (int k = 0; k < 12; ++k) normal += uniform();
     samples.push_back(std::exp(sigma * normal) * (uniform() < 0.1 ? 1 + uniform() : 1));
   }
@@ -183,7 +185,8 @@ std::vector<double> session(int rounds, double sigma, std::mt19937_64& random) {
 
 TEST(Recommendation, ASecondSessionLiesInsideTheInterval) {
   std::mt19937_64 random(1);
-  for (const int rounds : {2, 8})  // as few as advise takes, and as many as it wants
+  // the fewest rounds that advise accepts, and the number that it aims at
+  for (const int rounds : {2, 8})
     for (const double sigma : {0.01, 0.1}) {
       constexpr int kRuns = 500;
       int inside = 0, inside_its_own = 0;

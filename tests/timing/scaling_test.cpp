@@ -1,4 +1,4 @@
-// Growth of cost with size, on costs that are formulas.
+// Growth of cost with size, for costs given by formulas.
 #include "experiments/timing/scaling.hpp"
 
 #include <gtest/gtest.h>
@@ -19,13 +19,14 @@ std::vector<Case> squares(std::initializer_list<int> sides) {
   return cases;
 }
 
-/// Takes n^1.5 seconds, of which every sample is a thousandth.
+/// Case that takes n^1.5 seconds, with samples of a thousandth each.
 Measured measured(const Case& one, double) {
   const double n = one.scene->mesh.size(), seconds = std::pow(n, 1.5);
   Measured m{{describe(*one.scene, one.choice), {}}, seconds};
   m.benched.record.step_cost = {{"verlet", 1, 1, static_cast<std::size_t>(100 * n), false}};
   m.benched.timing.samples = std::vector<double>(4, seconds / 1000);
-  m.benched.timing.wall = std::vector<double>(4, 1.0);  // the machine's load, not the solver's cost
+  // depends on the machine's load, not on the solver's cost
+  m.benched.timing.wall = std::vector<double>(4, 1.0);
   return m;
 }
 
@@ -33,7 +34,7 @@ TEST(Scaling, TheExponentsOfEverySettingAreFound) {
   const auto lines = measure_scaling(squares({8, 4, 16}), 1e9, measured);
   ASSERT_EQ(lines.size(), 2u);
   for (const ScalingLine& line : lines) {
-    EXPECT_EQ(line.cases.front().record.vertices, 16);  // by rising size
+    EXPECT_EQ(line.cases.front().record.vertices, 16);  // in order of size
     EXPECT_NEAR(line.cpu->exponent, 1.5, 1e-9);
     EXPECT_NEAR(line.memory->exponent, 1, 1e-9);
     EXPECT_TRUE(line.skipped.empty());
@@ -42,7 +43,7 @@ TEST(Scaling, TheExponentsOfEverySettingAreFound) {
 
 TEST(Scaling, WhatWouldTakeTooLongIsSkippedAndSaid) {
   const auto lines = measure_scaling(squares({4, 8, 16, 32}), 5000, measured);
-  EXPECT_EQ(lines[0].cases.size(), 3u);  // 256 vertices take 4096 s
+  EXPECT_EQ(lines[0].cases.size(), 3u);  // the size of 256 vertices would take 4096 s
   ASSERT_EQ(lines[0].skipped.size(), 1u);
   EXPECT_EQ(lines[0].skipped[0], "1024 vertices: expected to take 16384 s, allowed 5000 s");
   EXPECT_EQ(measure_scaling(squares({4, 8}), 256, measured)[0].cases.size(), 2u)
@@ -59,7 +60,8 @@ TEST(Scaling, WhatEndsEarlyDoesNotPromiseTheNextToBeQuick) {
   EXPECT_EQ(lines[0].skipped.back(), "1600 vertices: expected to take 5689 s, allowed 1500 s");
 }
 
-// What failed is said and counts for no exponent; the wall's time is what the machine's load makes.
+// A failed case is reported and left out of the exponent. Wall time only reflects the machine's
+// load.
 TEST(Scaling, WhatEndedBadlyIsNoPointOfTheLine) {
   const auto lines = measure_scaling(squares({4, 8, 12, 16, 20}), 1e9, [](const Case& one, double) {
     Measured m = measured(one, 0);

@@ -1,5 +1,5 @@
-// The way that the search behind `taut advise` takes, step by step as its header says it, on costs
-// and errors that are formulas: every setting below was found by hand.
+// Path of the search behind `taut advise`, step by step as its header describes it, for costs and
+// errors given by formulas. Every setting below was worked out by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,11 +16,11 @@ struct Setting {
   bool in_double;
 };
 struct Outcome {
-  double cost, error;  ///< NaN: it explodes
+  double cost, error;  ///< NaN: the run explodes
 };
 using Law = std::function<Outcome(const Setting&)>;
 
-/// What is tried, "substeps/sweeps" each; with a d if the search itself chose double.
+/// Settings tried, as "substeps/sweeps"; a d is appended if the search itself chose double.
 std::string way(const std::string& solver, const Target& target, const Law& law,
                 std::vector<Candidate> known = {}) {
   const bool fixed = solver.find("precision") != std::string::npos;
@@ -49,7 +49,7 @@ std::string way(const std::string& solver, const Target& target, const Law& law,
 Target within(double error) { return {error, {}}; }
 Target budget(double cost) { return {{}, cost}; }
 
-/// Stiff links, roughly: an error of 1/(n^2 k) for n (overhead + k).
+/// Model of stiff links: error 1/(n^2 k), cost n (overhead + k).
 Law links(double overhead) {
   return [=](const Setting& s) { return Outcome{s.n * (overhead + s.k), 1 / (s.n * s.n * s.k)}; };
 }
@@ -59,21 +59,22 @@ Candidate rival(double cost, double error) { return {"other", "other", {0, cost,
 constexpr const char* kXpbd =
     "xpbd:method=sweeps,primal=off,order=coloured,tethers=off,precision=double";
 
-// n^2 k has to be 100. Doubling in the first column; from half of that in the second, and down;
-// from half of that in the third, where even the next doubling costs more than 1.3 times the best.
-// Then the substeps of the two cheapest columns are halved: 8/2 and 16/1.
+// The target needs n^2 k = 100. The first column doubles. The second starts at half of the substeps
+// found and goes down. So does the third, in which the next doubling would cost more than 1.3 times
+// the best. Substeps of the two cheapest columns, 8/2 and 16/1, are then bisected.
 TEST(SearchPath, ColumnsByDoublingThenBisection) {
   const std::string columns = "1/1 2/1 4/1 8/1 16/1 8/2 4/2 4/4", rest = " 6/2 7/2 12/1 10/1 9/1";
   EXPECT_EQ(way(kXpbd, within(0.01), links(0.5)), columns + rest);
-  // Its best costs 20 then: a rival ten times as cheap makes more of it pointless.
+  // The best costs 20 at this point: a rival that is ten times as cheap makes refinement pointless.
   EXPECT_EQ(way(kXpbd, within(0.01), links(0.5), {rival(1.9, 0.01)}), columns);
   EXPECT_EQ(way(kXpbd, within(0.01), links(0.5), {rival(2.1, 0.01)}), columns + rest);
   EXPECT_EQ(way(kXpbd, within(0.01), links(0.5), {rival(1.9, 0.011)}), columns + rest)
       << "one that is no rival";
 }
 
-// With dear substeps more sweeps pay. Costs of what meets the error: 176 (16/1), 96 (8/2), 112
-// (8/4), 72 (4/8): the columns of the two cheapest are halved, then the sweeps of the best.
+// Where substeps are expensive more sweeps pay off. Settings that meet the error cost 176 (16/1),
+// 96 (8/2), 112 (8/4) and 72 (4/8). The two cheapest columns are bisected, then the sweeps of the
+// best setting.
 TEST(SearchPath, TheTwoCheapestColumnsAreBisected) {
   EXPECT_EQ(way(kXpbd, within(0.01), links(10)),
             "1/1 2/1 4/1 8/1 16/1 8/2 4/2 4/4 8/4 4/8 2/8 2/16 3/8 6/2 7/2 4/6 4/7");
@@ -100,7 +101,7 @@ TEST(SearchPath, WithFixedSweepsTheSubstepsAreSearched) {
       way("xpbd:method=sweeps,primal=off,order=coloured,tethers=off,iterations=1,precision=double",
           within(0.02), law),
       way_to_52);
-  // Explosions below 48 have no error, and say nothing of whether more substeps help.
+  // Explosions below 48 substeps have no error, and do not tell whether more substeps help.
   const Law explosive = [](const Setting& s) {
     return Outcome{s.n, s.n < 48 ? std::nan("") : 1 / s.n};
   };
@@ -110,15 +111,16 @@ TEST(SearchPath, WithFixedSweepsTheSubstepsAreSearched) {
       way_to_52);
 }
 
-// The error does not fall below 0.3: three doublings that gain less than a tenth are enough, and so
-// are two stiffnesses without a result.
+// The error has a floor at 0.3. Three doublings that gain less than a tenth end a column; two
+// stiffnesses without a result end the search.
 TEST(SearchPath, AFloorEndsAColumnAndTwoColumnsASearch) {
   const Law floor = [](const Setting& s) { return Outcome{s.n, std::max(1 / s.n, 0.3)}; };
   EXPECT_EQ(way("mass-spring:precision=double", within(0.1), floor),
             "1/50 2/50 4/50 8/50 16/50 32/50 1/200 2/200 4/200 8/200 16/200 32/200");
 }
 
-// As many substeps as 97 % of the budget allow, by the cost of those tried; four tries a column.
+// Substeps fill 97 % of the budget, by the cost of settings already tried; at most four tries per
+// column.
 TEST(SearchPath, ABudgetIsFilledColumnByColumn) {
   EXPECT_EQ(way(kXpbd, budget(30), links(0.5)), "1/1 19/1 1/2 11/2 1/4 6/4");
   const auto one_column = [](const std::function<double(double)>& cost) {
@@ -135,7 +137,7 @@ TEST(SearchPath, ABudgetIsFilledColumnByColumn) {
   EXPECT_EQ(one_column([](double n) { return 40 * n; }), "1/1");
 }
 
-/// Float costs n and errs by 1/n; double `cost` and `error` times as much.
+/// Path if float costs n with an error of 1/n, and double has `cost` and `error` times as much.
 std::string way_with_double(const Target& target, double cost, double error) {
   return way("xpbd:method=sweeps,primal=off,order=coloured,tethers=off,iterations=1", target,
              [=](const Setting& s) {

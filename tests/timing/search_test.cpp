@@ -1,4 +1,4 @@
-// The search behind `taut advise`, against solvers whose error and cost are formulas.
+// The search behind `taut advise` with solvers whose error and cost are formulas.
 #include "experiments/timing/search.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace taut::timing_search_test {
 namespace {
 
-/// error = 1 / (n^2 k), cost = n (a + k): what stiff links do, roughly.
+/// Model of stiff links: error = 1 / (n^2 k), cost = n (a + k).
 struct Formula {
   double overhead = 0.5;
   int runs = 0;
@@ -25,12 +25,12 @@ struct Formula {
     const bool explodes = n * k < 4;
     return Candidate{std::string(choice.entry->name),
                      setting,
-                     {1e-6 / cost, cost, 1e6 / cost},  // only the middle counts
+                     {1e-6 / cost, cost, 1e6 / cost},  // only the middle of the interval counts
                      explodes ? std::nan("") : error,
                      explodes ? "exploded" : ""};
   }
 
-  /// The best of a full grid: 1024 x 128 runs.
+  /// Cost of the best setting of a full grid of 1024 x 128 runs.
   double cheapest(double error) const {
     double best = 1e300;
     for (int n = 1; n <= 1024; ++n)
@@ -112,7 +112,7 @@ TEST(Search, BeginsWithWhatCostsLeast) {
                 setting == "mass-spring:shear=50,structural=50,substeps=1")
         << setting;
     const std::string solver = setting.substr(0, setting.find(':'));
-    if (solver == "mass-spring") return {};  // time is up
+    if (solver == "mass-spring") return {};  // the time is up
     const double cost = solver == "xpbd" ? 2 : 1;
     return Candidate{solver, setting, {cost, cost, cost}};
   };
@@ -120,8 +120,8 @@ TEST(Search, BeginsWithWhatCostsLeast) {
             (std::vector<std::string>{"jakobsen", "xpbd:substeps=4", "mass-spring"}));
 }
 
-/// Springs of stiffness K lag behind by 20/K, however many substeps there are, and a stiff one
-/// needs the more of them.
+/// Springs of stiffness K have an error of 20/K for any number of substeps, and stiffer springs
+/// need more work.
 TEST(Search, StiffensOnlySpringsThatCannotReachTheError) {
   const auto run = [](const std::string& setting) -> std::optional<Candidate> {
     const Params params = parse_solver(setting).params;
@@ -143,7 +143,7 @@ TEST(Search, StiffensOnlySpringsThatCannotReachTheError) {
   EXPECT_LT(parse_solver(best.setting).params.real("structural"), 10000) << "an alternative";
 }
 
-/// More sweeps pay only at the penalty that is an alternative, and better by itself.
+/// More sweeps only pay with the alternative penalty, which is better in itself.
 TEST(Search, RepeatedItGoesOnFromWhatAnAlternativeMadeBest) {
   int runs = 0;
   const auto run = [&](const std::string& setting) -> std::optional<Candidate> {
@@ -165,7 +165,8 @@ TEST(Search, RepeatedItGoesOnFromWhatAnAlternativeMadeBest) {
   EXPECT_LT(runs, 200) << "and it ends";
 }
 
-/// AVBD with its least stiffness explodes: nothing reaches the error before it is changed.
+/// AVBD explodes at its default smallest stiffness: no setting reaches the error before that is
+/// changed.
 TEST(Search, RepeatedItTriesAlternatives) {
   const auto run = [](const std::string& setting) -> std::optional<Candidate> {
     const Params params = parse_solver(setting).params;

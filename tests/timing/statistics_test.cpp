@@ -1,4 +1,4 @@
-// Statistics of timings: what may be called a difference on a noisy machine.
+// Statistics of timings: the differences that may be claimed on a noisy machine.
 #include "experiments/timing/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,7 @@
 namespace taut::statistics_test {
 namespace {
 
-/// A machine shared with others: log-normal noise, a slow drift of its speed and now and then a
-/// burst.
+/// Shared machine: log-normal noise, a slow drift of its speed, and occasional bursts.
 class NoisyMachine {
  public:
   explicit NoisyMachine(unsigned seed) : random_(seed) {}
@@ -63,9 +62,9 @@ TEST(Statistics, TheIntervalIsSeededAndShrinksWithSamples) {
   EXPECT_TRUE(narrow.contains(narrow.mid));
 }
 
-// The median of a resample of n (odd) samples is at most the k-th smallest iff at least half of its
-// draws are, of which each is with probability k/n: the ends of the interval are known order
-// statistics.
+// The median of a resample of n (odd) samples is at most the k-th smallest sample iff at least half
+// of its draws are. Each draw is with probability k/n, so that the ends of the interval are known
+// order statistics.
 TEST(Statistics, TheIntervalEndsAtOrderStatistics) {
   const auto at_most = [](int n, int k) {  // P(median <= k-th smallest)
     double p = 0;
@@ -80,7 +79,7 @@ TEST(Statistics, TheIntervalEndsAtOrderStatistics) {
   for (const int n : {3, 9, 15, 25, 61})
     for (const double confidence : {0.5, 0.8, 0.9, 0.95, 0.99}) {
       std::vector<double> samples;
-      for (int i = 0; i < n; ++i) samples.push_back(i * 37 % n + 1);  // 1 ... n in no order
+      for (int i = 0; i < n; ++i) samples.push_back(i * 37 % n + 1);  // 1 ... n in irregular order
       const double tail = (1 - confidence) / 2, doubt = 4 * std::sqrt(tail * (1 - tail) / 2000);
       const auto end = [&](double q) {
         int k = 1;
@@ -100,7 +99,7 @@ TEST(Statistics, TheIntervalEndsAtOrderStatistics) {
 }
 
 TEST(Statistics, ARatioIsThatOfTheBlocks) {
-  // three blocks of ratio 2, 3 and 8, whatever the machine's speed in each
+  // three blocks of ratios 2, 3 and 8; the machine has another speed in each
   const Interval ratio = interleaved_ratio(std::vector{2.0, 4.0, 20.0, 40.0, 1.5, 0.5},
                                            std::vector{1.0, 2.0, 8.0, 12.0, 0.2, 0.05});
   EXPECT_NEAR(ratio.mid, 3, 1e-12);
@@ -133,8 +132,8 @@ TEST(Statistics, EveryCertaintyHasItsWord) {
   EXPECT_FALSE(same_within(0.05, {0.99, 1, 1.051}));
 }
 
-// What 95 % means: the interval misses the true median in about one of twenty samples, on each side
-// alike. The noise is skewed, as that of timings is.
+// Meaning of 95 %: the interval misses the true median in about one of twenty samples, equally
+// often on both sides. The noise is as skewed as that of timings.
 TEST(Statistics, TheIntervalHoldsTheTrueMedianAsOftenAsItSays) {
   std::mt19937 random(5);
   std::normal_distribution<> normal;
@@ -164,11 +163,12 @@ TEST(Statistics, AnAaComparisonIsNeverADifference) {
     noisy += spread(interleaved_ratio(control.a, control.b)) > kTolerance;
   }
   EXPECT_EQ(declared, 0);
-  EXPECT_LT(noisy, 30);  // most of these machines are still good enough to judge
+  EXPECT_LT(noisy, 30);  // most of these machines are quiet enough to judge
 }
 
-/// A bench of one code against itself from samples that a busy machine gave: four neighbours of one
-/// session, two as the control, two as the pair, the second of which costs `factor` times as much.
+/// Bench of identical code, from samples recorded on a busy machine. Four neighbouring sample sets
+/// of one session serve: two as the control, two as the pair. The second of the pair costs `factor`
+/// times as much.
 Certainty recorded_bench(std::size_t first, double factor) {
   const auto samples = [](std::size_t row, double cost) {
     std::vector<double> out;

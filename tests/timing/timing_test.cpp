@@ -1,5 +1,5 @@
-// How times are taken: where samples begin, who is asked for how many steps in which order, and
-// what is made of the answers.
+// Taking times: where samples begin, the order and number of the steps that workers are asked for,
+// and the use of their answers.
 #include "experiments/timing/timing.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace taut::timing_test {
 namespace {
 
-/// Its state is how many steps it has made; its clock shows half a second for each.
+/// Solver whose state is the number of its steps, and whose clock advances half a second per step.
 class Counting final : public Solver {
  public:
   void load(const State& state) override {
@@ -40,7 +40,7 @@ class Counting final : public Solver {
   int all_ = 0;
 };
 
-/// What is asked of a solver for samples of so many steps of a run of so many.
+/// Requests to a solver for samples of `sample_steps` in a run of `run_steps`.
 std::string asked(int run_steps, int sample_steps) {
   Scene scene;
   scene.dt = 0.25;
@@ -97,8 +97,8 @@ TEST(TimedSteps, TheMachineIsNamedByItsProcessorAndItsCores) {
 
 const CaseSpec kSpec{"hang", {"cloth.grid=[4, 4]", "time.duration=0.5"}, "scripted:iterations=2"};
 
-/// Answers as a timing worker. The k-th sample of worker w is 0.00wk s of CPU and 0.1wk s in all; a
-/// pilot run 0.002 s.
+/// Answers like a timing worker. The k-th sample of worker w takes 0.00wk s of CPU and 0.1wk s in
+/// all, a pilot run 0.002 s.
 const std::string kWorker = R"(w=$(ls $folder | wc -l); : >$folder/w.$w
 echo "$*" >>$folder/w.$w
 echo ready 2
@@ -198,7 +198,7 @@ TEST(Benches, GoForthAndBackAndTheFirstCaseIsItsOwnControl) {
   std::string log = scripted.told(".log");
   const std::string first_run = "0 pilot_run 100\n", second_run = "1 pilot_run 7\n";
   if (const std::string swapped = second_run + first_run; log.starts_with(swapped))
-    log.replace(0, swapped.size(), first_run + second_run);  // they go at once
+    log.replace(0, swapped.size(), first_run + second_run);  // pilot runs start concurrently
   EXPECT_EQ(log, expected);
   EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{1, 2}, {2, 2}}));
   ASSERT_EQ(bench.timings.size(), 2u);
@@ -241,7 +241,7 @@ TEST(Benches, TheOrderOfCasesDecidesNothing) {
   CaseSpec other = kSpec, third = kSpec;
   other.solver = "scripted:iterations=9";
   third.solver = "scripted:iterations=7";
-  // iterations=2 is refused from the start; iterations=7 from its third sample on.
+  // iterations=2 is refused at the start, iterations=7 from its third sample on.
   const Scripted scripted(
       "case $4 in *iterations=2*) echo ready 2; read a; echo '! no clock'; cat "
       ">/dev/null;; *iterations=7*) echo ready 2; n=0; while read a b; do n=$((n + "
@@ -261,8 +261,8 @@ TEST(Benches, TheOrderOfCasesDecidesNothing) {
   EXPECT_TRUE(std::isnan(time_cases({refused}, {.rounds = 2}).control.mid)) << "nothing to compare";
 }
 
-// Four samples of 0.05 s make a round of 0.2 s. After the first some 0.25 s are left: room for
-// another of that length, but not for one that takes half as long again.
+// Four samples of 0.05 s make a round of 0.2 s. After the first round about 0.25 s are left: enough
+// for a round of the same length, but not for one that is half as long again.
 TEST(Benches, NoRoundBeginsThatMayNotEnd) {
   const Scripted scripted(
       "echo ready 2; while read word n; do [ $word = time ] && sleep 0.05; echo 1 1; done\n");
@@ -277,7 +277,7 @@ TEST(Benches, NoRoundBeginsThatMayNotEnd) {
   EXPECT_EQ(rounds(60), 3u);
 }
 
-// The test program is the worker (tests/support/main.cpp).
+// The test program itself is the worker (tests/support/main.cpp).
 TEST(Benches, TimeTheStepsOfASolver) {
   const CaseSpec real{"hang", {"cloth.grid=[8, 8]", "time.duration=0.5"}, "jakobsen"};
   EXPECT_EQ(program_of(real), this_program());

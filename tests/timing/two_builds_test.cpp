@@ -25,7 +25,8 @@ TEST(TwoBuilds, ARatioBeyondIntervalAndControlIsADifference) {
   EXPECT_FALSE((TwoBuilds{"a", "", {1.1, 1.2, 1.3}, kNoisy, kQuiet, kNoisy}.slower()));
 }
 
-// Of a machine with fifteen processes on two cores: "likely" by judge(), and no alarm.
+// Recorded with fifteen processes on two cores: judge() calls it "likely", but it must raise no
+// alarm.
 TEST(TwoBuilds, WhatIdenticalCodeDidIsNoAlarm) {
   const TwoBuilds loaded{"a", "", {0.613, 0.676, 0.866}, {0.973, 1.35, 1.43}, kQuiet, kQuiet};
   EXPECT_TRUE(is_difference(judge(loaded.cpu, loaded.cpu_control)));

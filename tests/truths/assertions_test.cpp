@@ -1,4 +1,4 @@
-// What publications assert: every verdict that can be held is held by a truth.
+// Assertions of publications: every verdict that a truth can check is checked by a truth.
 #include "experiments/truths/assertions/assertions.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Assertions, EachIsHeldByATruthUnlessItCannotBeTested) {
   EXPECT_EQ(verdicts.size(), 4u) << "publications that are right, or wrong, in everything";
 }
 
-#ifdef TAUT_SANITIZED  // truths holds them without
+#ifdef TAUT_SANITIZED  // without sanitizers `taut verify` checks them
 TEST(Assertions, TheTruthsBehindBoxesAndOctreesHold) {
   for (const TruthEntry* truth : truths()) {
     if (truth->section != 8 || truth->row < 6 || truth->row > 16 ||

@@ -1,4 +1,4 @@
-// Verdicts of assertions from the findings of truths.
+// Verdicts on assertions, from the findings of truths.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -8,7 +8,8 @@
 namespace taut::judged_assertions_test {
 namespace {
 
-/// With one passed finding of what each assertion quotes, and one more of that truth.
+/// Each assertion has a passed finding of the quantity that it quotes, plus one more finding of
+/// that truth.
 std::vector<JudgedAssertion> judged(TruthVerdict of_three_sweeps) {
   std::map<std::string, std::vector<Finding>, std::less<>> findings;
   const auto finding = [](std::string_view quantity, TruthVerdict verdict) {

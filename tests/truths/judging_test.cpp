@@ -1,5 +1,5 @@
-// Truths of solvers from outside, on solvers that are wrong in one way each; what truths are made
-// with; and findings as they are judged.
+// Truths applied to external solvers with one error each; the building blocks of truths; and
+// verdicts on findings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr ParamSpec kFlaws[] = {ParamSpec::choice(
     "flaw", "none", "none|pushes|heavy|restless|loose|fails|refuses", "how it is wrong")};
 
-/// Verlet without links, which is right for particles that nothing holds together.
+/// Verlet integration without links, which is correct for unconnected particles.
 struct FromOutside final : Solver {
   FromOutside(const Scene& s, const Params& params)
       : scene(s), flaw(params.choice("flaw")), w(inverse_masses(s)) {}
@@ -74,7 +74,7 @@ class AnySolver : public testing::Test {
                        }});
   }
   void TearDown() override { set_solver_source({}); }
-  /// What the truth finds broken of it, and the rest.
+  /// Findings of the truth about this solver, broken or not.
   static std::vector<Finding> findings(const std::string& solver) {
     Findings found({solver});
     truth("any-solver").check(found);
@@ -150,7 +150,7 @@ TEST(Judging, KeepsWhatItJudgedByAndSaysWhy) {
   EXPECT_EQ(section_title(10), "Metrics");
 }
 
-// A deviation that is gone is as wrong as one that has grown: its explanation no longer holds.
+// A deviation that has vanished is as wrong as one that has grown: its explanation no longer holds.
 TEST(Judging, ADeviationIsHeldToWhatExplainsIt) {
   for (const auto& [measured, verdict] : {std::pair(1.0, TruthVerdict::broken),
                                           {1.4, TruthVerdict::broken},
@@ -233,7 +233,7 @@ TEST(Settle, TakesTenCalmLooksInARow) {
   EXPECT_TRUE(settle(rests, 1e-9, 3, 30));
   EXPECT_FALSE(settle(rests, 1e-9, 3, 27)) << "nine looks";
   scene.start.v[0] = {1, 0, 0};
-  scene.damping = 64 * std::log(2.0);  // halved by every step
+  scene.damping = 64 * std::log(2.0);  // halves the speed in every step
   Simulation slows(scene, jakobsen(1));
   EXPECT_FALSE(settle(slows, std::ldexp(1, -10), 1, 19));
   Simulation again(scene, jakobsen(1));
@@ -250,7 +250,7 @@ TEST(Fit, TheErrorIsThatOfTheLinesSlope) {
     }
     return fit_power_law(x, y);
   };
-  const PowerLaw four = error({0, 1, 0, 1});  // slope 1/5, rest 0.8, of which two degrees are free
+  const PowerLaw four = error({0, 1, 0, 1});  // slope 1/5, residual 0.8 with two degrees of freedom
   EXPECT_NEAR(four.exponent, 0.2, 1e-12);
   EXPECT_NEAR(four.factor, std::exp(0.2), 1e-12);
   EXPECT_NEAR(four.error, std::sqrt(0.8 / 2 / 5), 1e-12);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""`taut verify` as a whole: no truth is broken, each promises what promises.tsv says, and each compares something.
+"""`taut verify` as a whole: no truth is broken, each makes the promises in promises.tsv, and each compares something.
 
-A promise is what a truth expects of whom, and how exactly; what was measured is not one. Whoever loosens a tolerance or
-leaves a solver out changes a line there: promises_test.py BUILD --write. A truth that is new has none yet.
+A promise is a value that a truth expects of a subject, with its tolerance; measured values are not part of it. Loosening a tolerance
+or leaving out a solver changes a line there: promises_test.py BUILD --write. A new truth has no promises yet.
 """
 import json
 import math
@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROMISES = pathlib.Path(__file__).with_name("promises.tsv")
 BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/default").resolve()
 
-# Errors that are exactly 0 by what is done, and not because nothing was compared.
+# Errors that are exactly 0 by construction, and not because nothing was compared.
 ZERO = ("strain of 1 % after ten passes", "speed two steps after the impact", "height at rest", "depth at rest in a box",
         "largest acceleration at rest, without gravity's", "their overlap", "face.excess of the same face",
         "distance from the side, for it is put out there, not where it came in", "the same where its way is tested",
@@ -34,7 +34,7 @@ def verify():
 
 
 def promise(truth, finding):
-    """Its line: everything but numbers, and the numbers."""
+    """The line of a finding: its texts, and its numbers."""
     words = truth, finding["subject"], finding["quantity"], finding["unit"], finding["verdict"]
     return words, [math.nan if number is None else number for number in (finding["expected"], finding["tolerance"])]
 

@@ -1,4 +1,4 @@
-// The list of truths as a whole, how findings are judged, and the references that are kept.
+// The list of truths as a whole, verdicts on findings, and committed references.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,13 +119,13 @@ TEST(References, AreReadAsTheyWereWritten) {
   EXPECT_EQ(found->floor, reference.floor);
   named.dt /= 2;
   named.steps *= 2;
-  named.damping = 3;  // where it comes to rest is the same
+  named.damping = 3;  // does not change the equilibrium
   EXPECT_TRUE(find_references(named, folder).rest);
   named.mesh.mass[0] *= 2;
   EXPECT_FALSE(find_references(named, folder).rest);
 }
 
-/// As they are, or as studies set them.
+/// Shipped scenes as they are, or with the settings that studies use.
 TEST(References, TheCommittedOnesBelongToTheShippedScenes) {
   const std::map<std::string, SceneSettings> set{
       {"drape", {"cloth.span=0.7"}},

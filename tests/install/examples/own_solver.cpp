@@ -1,6 +1,6 @@
-// own_solver SCENE.toml [gravity=FACTOR]: a solver of one's own (particles without links) in the
-// harness: every metric, the verdict on the run, values over time and the record, as for the
-// solvers that come with taut.
+// own_solver SCENE.toml [gravity=FACTOR]: runs a custom solver (particles without links) in the
+// harness, with every metric, the verdict on the run, values over time and the record, as for the
+// solvers of taut.
 #include <cstdio>
 #include <taut/case/record_io.hpp>
 #include <taut/case/run_case.hpp>

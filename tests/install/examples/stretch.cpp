@@ -1,5 +1,5 @@
-// stretch SCENE.toml [SOLVER]: steps a solver through a scene and prints, ten times, the RMS strain
-// of the links.
+// stretch SCENE.toml [SOLVER]: steps a solver through a scene and prints the RMS strain of the
+// links ten times.
 #include <cmath>
 #include <cstdio>
 #include <taut/io/scene_io.hpp>

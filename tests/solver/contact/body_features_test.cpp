@@ -1,5 +1,5 @@
-// Edges of a cloth on edges of a body: where they pass through each other, by a look at thousands
-// of moments; and what pieces remember, which must not hide what a fresh look sees.
+// Edges of a cloth against edges of a body. The first crossing is compared with a search over
+// thousands of moments; cached pieces must not hide what a fresh search finds.
 #include "core/solver/contact/body_features.hpp"
 
 #include <gtest/gtest.h>
@@ -10,13 +10,14 @@
 namespace taut::body_features_test {
 namespace {
 
-/// Within `bound` of the origin along each axis.
+/// Edge with random ends within `bound` of the origin along each axis.
 Corners edge(Draw& draw, double bound) {
   const Vec3 a = draw.vector(bound), b = draw.vector(bound);
   return {a, b, b};
 }
 
-/// Shares of pq and of the fixed edge where they are nearest, were they lines: least squares.
+/// Shares of pq and of the fixed edge at their nearest points, taken as infinite lines (least
+/// squares).
 Eigen::Vector2d nearest(const Vec3& p, const Vec3& q, const FixedEdge& edge) {
   Eigen::Matrix<double, 3, 2> ways;
   ways << q - p, -edge.along;
@@ -47,13 +48,14 @@ TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
       if (k > 0 && (volume > 0) != (side > 0)) {
         const Eigen::Vector2d at = nearest(p, q, edge);
         const double inside =
-            std::min({at.x(), 1 - at.x(), at.y(), 1 - at.y()});  // negative: beside an edge
+            // negative if the nearest point is beyond an end of an edge
+            std::min({at.x(), 1 - at.x(), at.y(), 1 - at.y()});
         margin = std::min(margin, std::abs(inside));
         if (inside > 0) first = share;
       }
       side = volume;
     }
-    if (margin < 1e-2) continue;  // the moments are too coarse to tell
+    if (margin < 1e-2) continue;  // too close to an end for the resolution of the search
     ++checked;
     const MovingEdge cloth{{before[0], before[1]}, {now[0], now[1]}};
     const auto met =
@@ -61,7 +63,7 @@ TEST(BodyFeatures, EdgesCrossWhereALookAtEveryMomentSeesIt) {
     ASSERT_EQ(met.has_value(), first.has_value()) << n;
     if (!met) continue;
     ++crossed;
-    // the normal leads back to where the edge came from
+    // the normal points back to the side from which the edge came
     const double share = std::max(0.0, *first - 2.0 / kMoments);
     const Vec3 p = before[0] + share * (now[0] - before[0]),
                q = before[1] + share * (now[1] - before[1]);

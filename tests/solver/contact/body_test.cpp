@@ -1,5 +1,5 @@
-// Bodies of triangles under cloth, in every solver of ours and every response: what is a box, a
-// plane or a moved frame in closed form is it in triangles, too.
+// Bodies of triangles under cloth, in each of our solvers and with every response: triangles must
+// reproduce a box, a plane or a moving frame that is known in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,9 +22,9 @@ Motion tumbling(const Vec3& pivot) {
 
 const Vec3 kHalf(0.3, 0.2, 0.25);
 
-/// How far apart motions on the same box are whose starts differ by a rounding error [m]: nothing
-/// of what a solver makes of an iteration that has not converged, in which rounding chooses who
-/// touches.
+/// Largest distance between motions on the same box whose starts differ by a rounding error [m]. It
+/// measures solvers whose iterations have not converged: there rounding decides which vertices
+/// touch.
 double spread(const Scene& scene, const std::string& solver, const State& want) {
   double most = 0;
   for (int n = 1; n <= 8; ++n) {
@@ -68,11 +68,11 @@ TEST(BodyContact, AndInEveryResponse) {
     }
 }
 
-// In a frame that moves by a constant velocity all is the same.
+// A frame that moves at a constant velocity sees the same motion.
 TEST(BodyContact, ASteadyBodyIsAtRestInAMovingFrame) {
   const Vec3 speed(0.7, -0.3, 0.4);
   for (const std::string& solver : our_solvers()) {
-    // of what has not converged rounding chooses who touches
+    // later, rounding decides which vertices touch, as the iterations have not converged
     const int steps = solver.starts_with("implicit") ? 3 : kQuarterSecond;
     Scene scene = sheet_above(0.2);
     scene.colliders = {
@@ -86,7 +86,7 @@ TEST(BodyContact, ASteadyBodyIsAtRestInAMovingFrame) {
   }
 }
 
-// A wall of two triangles is the plane that they lie in, friction and all.
+// A wall of two triangles behaves like their plane, friction included.
 TEST(BodyContact, AWallOfTwoTrianglesIsAPlaneWithFriction) {
   const Vec3 normal = Vec3(0.5, 1, 0.2).normalized();
   const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), normal);
@@ -105,7 +105,7 @@ TEST(BodyContact, AWallOfTwoTrianglesIsAPlaneWithFriction) {
     }
 }
 
-/// Largest depth of a vertex below the body, or how many have crossed a thin one at y = 0.
+/// Largest depth of a vertex below the body's surface [m].
 double deepest(const Scene& scene, const State& state, double t) {
   double most = -1e9;
   const Shape shape = shape_at(scene.colliders[0], t);
@@ -138,7 +138,7 @@ TEST(BodyContact, NothingPassesAThinBodyFromEitherSide) {
     }
 }
 
-// Grooves are narrower than what puts vertices out of one of their walls is long.
+// Grooves are narrower than the distance by which one of their walls pushes vertices out.
 TEST(BodyContact, WhatIsPutOutOfOneWallOfAGrooveStaysAboveTheOther) {
   for (const std::string& solver : our_solvers()) {
     Scene scene = sheet_above(kGrooves + 0.1);
@@ -149,7 +149,7 @@ TEST(BodyContact, WhatIsPutOutOfOneWallOfAGrooveStaysAboveTheOther) {
   }
 }
 
-/// Depth of the deepest of many points of the faces.
+/// Depth of the deepest of many sample points on the faces.
 double deepest_of_faces(const Scene& scene, const State& state) {
   double most = 0;
   constexpr int kPieces = 20;
@@ -164,15 +164,15 @@ double deepest_of_faces(const Scene& scene, const State& state) {
   return most;
 }
 
-// Vertices l apart that lie on both sides of a ridge of half-angle a keep themselves out of it, and
-// their chord is (l/2) cos a deep, 39 mm here; with faces or edges the ridge keeps out of the
-// cloth, but for what the last sweep of the links, or the last iteration of a solve, leaves.
+// A ridge of half-angle a lies between vertices at distance l. The vertices stay outside, but their
+// chord is (l/2) cos a deep, here 39 mm. With faces or edges the ridge stays out of the cloth, up
+// to the error of the last sweep of the links or the last iteration of a solve.
 TEST(BodyContact, ARidgePokesThroughVerticesAndNotThroughFaces) {
   const Triangles roof{
       {{-0.8, -0.8, -1}, {0.8, -0.8, -1}, {0, 0, -1}, {-0.8, -0.8, 1}, {0.8, -0.8, 1}, {0, 0, 1}},
       {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};
   for (const char* solver : {"jakobsen:precision=double", "implicit", "vbd:precision=double"}) {
-    Scene scene = hanging_sheet(10, 4);  // 1/9 m apart, none over the ridge
+    Scene scene = hanging_sheet(10, 4);  // vertices 1/9 m apart, none over the ridge
     for (std::vector<Vec3>* places : {&scene.mesh.rest, &scene.start.x})
       for (Vec3& x : *places) x = Vec3(x.x() - 0.5, 0.06, x.y() + 0.15);
     scene.pins.clear();
@@ -186,8 +186,8 @@ TEST(BodyContact, ARidgePokesThroughVerticesAndNotThroughFaces) {
   }
 }
 
-// The tip of a pyramid under the middle of a face, its edges beside those of the face: with
-// vertices alone, or with edges, the face falls on it and is pierced.
+// The tip of a pyramid is under the middle of a face and its edges are beside those of the face.
+// With vertices alone, or with edges, the face falls on the tip and is pierced.
 TEST(BodyContact, ATipIsKeptOutOfAFaceByFacesAlone) {
   Scene scene = hanging_sheet(2, 2);
   for (std::vector<Vec3>* places : {&scene.mesh.rest, &scene.start.x})

@@ -1,5 +1,6 @@
-// One step in contact against the conditions of Signorini and Coulomb, taken from the positions
-// alone: what the links and inertia leave over at a vertex is what the collider has to push with.
+// One step in contact against the conditions of Signorini and Coulomb, evaluated from the positions
+// alone. The residual force of links and inertia at a vertex is the force with which the collider
+// has to push.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,16 +17,16 @@
 namespace taut::contact_conditions_test {
 namespace {
 
-constexpr double kStiffness = 100;  // N/m: stiffer, and pd would take 20 times as long
+constexpr double kStiffness = 100;  // N/m; stiffer springs would take pd 20 times as long
 const std::string kSprings = "structural=100,shear=100,bend=0";
 const std::string kGlobal = "xpbd:method=global,primal=on,substeps=1,precision=double";
-/// With those springs, of which xpbd takes the compliances.
+/// The solver's text with these springs; xpbd takes them as compliances.
 std::string sprung(const std::string& solver) {
   return with(solver, solver.starts_with("xpbd") ? "structural=0.01,shear=0.01" : kSprings);
 }
 
-/// A sheet of 9 x 9, half a metre wide, that has fallen on to the collider; without friction it
-/// soon slides off.
+/// A sheet of 9 x 9 vertices, half a metre wide, that has fallen on to the collider; without
+/// friction it soon slides off.
 Scene lying_on(const Shape& shape, double height, double friction, double thickness = 0.005) {
   Scene scene;
   scene.name = "lying";
@@ -51,7 +52,7 @@ std::vector<Scene> scenes() {
     all.push_back(lying_on(Ball{{0, 0, 0}, 0.2}, 0.21, friction));
     all.push_back(lying_on(Box{{0, 0, 0}, {0.15, 0.1, 0.12}}, 0.11, friction));
     all.push_back(lying_on(Capsule{{-0.3, 0, 0}, {0.3, 0.1, 0}, 0.1}, 0.2, friction));
-    const double slope = 20 * kDegree;  // slides with .3
+    const double slope = 20 * kDegree;  // friction of 0.3 does not hold on this slope
     all.push_back(lying_on(Plane{{std::sin(slope), std::cos(slope), 0}, 0}, 0.12, friction));
   }
   return all;
@@ -59,7 +60,8 @@ std::vector<Scene> scenes() {
 
 const char* name_of(const Scene& scene) { return type_name(scene.colliders[0].shape).data(); }
 
-/// How far, in the motion of a vertex by its own inertia [m], x is from the conditions of contact.
+/// Violation of the contact conditions by x, as the distance that a vertex would travel by its own
+/// inertia [m].
 double violation(const Scene& scene, const std::vector<Vec3>& x) {
   const ElasticStep step(scene, {kStiffness, kStiffness, 0});
   const Eigen::VectorXd left = step.gradient(x);
@@ -98,14 +100,15 @@ struct Converged {
   int few, many;  ///< iterations
 };
 
-/// The same scene, its start moved by what is lost in rounding.
+/// The same scene with its start perturbed by about a rounding error.
 Scene a_rounding_error_apart(Scene scene, int n) {
   for (std::size_t i = 0; i < scene.start.x.size(); ++i)
     scene.start.x[i].y() += 1e-13 * std::sin(static_cast<double>(i) * n);
   return scene;
 }
 
-/// Those of Newton's kind from eight starts: what rounding chooses has to end there, too.
+/// Newton-like solvers run from eight perturbed starts: each has to converge, whatever rounding
+/// decides.
 TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
 #ifdef TAUT_SANITIZED
   GTEST_SKIP() << "half a million iterations; sanitizers see the same code in other tests";
@@ -128,15 +131,15 @@ TEST(ContactConditions, HoldForEverySolverOnceItHasConverged) {
       const int starts = one.solver == "implicit" || one.solver == kGlobal ? 8 : 1;
       for (int n = 0; n < starts; ++n)
         EXPECT_LT(after(one.many, n), 1e-8) << where << ", start " << n;
-      if (!std::holds_alternative<Plane>(scene.colliders[0].shape))  // there it is right at once
-      {
+      // on a plane few iterations suffice
+      if (!std::holds_alternative<Plane>(scene.colliders[0].shape)) {
         EXPECT_GT(after(one.few), 1e-6) << where;
       }
     }
 }
 
-/// A sheet that fell on a rough slope and lies there, pressed together by its weight: nothing is
-/// left to move.
+/// A sheet that fell on a rough slope lies there, compressed by its own weight, and must stay at
+/// rest.
 TEST(ContactConditions, LetASheetRestOnARoughSlope) {
   const double slope = 0.2;
   for (const int n : {9, 13}) {  // few contacts, and many
@@ -170,8 +173,8 @@ TEST(ContactConditions, LetASheetRestOnARoughSlope) {
   }
 }
 
-/// A sheet of 5 x 5, held along its sides, on which one of 3 x 3 has fallen, each of whose vertices
-/// is a ball on one of the first.
+/// A sheet of 5 x 5, held along its sides, with a sheet of 3 x 3 lying on it. Each vertex of the
+/// upper sheet is a ball that rests on a vertex of the lower one.
 Scene sheet_on_sheet() {
   Scene scene;
   scene.name = "sheet on sheet";
@@ -209,8 +212,8 @@ Scene sheet_on_sheet() {
   return scene;
 }
 
-/// How far, in the motion of a vertex by its own inertia [m], x is from the conditions of contact
-/// without friction between vertices that touch one other at most.
+/// Violation of the frictionless contact conditions between vertices, as the distance that a vertex
+/// would travel by its own inertia [m]. Each vertex touches one other at most.
 struct Violation {
   double most = 0;
   std::ptrdiff_t touching = 0;
@@ -263,7 +266,7 @@ TEST(ContactConditions, HoldBetweenSheets) {
   }
 }
 
-/// A ball on the middle of a string that two pins hold: both weights pull at the string.
+/// A ball lies on the middle of a string between two pins: the string carries both weights.
 TEST(ContactConditions, AStringFeelsTheBallThatLiesOnIt) {
   constexpr double kHalf = 0.1, kMass = 0.003;
   Scene scene;
@@ -277,7 +280,7 @@ TEST(ContactConditions, AStringFeelsTheBallThatLiesOnIt) {
   scene.damping = 5;
   scene.stiffness = {kStiffness, kStiffness, kStiffness};
   scene.self_collision = {.radius = 0.01};
-  // the sag s of equilibrium: 2 K (l - r) s/l = 2 m g
+  // the sag s at equilibrium: 2 K (l - r) s/l = 2 m g
   double low = 0, high = 0.05;
   for (int n = 0; n < 200; ++n) {
     const double s = (low + high) / 2, length = std::hypot(kHalf, s);
@@ -292,7 +295,7 @@ TEST(ContactConditions, AStringFeelsTheBallThatLiesOnIt) {
   }
 }
 
-/// A face in a frame of three springs, whose middle has come to lie on a ball beside its centre.
+/// A face in a frame of three springs that lies on a ball, which touches it beside its centre.
 Scene face_on_ball(double friction) {
   Scene scene;
   scene.name = "face on a ball";
@@ -317,7 +320,8 @@ Scene face_on_ball(double friction) {
   return scene;
 }
 
-/// Of the force at the deepest point of the face, as of vertices in violation() above.
+/// Violation of the contact conditions at the deepest point of the face, measured as in
+/// violation().
 double violation_of_face(const Scene& scene, const std::vector<Vec3>& x) {
   const ElasticStep step(scene, {kStiffness, kStiffness, 0});
   const Eigen::VectorXd left = step.gradient(x);

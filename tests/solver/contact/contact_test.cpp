@@ -1,5 +1,5 @@
-// Truths of contact: closed forms for particles on planes, and what each response of Vasilovici's
-// does. Most scenes have no links: each vertex is then a point mass.
+// Contact in closed form: particles on planes, and each of Vasilovici's responses. Most scenes have
+// no links, so that each vertex is a point mass.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 constexpr double kDt = 1.0 / 64;
 constexpr double kG = 9.81;
 
-/// n x n vertices, 1 m x 1 m, level, the middle at `middle`; no links.
+/// Grid of n x n vertices without links, 1 m x 1 m, level, centred at `middle`.
 Scene points(const Vec3& middle, int n = 4) {
   Scene scene;
   scene.mesh = make_sheet({.nu = n,
@@ -67,7 +67,7 @@ TEST(Contact, OnAPlaneRestComesWithinTwoStepsOfTheImpact) {
   scene.colliders = {{.shape = Plane{}}};
   for (const char* response : {",contact=continuous", ",contact=discrete", ",contact=after"}) {
     Runner run(scene, response);
-    run.step(3);  // falls 6 g dt^2 = 14 mm: has met the plane
+    run.step(3);  // falls by 6 g dt^2 = 14 mm and so has reached the plane
     const State& state = run.step(2);
     for (std::size_t i = 0; i < state.x.size(); ++i) {
       EXPECT_EQ(state.x[i].y(), 0) << response;
@@ -100,7 +100,7 @@ TEST(Contact, ThicknessIsKept) {
   }
 }
 
-/// Slides down (or up) a slope; mu >= 0.
+/// Slope on which a particle slides down (or up); mu >= 0.
 struct Incline {
   double slope = std::numbers::pi / 6, friction = 0;
   Vec3 down{std::cos(slope), -std::sin(slope), 0}, normal{std::sin(slope), std::cos(slope), 0};
@@ -141,7 +141,7 @@ TEST(Contact, AThrownPointStopsAfterV2Over2MuG) {
   scene.colliders = {{.shape = Plane{}, .friction = mu}};
   for (Vec3& u : scene.start.v) u.x() = v;
   const double slid = Runner(scene, "").step(128).x[0].x() - scene.start.x[0].x();
-  EXPECT_NEAR(slid, v * v / (2 * mu * kG), v * kDt);  // of first order in dt: v dt/2
+  EXPECT_NEAR(slid, v * v / (2 * mu * kG), v * kDt);  // error of first order in dt: v dt/2
   scene.dt = kDt / 64;
   const double finer = Runner(scene, "").step(128 * 64).x[0].x() - scene.start.x[0].x();
   EXPECT_NEAR(finer, v * v / (2 * mu * kG), v * kDt / 64);
@@ -167,8 +167,8 @@ TEST(Contact, ARisingPlaneLiftsWithoutPenetration) {
     EXPECT_NEAR(depth(scene.colliders[0], run.step(), n * kDt), 0, 1e-12);
 }
 
-/// Points thrown down at a plate of thickness D at 20 m/s, starting at heights that fill one
-/// step's way uniformly: how many pass.
+/// Share of points that pass a plate of thickness D. They are thrown down at 20 m/s from heights
+/// spread uniformly over the distance of one step.
 double missed_fraction(const char* response, double plate) {
   Scene scene = points({0, 0, 0}, 20);
   const double way = 20 * kDt;
@@ -187,8 +187,8 @@ TEST(Contact, APlateIsMissedByAKnownShareUnlessSwept) {
   const double way = 20 * kDt;
   for (const double share : {0.25, 0.5, 0.75}) {
     EXPECT_NEAR(missed_fraction(",contact=freeze", share * way), 1 - share, 0.005);
-    // One that is caught keeps what is left of its speed, goes past the middle in the next step and
-    // is thrown out below: the published cloth that simply passes through the box.
+    // A caught point keeps part of its speed, passes the middle of the plate in the next step and
+    // is pushed out below: the published cloth that simply passes through the box.
     EXPECT_EQ(missed_fraction(",contact=discrete", share * way), 1);
     EXPECT_EQ(missed_fraction(",contact=continuous", share * way), 0);
   }
@@ -201,7 +201,8 @@ TEST(Contact, ABallThatPassesWithinAStepIsCaughtWhenSwept) {
   scene.colliders = {{.shape = Ball{{scene.start.x[5].x(), -1, scene.start.x[5].z()}, 0.1},
                       .motion = {.velocity = {0, 40, 0}}}};
   EXPECT_EQ(Runner(scene, ",contact=discrete").step(8).x[5].y(), 0);
-  EXPECT_GT(Runner(scene, ",contact=continuous").step(8).x[5].y(), 4);  // carried along
+  // the ball carries the point along
+  EXPECT_GT(Runner(scene, ",contact=continuous").step(8).x[5].y(), 4);
 }
 
 TEST(Contact, FreezeHoldsForEverWhatShouldSlide) {
@@ -220,7 +221,7 @@ TEST(Contact, HaltSlowsWhatShouldSlide) {
   const auto slid = [&](const char* response) {
     return (Runner(scene, response).step(100).x[0] - scene.start.x[0]).dot(incline.down);
   };
-  // Every other step is left out: time runs at half speed, and a quarter of the way is made.
+  // Every other step is skipped: time runs at half speed, and a quarter of the distance is covered.
   EXPECT_NEAR(slid(",contact=halt") / slid(",contact=discrete"), 0.25, 0.005);
 }
 
@@ -249,7 +250,7 @@ TEST(Contact, APinInsideAColliderStays) {
         << response;
 }
 
-/// One free triangle of 1 m sides about the origin, level, with corner masses 1, 2 and 3 kg.
+/// One free level triangle about the origin with sides of 1 m and corner masses of 1, 2 and 3 kg.
 Scene one_face(const Collider& collider) {
   Scene scene;
   scene.mesh.rest = {{0.5, 0, -0.3}, {-0.5, 0, -0.3}, {0, 0, 0.6}};
@@ -280,7 +281,8 @@ TEST(FaceContact, LiftsTheFaceToTheBallAndNoFurther) {
 }
 
 TEST(FaceContact, LiftsTheFaceOffACapsule) {
-  for (const Vec3& tip : {Vec3(0.3, -0.2, -0.1), Vec3(0.05, -0.7, 0.02)}) {  // lies; stands
+  // one face lies flat, the other stands
+  for (const Vec3& tip : {Vec3(0.3, -0.2, -0.1), Vec3(0.05, -0.7, 0.02)}) {
     const Capsule capsule{{0.05, -0.19, 0.02}, tip, 0.2};
     Scene scene = one_face({.shape = capsule});
     EXPECT_EQ(Runner(scene, "").step().x[0].y(), 0);  // no vertex is inside
@@ -291,11 +293,10 @@ TEST(FaceContact, LiftsTheFaceOffACapsule) {
   }
 }
 
-// Whatever it meets and does, in every response: the same path to rounding.
-/// There no direction is nearer than another: it is one across the axis.
+// On the axis of a capsule no direction out is the nearest; the vertex leaves across the axis.
 TEST(Contact, AVertexOnTheAxisOfACapsuleLeavesItSideways) {
   for (const Vec3& axis : {Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
-    Scene scene = points(Vec3::Zero(), 3);  // the middle one in the middle
+    Scene scene = points(Vec3::Zero(), 3);  // the middle vertex lies in the middle
     scene.gravity = Vec3::Zero();
     scene.colliders = {{.shape = Capsule{-2 * axis, 2 * axis, 0.1}}};
     Runner runner(scene, ",contact=discrete");
@@ -324,7 +325,8 @@ TEST(Contact, ACapsuleOfNoLengthIsABall) {
 }
 
 TEST(FaceContact, ABoxCornerLeavesTheFaceOverTheCorner) {
-  Box box{{0, -0.5, 0}, {0.3, 0.3, 0.3}};  // stands on one corner, the other 0.02 m above y = 0
+  // stands on one corner, the opposite one 0.02 m above y = 0
+  Box box{{0, -0.5, 0}, {0.3, 0.3, 0.3}};
   box.rotation.setFromTwoVectors(Vec3(1, 1, 1), Vec3::UnitY());
   box.center.y() = 0.02 - 0.3 * std::sqrt(3.0);
   const Scene scene = one_face({.shape = box});
@@ -334,8 +336,8 @@ TEST(FaceContact, ABoxCornerLeavesTheFaceOverTheCorner) {
   EXPECT_GT(deepest_in(box, {scene.start.x[0], scene.start.x[1], scene.start.x[2]}).depth, 0.01);
 }
 
-// The long edge of a face crosses an edge of a box 10 mm inside of two of its sides, and 15 mm
-// inside of a third: it leaves over the two, and nothing pushes it over the third.
+// The long edge of a face crosses an edge of a box. It is 10 mm inside of two sides of the box and
+// 15 mm inside of a third, leaves over the two, and must not be pushed over the third.
 TEST(FaceContact, LeavesABoxOverItsNearestSidesAlone) {
   Scene scene =
       one_face({.shape = Box{.center = {-0.5, -0.5, 0}, .half_extents = {0.5, 0.5, 0.1}}});
@@ -349,8 +351,7 @@ TEST(FaceContact, LeavesABoxOverItsNearestSidesAlone) {
   EXPECT_EQ(momentum.z(), 0);
 }
 
-// Nothing that is quick to leave a face out may leave out one that touches a solid's farthest
-// point.
+// Quick rejection of faces must keep a face that touches the farthest point of a solid.
 TEST(FaceContact, SeesASmallFaceAtTheFarthestPointOfALargeSolid) {
   const Vec3 half(4, 4, 4), end(6, 0, 0);
   const auto expect = [](const auto& shape, const Vec3& farthest) {
@@ -379,7 +380,7 @@ TEST(FaceContact, LeavesPinsAlone) {
   EXPECT_EQ(Runner(scene, ",faces=on").step().x, scene.start.x);
 }
 
-/// Nearest points in the solver's closed forms against the model's surface().
+/// Expects that the solver's closed forms find the nearest point of the model's surface().
 template <template <class> class SurfaceOf, class Shape_>
 void expect_model_surface(const Shape_& shape) {
   const SurfaceOf<double> fast = surface_of(shape);
@@ -403,7 +404,7 @@ void expect_model_surface(const Shape_& shape) {
       gradient[a] = (surface(shape, x + e * Vec3::Unit(a)).distance -
                      surface(shape, x - e * Vec3::Unit(a)).distance) /
                     (2 * e);
-    const bool smooth = std::abs(gradient.norm() - 1) < 1e-4;  // away from the medial axis
+    const bool smooth = std::abs(gradient.norm() - 1) < 1e-4;  // skips points near the medial axis
     EXPECT_TRUE(!smooth || (gradient - exact.normal).norm() < 1e-3);
     compared += smooth;
   }
@@ -411,7 +412,7 @@ void expect_model_surface(const Shape_& shape) {
   EXPECT_GT(compared, 1800);
 }
 
-/// entry() against marching along the path.
+/// Expects that entry() agrees with marching along the path.
 template <template <class> class SurfaceOf, class Shape_>
 void expect_first_hit(const Shape_& shape) {
   const SurfaceOf<double> fast = surface_of(shape);
@@ -429,7 +430,7 @@ void expect_first_hit(const Shape_& shape) {
     const Entry<double> entry = fast.entry(from, to);
     EXPECT_FALSE(fast.misses(from, to) && entry.hits);
     misses += fast.misses(from, to);
-    if (first > kCuts) continue;  // may still graze between two samples
+    if (first > kCuts) continue;  // the path may still graze the surface between two samples
     ASSERT_TRUE(entry.hits);
     ++hits;
     const Vec3 hit = a + (b - a) * first / kCuts;
@@ -441,8 +442,8 @@ void expect_first_hit(const Shape_& shape) {
   EXPECT_GT(misses, 100);
 }
 
-/// What is quickly said to lie beyond the surface and its way does so, and most of what does is
-/// found.
+/// Expects that the quick test beyond() claims only points whose whole path stays outside of the
+/// surface, and that it finds at least 70 % of them.
 template <template <class> class SurfaceOf>
 void expect_beyond_is_outside(const auto& shape) {
   const SurfaceOf<double> fast = surface_of(shape);
@@ -481,7 +482,8 @@ TEST(Contact, ClosedFormsAgreeWithTheModelAndWithMarching) {
   expect_first_hit<BoxSurface>(box);
 }
 
-/// What surfaces along the world's axes leave out changes no number.
+/// Expects the same numbers from a surface specialised to the world's axes and from the general
+/// one.
 template <bool continuous, template <class> class SurfaceOf, template <class> class AlignedOf>
 void expect_same_numbers(const auto& shape, const Motion& motion, float friction) {
   const SurfaceOf<float> surface = rounded<float>(surface_of(shape));
@@ -531,12 +533,12 @@ TEST(Contact, SurfacesAlongTheAxesGiveTheSameNumbers) {
 }
 
 // The deepest point b of a level face moves by c = s n less the friction, at most mu s against its
-// slip d: its corners by w_i b_i c / sum of w_j b_j^2.
+// slip d. Its corners move by w_i b_i c / sum of w_j b_j^2.
 TEST(FaceContact, RubsAgainstTheSlipOfItsDeepestPoint) {
-  const Vec3 d(0.01, 0, 0.005);  // m, a step's way of the face
+  const Vec3 d(0.01, 0, 0.005);  // m, the face's displacement in a step
   struct Case {
     double friction;
-    Vec3 velocity, rubbed;  ///< of the ball [m/s]; of its deepest point [m]
+    Vec3 velocity, rubbed;  ///< velocity of the ball [m/s], and of its deepest point [m]
   };
   const double depth = 0.01;
   for (const auto& [friction, velocity, rubbed] :

@@ -1,5 +1,6 @@
-// Bodies that deform under cloth, in every solver of ours and every response: frames of a rigid
-// motion are that motion, friction is that against the surface where it touches, nothing passes.
+// Deforming bodies under cloth, in each of our solvers and with every response: frames of a rigid
+// motion reproduce that motion, friction acts against the surface at the contact point, and nothing
+// passes through.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr int kQuarterSecond = 16;
 
-/// The same motion as frames, one at every substep of 1 to 64 a step.
+/// The same motion as frames, one frame per substep for 1 to 64 substeps a step.
 Collider as_frames(Collider collider, double fps, int frames) {
   auto& body = std::get<MeshBody>(collider.shape);
   const Motion motion = std::exchange(collider.motion, {});
@@ -77,8 +78,8 @@ TEST(DeformingContact, AndInEveryResponse) {
   }
 }
 
-/// One face that falls on the tip of a pyramid. (Whole sheets with faces=on tell nothing: which of
-/// two edges is deeper is rounding's, and 1e-15 m become 1 cm in ten steps.)
+/// One face that falls on the tip of a pyramid. (Whole sheets with faces=on would test nothing:
+/// rounding decides which of two edges is deeper, and 1e-15 m become 1 cm in ten steps.)
 Scene face_above_a_tip(const Motion& motion) {
   Scene scene;
   scene.mesh.rest = {{-0.4, 0.32, -0.3}, {0.5, 0.32, -0.2}, {0.05, 0.32, 0.4}};
@@ -116,7 +117,7 @@ TEST(DeformingContact, AndForFaces) {
     }
 }
 
-/// A wall of many triangles, one side of which goes twice as fast as the other.
+/// Wall of many triangles; one side moves twice as fast as the other.
 Collider wall(double speed, double friction) {
   Triangles sheet;
   constexpr int kSide = 9;
@@ -139,7 +140,7 @@ Collider wall(double speed, double friction) {
           .frames = frames};
 }
 
-// It makes half a metre in a step, as much as its triangles are long, and the thickness is 5 mm.
+// The wall travels half a metre in a step, as far as its triangles are long; the thickness is 5 mm.
 TEST(DeformingContact, NothingPassesAThinBodyThatComesFromEitherSide) {
   for (const std::string& solver : our_solvers())
     for (const double side : {-1.0, 1.0}) {
@@ -166,7 +167,7 @@ TEST(DeformingContact, WhatIsPutOutOfOneWallOfAGrooveStaysAboveTheOther) {
   }
 }
 
-/// Of the thread where it is over x = 0 [m].
+/// Height of the thread above x = 0 [m].
 double height_over_origin(const State& state) {
   double highest = -1e9;
   for (std::size_t i = 1; i < state.x.size(); ++i) {
@@ -177,7 +178,7 @@ double height_over_origin(const State& state) {
   return highest;
 }
 
-// It makes four times its own height in a step, between two vertices, and leans as it does so.
+// The rod rises four times its own height in a step, between two vertices, and tilts as it rises.
 TEST(DeformingContact, NoEdgeOfAThreadPassesARodThatItsFramesRaise) {
   Scene scene;
   constexpr int kVertices = 12, kSteps = 12;
@@ -208,19 +209,19 @@ TEST(DeformingContact, NoEdgeOfAThreadPassesARodThatItsFramesRaise) {
     };
     EXPECT_TRUE(left_behind("faces=off")) << solver;
     discrete += left_behind("faces=edges,contact=discrete");
-    // forces of vbd's sweeps have not grown after ten of them: it loses the rod in step 11
+    // vbd's contact forces are still growing after ten sweeps: it would lose the rod in step 11
     const std::string sweeps = solver_name(solver) == "vbd" ? ",iterations=50" : "";
     EXPECT_FALSE(left_behind("faces=edges" + sweeps)) << solver;
   }
   EXPECT_GE(discrete, 6) << "all but those of many substeps";
 }
 
-// A belt whose points go at speeds that differ from place to place carries each vertex, where it
-// cannot slip, at the speed of its own place.
+// A belt whose points move at different speeds carries each vertex that cannot slip at the speed of
+// the point under it.
 TEST(DeformingContact, FrictionIsAgainstTheSurfaceWhereItTouches) {
   for (const std::string& solver : our_solvers()) {
     Scene scene = sheet_above(0.005);
-    scene.links.clear();  // each for itself
+    scene.links.clear();  // each vertex moves independently
     for (Vec3& v : scene.start.v) v.setZero();
     Collider belt = wall(0, 50);
     auto frames = std::make_shared<BodyFrames>();

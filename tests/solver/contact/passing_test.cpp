@@ -1,5 +1,6 @@
-// Points that a ball, a box or a capsule meets within a step, whatever both do, against a second
-// implementation in the solid's own frame: the side where a path enters is the side where it stays.
+// Points that pass through a ball, a box or a capsule within a step, while both move, against a
+// second implementation in the solid's own frame: a point has to stay on the side where its path
+// entered.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -11,14 +12,14 @@
 namespace taut::contact_passing_test {
 namespace {
 
-/// How far below a plane with this normal.
+/// Distance below a plane, and the plane's normal.
 struct Push {
   double depth = -1;
   Vec3 normal = Vec3::Zero();
 };
 
-/// Where the path enters a convex solid: by bisection from its point that is nearest to the solid
-/// or deepest in it, which a search by thirds finds.
+/// Normal at the point where the path enters a convex solid. Bisection starts from the point of the
+/// path that is nearest to the solid, or deepest in it, which a ternary search finds.
 std::optional<Vec3> searched_normal(const Shape& shape, const Vec3& a, const Vec3& b) {
   const auto at = [&](double s) {
     return second::surface_at({.shape = shape}, a + s * (b - a), 0);
@@ -38,7 +39,7 @@ std::optional<Vec3> searched_normal(const Shape& shape, const Vec3& a, const Vec
   return at(low).normal;
 }
 
-/// Where a path from a to b, outside, enters a solid at rest about the origin.
+/// Normal where a path from a (outside) to b enters a solid at rest about the origin.
 std::optional<Vec3> entry_normal(const Shape& shape, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   if (const auto* ball = std::get_if<Ball>(&shape)) {
@@ -65,8 +66,8 @@ std::optional<Vec3> entry_normal(const Shape& shape, const Vec3& a, const Vec3& 
   return normal;
 }
 
-/// Straight out of the nearest side, or `back` through the plane that touches the solid where the
-/// path came in.
+/// Push out of the nearest side, or, given `back`, through the tangent plane where the path came
+/// in.
 Push out_of(const Shape& shape, double thickness, const Vec3& b, const std::optional<Vec3>& back) {
   if (!back) {
     const second::Hit now = second::surface_at({.shape = shape}, b, 0);
@@ -80,8 +81,8 @@ Push out_of(const Shape& shape, double thickness, const Vec3& b, const std::opti
   return {reach + thickness - back->dot(b), *back};
 }
 
-/// What may become of a path from a to b; the first unless rounding decides between two sides of a
-/// turned box that are at right angles.
+/// Valid pushes for a path from a to b. There is more than one only where rounding decides between
+/// two perpendicular sides of a turned box.
 std::vector<Push> pushes(const Shape& shape, double thickness, const Vec3& a, const Vec3& b) {
   const second::Hit now = second::surface_at({.shape = shape}, b, 0);
   const std::optional<Vec3> entry = entry_normal(shape, a, b);
@@ -98,8 +99,8 @@ struct Motions {
   bool turned() const { return turn.vec().norm() > 0 || spin.norm() > 0; }
 };
 
-/// Points without links, thrown at a solid that moves for a step; how many it moved, how many of
-/// these had passed through it.
+/// Throws points without links at a solid that moves for a step. Returns how many points it moved
+/// and how many of those had passed through it.
 std::pair<int, int> thrown(const Shape& shape, const Vec3& center, const Motions& motions,
                            const char* precision, double tolerance) {
   constexpr int kPoints = 2000;
@@ -117,7 +118,7 @@ std::pair<int, int> thrown(const Shape& shape, const Vec3& center, const Motions
     capsule->from += center;
     capsule->to += center;
   }
-  /// In the solid's own frame, of the point of it that is at p at time t.
+  /// position in the solid's own frame of the point that is at p at time t
   const auto own = [&](const Vec3& p, double t) -> Vec3 {
     const Vec3 q = second::started(placed.motion, p, t) - center;
     return std::holds_alternative<Box>(shape) ? Vec3(motions.turn.conjugate() * q) : q;
@@ -164,7 +165,7 @@ std::pair<int, int> thrown(const Shape& shape, const Vec3& center, const Motions
     moved += out.depth > 0;
     passed += out.depth > 0 && second::surface_at(placed, free[i], kDt).distance > kThickness;
   }
-  // A path that grazes an edge to the last bit may be seen on either side of it.
+  // Rounding may put a path that grazes an edge on either side of it.
   EXPECT_LE(wrong, precision[0] == 'f' ? 2 : 0) << first.str();
   return {moved, passed};
 }

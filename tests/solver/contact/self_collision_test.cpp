@@ -1,5 +1,5 @@
-// The cloth against itself: what the hash grid keeps apart, and the two failures that Vasilovici's
-// report publishes of its octree.
+// Self-collision of cloth: what the hash grid keeps apart, and two failures of the octree that
+// Vasilovici's report publishes.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -14,7 +14,7 @@
 namespace taut::self_collision_test {
 namespace {
 
-/// Particles at the given places and velocities, no links, no gravity, 1 kg each, radius 5 cm.
+/// Particles of 1 kg and 5 cm radius at the given places and velocities, without links and gravity.
 Scene particles(std::vector<Vec3> x, std::vector<Vec3> v) {
   Scene scene;
   scene.mesh.mass.assign(x.size(), 1.0);
@@ -43,7 +43,7 @@ TEST(SelfCollision, TwoParticlesMeetAndKeepTheirMomentum) {
 
 TEST(SelfCollision, AFastParticleDoesNotPassWithinAStep) {
   const Scene scene = particles({{-0.48, 0, 0}, {0, 0, 0}}, {{20, 0, 0}, {0, 0, 0}});
-  const State state = run(scene, "self=grid", 3);  // 0.31 m a step, 0.1 m wide
+  const State state = run(scene, "self=grid", 3);  // moves 0.31 m a step; a diameter is 0.1 m
   EXPECT_LE(state.x[0].x(), state.x[1].x() - 0.1 + 1e-12);
   EXPECT_GT(run(scene, "self=octree", 3).x[0].x(), 0.4);
 }
@@ -57,7 +57,8 @@ TEST(SelfCollision, NoneOfManyFastPairsPassesWhereverTheCellsLie) {
                     0.5 * Vec3(number(random), number(random), number(random));
     const Vec3 along = Vec3(number(random), number(random), number(random)).normalized();
     const double gap = 0.11 + 0.1 * std::abs(number(random));
-    const double way = 0.2 + 0.19 * std::abs(number(random));  // of four diameters: of each, half
+    // distance that both approach each other: up to four diameters of 0.1 m
+    const double way = 0.2 + 0.19 * std::abs(number(random));
     x.push_back(at);
     x.push_back(at + gap * along);
     v.push_back(32 * way * along);
@@ -71,7 +72,7 @@ TEST(SelfCollision, NoneOfManyFastPairsPassesWhereverTheCellsLie) {
 
 TEST(SelfCollision, SlowParticlesNeverOverlap) {
   for (double gap = 0.11; gap < 0.3; gap += 0.007) {
-    const Vec3 v(0.08, 0, 0);  // an 80th of the diameter in a step
+    const Vec3 v(0.08, 0, 0);  // an 80th of the diameter per step
     const Scene scene = particles({{0, 0, 0}, {gap, 0, 0}}, {v, -v});
     const SolverChoice choice = parse_solver(listing("precision=double,self=grid"));
     const auto solver = choice.entry->make(scene, choice.params);
@@ -85,8 +86,8 @@ TEST(SelfCollision, SlowParticlesNeverOverlap) {
   }
 }
 
-/// The upper half of a folded sheet sinks on to the lower one by a 32nd of a diameter a step: from
-/// farther than the first search reaches, in each layout of the particles.
+/// The upper half of a folded sheet sinks on to the lower half by a 32nd of a diameter per step. It
+/// starts beyond the range of the first search; every layout of the particles is tested.
 TEST(SelfCollision, AFoldThatClosesSlowlyIsSeenInTime) {
   for (const char* layout : {"layout=interleaved", "layout=batches", "order=mesh"}) {
     Scene scene = hanging_sheet(16, 4, {true, false, false});
@@ -121,7 +122,7 @@ TEST(SelfCollision, AFoldThatClosesSlowlyIsSeenInTime) {
 }
 
 TEST(SelfCollision, TheOctreeDoesNotSeeAcrossASplitAndTheGridDoes) {
-  // Two slow particles meet at the middle of a box whose corners hold the others.
+  // Two slow particles meet at the middle of the box spanned by the other particles.
   std::vector<Vec3> x{{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}};
   for (const double sx : {-1, 1})
     for (const double sy : {-1, 1})
@@ -139,7 +140,7 @@ TEST(SelfCollision, TheOctreeDoesNotSeeAcrossASplitAndTheGridDoes) {
   EXPECT_EQ(gap("self=octree"), gap("self=off"));
 }
 
-/// A sheet at rest whose particles are larger than the spacing.
+/// Sheet at rest whose particles are larger than their spacing.
 Scene fat_sheet() {
   Scene scene;
   scene.mesh = make_sheet({.nu = 9, .nv = 9, .width = 0.8, .height = 0.8, .mass = 0.1});
@@ -160,7 +161,8 @@ double moved(const Scene& scene, const State& state) {
 
 TEST(SelfCollision, ALargeRadiusJamsTheOctreeAndNotTheGrid) {
   Scene scene = fat_sheet();
-  EXPECT_LT(moved(scene, run(scene, "self=grid", 20)), 1e-9);  // nothing fights at rest
+  // particles that overlap at rest do not push each other
+  EXPECT_LT(moved(scene, run(scene, "self=grid", 20)), 1e-9);
   scene.gravity = {0, -9.81, 0};
   const double fall = 9.81 / 64 / 64 * 20 * 21 / 2;
   EXPECT_NEAR(moved(scene, run(scene, "self=grid", 20)), fall, 1e-9);
@@ -214,7 +216,8 @@ Pairs all_within(const Points<Real>& x, std::size_t count, Real reach) {
   return pairs;
 }
 
-/// Everywhere, in a line along each axis, in planes and thick layers, in one cell.
+/// Clouds of points: everywhere, on a line along each axis, in planes and thick layers, in one
+/// cell.
 std::vector<std::vector<Vec3>> clouds() {
   std::vector<std::vector<Vec3>> all;
   const std::vector<Vec3> cube = anywhere(400, 2, 1);
@@ -227,7 +230,7 @@ std::vector<std::vector<Vec3>> clouds() {
   for (Vec3& x : all.emplace_back(cube)) x.z() = x.x() + x.y();
   all.emplace_back(cube)[0] = {1e9, -1e9, 1e9};  // beyond the last cell
   all.emplace_back(1, Vec3::Zero());
-  for (const double reach : {0.02, 0.3, 1.0})  // on both sides of what would be that
+  for (const double reach : {0.02, 0.3, 1.0})  // on both sides of the last cell of the grid
     for (const double cells : {1e6, 2e6, 4e6, 1.6e7})
       for (const double side : {-0.25, 0.25}) all.back().emplace_back((cells + side) * reach, 0, 0);
   return all;
@@ -303,7 +306,7 @@ constexpr std::size_t kShared = ThreadPool::kWorthSharing + 1000;
 
 TEST(NeighbourGrid, ListsAreTheSameFromEveryInstructionSet) {
   const Points<float> x = points<float>(anywhere(kShared, 2, 6));
-  for (const float reach : {0.4F, 0.1F}) {  // few of the buckets are used, and most of them
+  for (const float reach : {0.4F, 0.1F}) {  // few of the buckets are used, then most of them
     Lists first;
     for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
       for (const int threads : {1, 2, 3}) {
@@ -318,13 +321,14 @@ TEST(NeighbourGrid, ListsAreTheSameFromEveryInstructionSet) {
   }
 }
 
-// In a cube, in a plane, on a line so long that it wraps around the grid, and with a tenth of all
-// in a few cells.
+// Clouds: a cube, a plane, a line so long that it wraps around the grid, and a cloud with a tenth
+// of its points in a few cells.
 TEST(NeighbourGrid, ListsOfPartsApartShareNoParticle) {
   ThreadPool one_thread(1);
   struct Cloud {
     Vec3 size;
-    double dense;  ///< side of the cube of a tenth of all over that of the others
+    /// side of the cube that holds a tenth of the points, as a share of the side of the rest
+    double dense;
   };
   for (const auto& [size, dense] :
        {Cloud{{1, 1, 1}, 1}, {{1e-3, 1, 1}, 1}, {{1e-3, 1e-3, 1e5}, 1}, {{1, 1, 1}, 0.1}}) {
@@ -376,16 +380,17 @@ TEST(SelfCollision, CrumpleEndsWithoutSelfIntersectionsByDefault) {
   EXPECT_GT(crossings("jakobsen:self=off", "time.duration=1"), 100);
 }
 
-// Links that pull in a step's sweeps bring together what was apart when its pairs were searched: by
-// up to the way that each has made.
+// Links that pull within a step bring together particles that were apart when the pairs were
+// searched. The search has to allow for the distance that each particle has moved.
 TEST(SelfCollision, ParticlesPulledTogetherFastStayApart) {
-  // From as far as 3/2 diameters and the way.
+  // Pairs are searched up to 3/2 diameters plus the distance moved.
   for (const auto& [mass, far] : {std::pair(1.0, 0.2), {4.0, 0.2}, {1.0, 0.24}, {4.0, 0.24}}) {
     Scene scene = particles({{0, 0, 0}, {far, -0.05, 0}, {-0.5, 0.05, 0}},
-                            {{0, 0, 0}, {0, 6.4, 0}, {0, 0, 0}});  // 0.1 m a step, to (far, 0.05)
+                            // moves 0.1 m a step, to (far, 0.05)
+                            {{0, 0, 0}, {0, 6.4, 0}, {0, 0, 0}});
     scene.mesh.mass[0] = mass;
     scene.pins = {2};
-    scene.links = {{1, 2, 0.55}};  // to x = 0.05, inside the first
+    scene.links = {{1, 2, 0.55}};  // pulls to x = 0.05, inside the first particle
     const State state = run(scene, "self=grid,iterations=1,projection=exact", 1);
     EXPECT_NEAR((state.x[1] - state.x[0]).norm(), 0.1, 1e-12);
     const Vec3 a = state.x[0], b = state.x[1] - Vec3(0.05, 0.05, 0);
@@ -394,8 +399,8 @@ TEST(SelfCollision, ParticlesPulledTogetherFastStayApart) {
   }
 }
 
-// Pairs far from each other, slow and fast, for ten steps: none comes nearer than a diameter, the
-// middle of each goes its way, and those that never meet are left alone.
+// Slow and fast pairs far from each other move for ten steps. No pair comes closer than a diameter,
+// each pair keeps its centre of mass in uniform motion, and pairs that never meet are not touched.
 TEST(SelfCollision, PairsOfEverySpeedMeetAndPart) {
   std::mt19937 random(11);
   std::uniform_real_distribution<> number(-1, 1);

@@ -1,4 +1,4 @@
-// A million steps: neither energy nor jitter nor memory creeps. Not part of the default run:
+// A million steps in which energy, jitter and memory must not grow. Not part of the default run:
 //     ctest -C long -L long
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ long resident_pages() {
   return resident;
 }
 
-/// What a tenth of the run looked like.
+/// Measurements of a tenth of the run.
 struct Tenth {
   double fastest = 0;                  ///< m/s
   double lowest = 1e300, highest = 0;  ///< kinetic energy plus potential energy above -1 m [J]

@@ -1,12 +1,12 @@
-// Why the order of the links decides stability. One step without damping, of small motions, is
-// x'' = P (2 x' - x) with P the sweep. An eigenvalue mu of P gives two modes, z^2 - 2 mu z + mu =
-// 0, neutral (|z| = 1) on the curve mu = z^2 / (2 z - 1). Near mu = 1, where all slow motions are,
-// that curve is a cusp: stable iff |arg mu| < (1 - |mu|)^(3/2). Sweeps of few colours have real mu
-// and stay inside. A sweep along a line of links has mu = e^(2ik) / (2 e^(ik) - 1) for the wave
-// number k: exactly the curve, z = e^(ik). A wave travels with the sweep, one link a step, and
-// neither grows nor decays. Corrections of more than the whole error, by over-relaxation or because
-// the square-root-free projection overshoots by the strain, make all waves grow; smaller ones make
-// them decay.
+// Why the order of the links decides stability. One step of small motions without damping is x'' =
+// P (2 x' - x), where P is the sweep. An eigenvalue mu of P gives two modes, z^2 - 2 mu z + mu = 0,
+// which are neutral (|z| = 1) on the curve mu = z^2 / (2 z - 1). Near mu = 1, the place of all slow
+// motions, this curve is a cusp: a mode is stable iff |arg mu| < (1 - |mu|)^(3/2). Sweeps with few
+// colours have real mu and stay inside. A sweep along a line of links has mu = e^(2ik) / (2 e^(ik)
+// - 1) for the wave number k, which is exactly the curve, with z = e^(ik): a wave travels with the
+// sweep, one link a step, and neither grows nor decays. Corrections beyond the whole error make all
+// waves grow, be it by over-relaxation or because the square-root-free projection overshoots by the
+// strain. Smaller corrections make all waves decay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace taut::order_stability_test {
 namespace {
 
-/// The linearised sweep over `links`, in the plane of the sheet.
+/// Matrix of the linearised sweep over `links`, in the plane of the sheet.
 Eigen::MatrixXd sweep(const Scene& scene, const std::vector<Link>& links) {
   const std::vector<double> w = inverse_masses(scene);
   const auto n = static_cast<Eigen::Index>(2 * scene.mesh.rest.size());
@@ -60,9 +60,9 @@ Modes modes(const Scene& scene, const std::vector<Link>& links) {
   return worst;
 }
 
-/// Largest |z| of an endless line of links, swept from one end to the other with corrections
-/// `omega` times the error, for waves of k radians a link. With q = omega / 2 and S = (1 - q) + q S
-/// e^(-ik) a particle's value after the link before it: mu = (1 - q) S + q e^(ik).
+/// Largest |z| on an endless line of links that is swept from end to end, for waves of k radians a
+/// link and corrections of `omega` times the error. With q = omega / 2 the value of a particle
+/// after the link before it is S = (1 - q) + q S e^(-ik), and mu = (1 - q) S + q e^(ik).
 double growth_along_a_line(double omega, double k) {
   const double q = omega / 2;
   const std::complex<double> forth = std::polar(1.0, k), back = std::polar(1.0, -k);
@@ -80,22 +80,23 @@ TEST(OrderStability, AWaveGrowsIffCorrectionsAreMoreThanWhole) {
 }
 
 TEST(OrderStability, OvershootOfTheSquareRootFreeFormIsTheStrain) {
-  const auto after = [](double length) {  // of a link of length 1, between equal masses
+  // length of a link of rest length 1 between equal masses after a projection
+  const auto after = [](double length) {
     return length * (1 - excess<Projection::sqrt_free>(length * length, 1.0));
   };
   for (const double strain : {0.01, 0.05}) {
     const double remains = (after(1 + strain + 1e-6) - after(1 + strain - 1e-6)) / 2e-6;
     EXPECT_NEAR(1 - remains, 1 + strain,
-                2 * strain * strain);  // share of a small error that is taken
+                2 * strain * strain);  // share of a small error that a projection removes
   }
 }
 
-/// How the speed of small motions in the sheet's plane grows, in decades.
+/// Growth of the speed of small motions in the sheet's plane [decades].
 struct Growth {
-  double most = 0, last = 0;  ///< over what it was after four steps
+  double most = 0, last = 0;  ///< largest and last value, relative to the speed after four steps
 };
 
-/// From a random start, one sweep a step.
+/// Growth of motion from a random start with one sweep per step.
 Growth growth(const Scene& scene, const std::vector<Link>& links, double omega, int steps) {
   const std::vector<double> w = inverse_masses(scene);
   std::mt19937 random(1);
@@ -131,7 +132,7 @@ TEST(OrderStability, OvershootingSweepsPumpWavesThatTravelWithThem) {
   };
   const LinkChoice threads{.structural = true}, all{true, true, true};
   for (const Order order : {Order::mesh, Order::reversed}) {
-    // along threads alone a wave grows until it leaves at the far edge, after some 32 steps
+    // along threads alone a wave grows until it leaves at the far edge, after about 32 steps
     EXPECT_GT(of(threads, order, 1.25).most, 3);
     EXPECT_LT(of(threads, order, 1.25).last, 0);
     EXPECT_GT(of(all, order, 1.1).last, 3);  // shear and bend links carry it back
@@ -139,7 +140,7 @@ TEST(OrderStability, OvershootingSweepsPumpWavesThatTravelWithThem) {
   }
   for (const Order order : {Order::coloured, Order::random})
     EXPECT_LT(of(all, order, 1.1).most, 0.2);
-  // there and back again: a symmetric sweep, whose mu are real
+  // sweeping there and back is symmetric, so that its mu are real
   const Scene scene = hanging_sheet(32, 32, all);
   std::vector<Link> both = scene.links;
   both.insert(both.end(), scene.links.rbegin(), scene.links.rend());
@@ -152,7 +153,7 @@ TEST(OrderStability, SmallMotionsOfTheFlatSheetDieOutInEveryOrder) {
     const auto of = [&](Order order) { return modes(scene, ordered(scene, order, 1)); };
     for (const Order order : {Order::mesh, Order::reversed, Order::coloured, Order::random})
       EXPECT_LT(of(order).growth, 1) << n;
-    // sequential orders turn corrections into travelling waves, coloured ones hardly do
+    // sequential orders turn corrections into travelling waves; coloured orders hardly do
     EXPECT_GT(of(Order::mesh).imaginary, 3 * of(Order::coloured).imaginary) << n;
   }
 }

@@ -1,5 +1,5 @@
-// A solver must not score well at rest and be wrong in motion: the energy of a swinging sheet
-// beside SHAKE's, which keeps it.
+// Guards against solvers that score well at rest and are wrong in motion: the energy of a swinging
+// sheet is compared with SHAKE, which conserves it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace taut::swing_energy_test {
 namespace {
 
-/// A sheet that drapes from two corners 0.8 m apart, turned by 45 degrees about them and let go.
+/// Sheet that hangs from two corners 0.8 m apart, turned by 45 degrees about them and released.
 Scene swing() {
   Scene scene = hanging_sheet(8, 8, {.structural = true});
   scene.start.x[7].x() = 0.8;

@@ -1,5 +1,5 @@
-// Whatever finite scene it is given, Jakobsen's solver stays finite: thousands of random extremes.
-// Left out is what theory says must grow: plain Jacobi, over-relaxation, wind beyond c A dt/m = 2.
+// Jakobsen's solver stays finite on every finite scene: thousands of random extreme scenes. Cases
+// that grow in theory are left out: plain Jacobi, over-relaxation, wind beyond c A dt/m = 2.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace taut::torture_test {
 namespace {
 
-/// Draws one extreme after another; the same for the same seed.
+/// Random generator of extreme values, reproducible from its seed.
 class Extremes {
  public:
   explicit Extremes(unsigned seed) : random_(seed) {}
@@ -80,7 +80,7 @@ class Extremes {
         for (std::size_t k = 0; k < n; ++k)
           if (coin()) s.start.x[k] = s.start.x[below(n)];
         break;
-      case 1:  // all in one point
+      case 1:  // all at one point
         for (Vec3& x : s.start.x) x.setZero();
         break;
       case 2:  // a denormal distance apart
@@ -127,8 +127,8 @@ bool finite(const State& state) {
   return true;
 }
 
-/// c A dt/m of the whole cloth on its lightest vertex. Wind is integrated explicitly: beyond 2 it
-/// grows without bound, as theory says (truths, section 3), and that is no defect of the solver.
+/// c A dt/m of the whole cloth on its lightest vertex. Wind is integrated explicitly and grows
+/// without bound beyond 2, as in theory (truths, section 3); this is not a defect of the solver.
 double wind_number(const Scene& scene, const State& state) {
   if (!scene.wind) return 0;
   double area = 0, lightest = 1e300;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A study in a cluster folder: what submit writes, shards that die, and merges that prove that nothing is missing."""
+"""A study in a cluster folder: the files of submit, shards that die, and merges that prove completeness."""
 
 import json
 import os
@@ -26,7 +26,7 @@ class Cluster(CommandLine):
                          program=program, **more)
 
     def shard(self, number, *options, folder="c", expect=0, program="taut"):
-        """What the job script runs, by itself."""
+        """Runs a shard directly, as the job script would."""
         text = (self.folder / folder / "job.sh").read_text()
         words = re.search(r'run=\("\$taut" (run .*) \$\{ONLY', text)[1].split()
         shards = re.search(r'\$?\{?shard\}?\S*/(\d+)"|\{\}/(\d+)', text)
@@ -89,7 +89,7 @@ class Submit(Cluster):
         self.assertFalse((self.folder / "e").exists())
 
     def test_the_scheduler_is_called_in_the_folder(self):
-        """With programs of their names that note what they are told; Slurm and GNU parallel themselves: schedulers_test.py."""
+        """Tests with fake schedulers that log their arguments; schedulers_test.py uses the real Slurm and GNU parallel."""
         (self.folder / "bin").mkdir()
         for name in ("sbatch", "parallel"):
             (self.folder / "bin" / name).write_text(f'#!/bin/bash\necho "$PWD $TAUT $*" >{self.folder}/told\nexit $ANSWER\n')
@@ -101,7 +101,7 @@ class Submit(Cluster):
         for on, words, told in [
                 ("slurm", [], "job.sh\n"), ("parallel", [], f"{options} {resumed}"),
                 ("parallel", ["--node-file", "hosts", "--sshlogin", "a,4/b"],
-                 f"{options} --sshloginfile ./nodes --workdir {self.folder}/c {resumed}")]:  # of the whole study
+                 f"{options} --sshloginfile ./nodes --workdir {self.folder}/c {resumed}")]:  # for the whole study
             words = ["cluster", "submit", self.study(rest=self.MANY), "--on", on, "--shards", 2, "--folder", "c", *words]
             environment = {**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}", "ANSWER": "0"}
             environment.pop("TAUT", None)
@@ -120,7 +120,7 @@ class Submit(Cluster):
             (self.folder / "told").unlink()
 
     def test_a_name_is_no_mark_no_pattern_and_no_command(self):
-        """What GNU parallel is told and a shell reads holds no word of a study; Slurm's directives neither."""
+        """Neither the arguments of GNU parallel that a shell reads nor Slurm's directives contain any text of a study."""
         parallel = shutil.which("parallel")
         names = ["a@RUN@b", "@SHARDS@", "a b", "{}", "{#} {= s:a:b: =}", "$(touch canary)", "`touch canary`;touch canary", "it's \"odd\" \\",
                  "#SBATCH x", "\u00e4 {}", "a\nb", "a\tb\x1b"]
@@ -236,7 +236,7 @@ class Shards(Cluster):
         self.assertEqual(len(merged["conflicts"]), 3)
         self.assertIn("c/shards/0001 and d/shards/0001 have different results", merged["conflicts"][0])
         self.assertFalse((self.folder / "m").exists())
-        # The same within one shard: what a start found that another one had found otherwise.
+        # The same within one shard: one start found other values than an earlier start.
         for key in self.keys("c/shards/0001"):
             stored.change(self.folder / "c/shards/0001", "INSERT INTO conflicts VALUES (?, 'another', '', '')", key)
         merged = self.merge("c", "--out", "m", expect=6)
@@ -281,13 +281,13 @@ class Bench(Cluster):
 
 
 class Tasks(Cluster):
-    """Tasks of Slurm's that are preempted, out of time or killed."""
+    """Slurm tasks that are preempted, out of time or killed."""
 
     def packed(self):
         return sum(len(stored.keys(shard)) for shard in (self.folder / "c/shards").glob("*"))
 
     def job(self):
-        """The job script of shard 1 as a task of Slurm's, with a scontrol that only notes what it is told."""
+        """Runs the job script of shard 1 as a Slurm task, with a scontrol that only logs its arguments."""
         (self.folder / "bin").mkdir()
         (self.folder / "bin/scontrol").write_text(f'#!/bin/bash\necho "$*" >{self.folder}/told\n')
         (self.folder / "bin/scontrol").chmod(0o755)

@@ -1,5 +1,4 @@
-// A cluster folder: how its shards are planned, what a job script asks for, how far it is, and what
-// a merge makes of it.
+// Cluster folders: planned shards, resources requested by job scripts, progress, and merging.
 #include <gtest/gtest.h>
 
 #include "core/io/text_file.hpp"
@@ -22,7 +21,7 @@ std::string key(int number) { return std::string(60, 'a') + std::to_string(1000 
 
 class Folder : public testing::Test {
  protected:
-  /// A folder in which case `n` is planned for a shard each.
+  /// Creates a folder with one planned shard per entry; entry `n` is its case.
   fs::path make(const std::string& name, const std::vector<int>& shards) const {
     const fs::path folder = root_.path() / name;
     make_folder(folder / "shards");
@@ -34,7 +33,7 @@ class Folder : public testing::Test {
              "case " + std::to_string(n), shards[n]);
     return folder;
   }
-  /// Keeps a record of case `n` in the store.
+  /// Stores a record of case `n`.
   static void put(const fs::path& store, int n, double value = 1, Kind kind = Kind::ok) {
     Record record = synthetic::iterations("hang").front();
     record.key = key(n);
@@ -46,7 +45,7 @@ class Folder : public testing::Test {
   const Scratch root_;
 };
 
-/// The message of an InputError; "": none.
+/// Message of the InputError that `work` throws; "" if it throws none.
 template <class Work>
 std::string refused(const Work& work) {
   try {
@@ -57,8 +56,8 @@ std::string refused(const Work& work) {
   return "";
 }
 
-// 64 MB for the program, 2 kB for each vertex and link of the largest case; a tenth of a second to
-// start, 15 ns for each visit.
+// The program needs 64 MB plus 2 kB for each vertex and link of the largest case. It takes a tenth
+// of a second to start and 15 ns per visit.
 TEST_F(Folder, APlanAsksForWhatItsLargestShardNeeds) {
   EXPECT_EQ(estimated_seconds(0), 0.1);
   EXPECT_NEAR(estimated_seconds(1e9), 15.1, 1e-9);
@@ -104,7 +103,7 @@ TEST(JobScript, AsksForTimeAndMemoryOfAShard) {
   EXPECT_NE(other.find("program " + program_digest().substr(0, 10)), std::string::npos);
   EXPECT_EQ((text + other).find("@"), text.find("USR1@60") + 4) << "every mark is filled";
   Plan odd = plan;
-  odd.study = "a@RUN@b@SHARDS@@BUILD@";  // a value is no text to fill in
+  odd.study = "a@RUN@b@SHARDS@@BUILD@";  // placeholders inside a value must not be replaced
   EXPECT_NE(job_script(odd, Scheduler::parallel).find("run ./a@RUN@b@SHARDS@@BUILD@.toml "),
             std::string::npos);
   EXPECT_EQ(std::ranges::count(readme(plan, Scheduler::slurm), '\n'), 5);
@@ -176,8 +175,8 @@ TEST_F(Folder, AMergeTakesResultsBeforeFailures) {
   EXPECT_EQ(more.missing[0].id, "case 4");
 }
 
-// A case that failed in one folder and ran in two: the two are compared, in whatever order they
-// come.
+// A case failed in one folder and ran in two others: those two results are compared for every order
+// of merging.
 TEST_F(Folder, AFailureDoesNotHideThatTwoResultsDiffer) {
   const fs::path folders[] = {make("a", {1}), make("b", {1}), make("c", {1})};
   put(shard_folder(folders[0], 1), 0, 0, Kind::timeout);
@@ -225,7 +224,7 @@ TEST_F(Folder, AMergeNamesConflictsAndWhatOneSideLacks) {
             "case 9: in a/shards/0001, but not planned (another study or build)\n");
   EXPECT_EQ(refused([&] { Merge({root_.path()}); }),
             root_.path().string() + ": has no 'results.db'");
-  // Results folders of `taut run --shard` know their studies.
+  // Results folders of `taut run --shard` contain their studies.
   const fs::path results = root_.path() / "r";
   put(results, 0);
   EXPECT_EQ(sentences({results}, nothing),

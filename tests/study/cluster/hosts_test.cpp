@@ -1,4 +1,4 @@
-// Cost that two hosts measured: each keeps its own, nothing is pooled, nothing is compared across.
+// Costs measured on two hosts: each host keeps its own, without pooling or comparison across hosts.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@ Study two_cases() {
   return study;
 }
 
-/// Two cases in a store, timed by as many hosts as there are costs of a step [s].
+/// Two cases in a store, timed on one host per given cost of a step [s].
 class Timed {
  public:
   explicit Timed(const std::vector<std::pair<std::string, double>>& hosts)
@@ -49,7 +49,7 @@ class Timed {
       keep(store, session);
     }
   }
-  /// CPU seconds per step of each case in the page's model.
+  /// CPU seconds per step of each case in the model of the page.
   std::vector<double> costs() const {
     const auto model = nlohmann::json::parse(make_model(stored_results({study}, store)));
     std::vector<double> all;

@@ -1,5 +1,5 @@
-// A study of many cheap cases: planned, kept by shards, merged, read back, reported. Prints what
-// each part costs; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/cluster.md.
+// Study of many cheap cases: planned, stored by shards, merged, read back, reported. Prints the
+// cost of each part; TAUT_SCALE_CASES=100000 makes the table of results/benchmarks/cluster.md.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the process holds now (VmRSS), or held at most since forget_peak() (VmHWM) [kB].
+/// Memory that the process holds now (VmRSS), or the most since forget_peak() (VmHWM) [kB].
 long held(const std::string& what) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -46,8 +46,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// The study, in a file: `taut report ROOT/many.toml --out ROOT/merged` reads what is left
-/// here.
+/// The study, also written to a file, so that `taut report ROOT/many.toml --out ROOT/merged` can
+/// read what this test leaves behind.
 Study many(int cases, const fs::path& root) {
   const std::string seeds = std::to_string(cases / 100);
   make_folder(root);
@@ -59,7 +59,7 @@ Study many(int cases, const fs::path& root) {
   return load_study((root / "many.toml").string());
 }
 
-/// One small result, which every case of a study gets under its own name and settings.
+/// One small result, stored for every case of a study under the case's own name and settings.
 class Copies {
  public:
   explicit Copies(const Study& study)
@@ -81,7 +81,7 @@ class Copies {
   CaseFiles files_;
 };
 
-/// What a report of the study holds at most beside what was held before [bytes].
+/// Peak memory of a report beyond what was held before [bytes].
 double peak_of_report(const Study& study, const Store& store) {
   forget_peak();
   const long before = held("VmRSS");
@@ -99,12 +99,12 @@ TEST(StoreScale, AReportHoldsFewBytesOfACase) {
   Copies copies(all);
   store.together(
       [&] { each_case(all, [&](Case&& one) { copies.put(store, one.key, one.id, one.spec); }); });
-  // What a page holds of some cases it holds of the first 4000: beyond them only records grow.
+  // A page shows details of the first 4000 cases only: beyond them only records grow.
   const double first = peak_of_report(few, store), both = peak_of_report(all, store);
   ASSERT_GT(first, 1e6) << "the peak was not measured";
   const double of_a_case = (both - first) / 4200;
   std::cout << "bytes of a case: " << of_a_case << ", of the first 4200 in all: " << first << '\n';
-  // 2.2 kB of the values with a role; 11.6 of all 118.
+  // Values with a role take 2.2 kB; all 118 values would take 11.6 kB.
   EXPECT_LT(of_a_case, 4000) << "of some hundred values each, those with a role";
 }
 

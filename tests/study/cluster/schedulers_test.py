@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """128 cases in 8 shards under the real schedulers, with a node and a task that die in the middle.
 
-A shard's last cases are held until a test has done to it what it does in the middle (faulty:mode=held), however fast the machine is.
-Slurm (slurmctld, two slurmd, munged) runs on the loopback address as whoever calls this, in a folder of its own.
-Debian: slurmctld, slurmd, slurm-client, munge, parallel; without them the tests are skipped (77) and say so."""
+The last cases of a shard wait (faulty:mode=held) until the test has interfered with it, however fast the machine is.
+Slurm (slurmctld, two slurmd, munged) runs on the loopback address as the calling user, in a folder of its own.
+Debian: slurmctld, slurmd, slurm-client, munge, parallel; without them the tests are skipped (77) with a message."""
 
 import contextlib
 import json
@@ -23,7 +23,7 @@ from command_line import BINARIES, CommandLine, facts_of, rows_of  # noqa: E402
 
 SLURM = ("slurmctld", "slurmd", "sbatch", "munged")
 PROGRAM = "taut-faulty"
-LONGEST = 130  # s, of a test: whatever a scheduler waits for, nothing waits longer for it
+LONGEST = 130  # s, limit of a test, for every wait on a scheduler
 os.environ["PATH"] += ":/usr/sbin:/sbin"
 
 CONFIGURATION = """
@@ -79,7 +79,7 @@ class Schedulers(CommandLine):
         signal.alarm(LONGEST)
         self.addCleanup(signal.alarm, 0)
         os.environ["TAUT"] = str(BINARIES / PROGRAM)
-        self.study(scenes=["./small.toml"],  # the largest estimate runs first: what has sweeps before what is held
+        self.study(scenes=["./small.toml"],  # larger estimates run first: cases with sweeps before those that wait
                    solvers=["jakobsen:order=mesh,substeps=1", "bullet", *(f"faulty:mode=held,variant={i}" for i in range(32))],
                    rest='set = ["cloth.grid=[12, 12]"]\naxes.iterations = { from = 2, to = 49, steps = 48 }\n')
 
@@ -96,12 +96,12 @@ class Schedulers(CommandLine):
         return "".join(f"\n== {file.name}\n{file.read_text()[-1500:]}" for file in logs)
 
     def sessions(self):
-        """Starts of shards of which something is stored."""
+        """Starts of shards that have stored something."""
         return sorted(row["session"] for shard in (self.folder / "c/shards").glob("*") if stored.keys(shard)
                       for row in stored.query(shard, "SELECT session FROM sessions"))
 
     def tasks(self, node=None):
-        """The processes of `taut run` of this test, by number."""
+        """Process ids of this test's `taut run`."""
         found = []
         for entry in pathlib.Path("/proc").glob("[0-9]*"):
             try:
@@ -116,7 +116,7 @@ class Schedulers(CommandLine):
         return found
 
     def let_go(self):
-        """What is held goes on, and whatever comes is not held."""
+        """Lets waiting cases continue; later ones do not wait."""
         for folder in (self.folder, self.folder / "c"):
             (folder / "go-on").touch()
 
@@ -190,7 +190,7 @@ class Slurm(Schedulers):
         return subprocess.run(words, capture_output=True, text=True).stdout
 
     def power_off(self, node):
-        """The node's daemon and everything that it runs, at once."""
+        """Kills the node's daemon and everything that it runs, all at once."""
         mine = [int(entry.name) for entry in pathlib.Path("/proc").glob("[0-9]*")
                 if self.told(entry, f"SLURMD_NODENAME={node}")]
         self.daemons[node].kill()
@@ -224,7 +224,7 @@ class Slurm(Schedulers):
         self.assertRegex(out, r"cases +128")
         self.wait_for(lambda: len(self.sessions()) >= 3 and self.tasks("n1") and self.tasks("n2"))
         job = self.ask("squeue", "-h", "-t", "R", "-w", "n2", "-o", "%F_%a").split()[0]
-        self.ask("scontrol", "requeue", job)  # what a preemption does: SIGTERM, and back into the queue
+        self.ask("scontrol", "requeue", job)  # as a preemption does: SIGTERM, then back into the queue
         self.wait_for(lambda: self.tasks("n1") and self.tasks("n2"))
         os.kill(self.tasks("n2")[0], signal.SIGKILL)
         self.power_off("n1")
@@ -270,7 +270,7 @@ class Parallel(Schedulers):
             job.communicate()
 
     def test_a_task_dies_and_the_rest_is_resumed(self):
-        ssh = self.folder / "ssh"  # a login without a daemon: what it is told, it does here
+        ssh = self.folder / "ssh"  # fake ssh without a daemon: runs the command on this machine
         ssh.write_text('#!/bin/bash\nwhile [[ $1 == -* ]]; do shift; done\nhost=$1; shift; [[ $1 != -- ]] || shift\necho "$host" >>' +
                        f'{self.folder}/hosts.log\nexport SHELL=/bin/bash  # as a login does; GNU parallel starts nothing without it, and exits 0\n'
                        'exec bash -c "$*"\n')

@@ -1,4 +1,4 @@
-// A search for frontiers that is ended early says so and keeps nothing.
+// An interrupted search for frontiers says so and stores nothing.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -12,12 +12,13 @@
 namespace taut::interrupted_test {
 namespace {
 
-/// 0: nothing was found and it says that it was interrupted; else what is wrong.
+/// Returns 0 if the search was interrupted and stored nothing, 1 if it returned frontiers, 2 if it
+/// stored results.
 int search(CampaignOptions options, bool signal) {
   const Scratch scratch;
   Store store(scratch.path() / "results");
   store.prepare();
-  static const GracefulStop stop;  // the signal may be served later than the search takes
+  static const GracefulStop stop;  // the signal may arrive after the search has ended
   if (signal) raise(SIGTERM);
   const auto found =
       find_frontiers("xpbd:substeps=2", store, options, [](std::size_t, std::size_t) {});

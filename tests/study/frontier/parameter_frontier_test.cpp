@@ -1,5 +1,4 @@
-// What is wrong with a run, how a setting becomes cases, and frontiers against those that were
-// kept.
+// Symptoms of a run, the cases that a setting generates, and frontiers compared with stored ones.
 #include "experiments/study/frontier/parameter_frontier.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +40,7 @@ TEST(Symptoms, EachIsSeenInItsOwnMetricAndNowhereElse) {
   EXPECT_EQ(of({{"drift.max", 0.11}}), Names{});
   EXPECT_EQ(of({{"popping.max", 1000}}), Names{"jitters"});
   EXPECT_EQ(of({{"popping.max", 970}}), Names{}) << "below 100 g";
-  // The swing sets free 10.4 % of m g L.
+  // The swing releases 10.4 % of m g L.
   EXPECT_EQ(of({{"energy.peak", 0.006}}), Names{"gains energy"});
   EXPECT_EQ(of({{"energy.peak", 0.004}}), Names{});
   EXPECT_EQ(of({{"energy.mean", -0.056}}), Names{"loses energy"});
@@ -78,7 +77,7 @@ TEST(Symptoms, AsymmetryIsTheDistanceFromTheMirrorImage) {
   EXPECT_EQ(asymmetry(*blown.scene, blown.scene->start.x), 0) << "wind from the side";
 }
 
-// The mirror is the plane across the middle of the first side, wherever that is.
+// The mirror plane passes through the middle of the first side, wherever that is.
 TEST(Symptoms, AsymmetryAsksForASceneThatIsSymmetric) {
   const auto of = [](const SceneSettings& changes) {
     const Case one = make_case({"swing", changes, "jakobsen"});
@@ -125,12 +124,12 @@ TEST(FrontierSettings, StartWhereTheyAreEasyAndMakeCases) {
   EXPECT_THROW(frontier_settings("nobody"), InputError);
 }
 
-// Where a search begins it has changed nothing yet: the scene is the standard one, the solver the
-// one that was asked about.
+// A search starts from the unchanged question: the standard scene and the solver asked about.
 TEST(FrontierSettings, BeginAtWhatTheStandardSceneHas) {
   for (const std::string solver : {"jakobsen", "bullet:iterations=4", "mass-spring", "xpbd"})
     for (const FrontierSetting& setting : frontier_settings(solver)) {
-      if (!setting.lacks.empty() || setting.name == "sweeps") continue;  // these begin with many
+      // these ranges start at large numbers
+      if (!setting.lacks.empty() || setting.name == "sweeps") continue;
       const FrontierQuestion& question = setting.question;
       const Case base = make_case(question.base),
                  start = make_case(question.at(question.range.from));
@@ -144,7 +143,7 @@ TEST(FrontierSettings, BeginAtWhatTheStandardSceneHas) {
     }
 }
 
-// From where it is easy to where it is absurd. Downwards a search goes up in 1/setting.
+// Ranges go from easy to absurd. A search downwards ascends in 1/setting.
 TEST(FrontierSettings, GoThisFar) {
   const auto all = [](const std::string& solver) {
     std::string text;
@@ -210,7 +209,8 @@ TEST(FrontierSettings, TheoriesAreClosedForms) {
   EXPECT_FALSE(frontier_settings("jakobsen")[5].theory) << "continuous detection knows no limit";
   for (const FrontierSetting& setting : frontier_settings("mass-spring"))
     if (setting.name == "time step") {
-      // Below 2/w: a 20 x 20 grid with both diagonals holds to 0.71 sqrt(m/k) without its borders.
+      // Below 2/w: without its borders a 20 x 20 grid with both diagonals is stable up to 0.71
+      // sqrt(m/k).
       EXPECT_NEAR(setting.theory->value / 32 / std::sqrt(0.2 / 64 / 50), 0.7, 0.2);
     }
 }

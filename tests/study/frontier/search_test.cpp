@@ -1,5 +1,5 @@
-// Where a setting stops being stable: the search on made-up outcomes, then springs and sweeps
-// beside their closed forms.
+// The value of a setting at which stability ends: the search on made-up outcomes, then springs and
+// sweeps against their closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -126,8 +126,8 @@ TEST(Frontier, QuestionsBecomeCases) {
   EXPECT_THROW(range_of(base, "dt", 0.5, 0.1), InputError);
 }
 
-// Nine values, ends included, evenly spread: by ratio if they begin above zero. Then halves of the
-// bracket until it is narrower than a hundredth of its upper end.
+// Nine values are tried, spread evenly with the ends included, or by equal ratios if the range
+// starts above zero. Bisection then narrows the bracket to less than a hundredth of its upper end.
 TEST(Frontier, IsSoughtInEvenSteps) {
   const auto tried = [](const SearchRange& range, double border) {
     std::vector<double> all;
@@ -151,7 +151,7 @@ TEST(Frontier, IsSoughtInEvenSteps) {
       << "2 is a fifth below 2.5; then four values from there to the next that was tried";
 }
 
-// Values without an answer are passed over, and a bracket ends at one.
+// Values without a result are skipped, and a bracket may end at one.
 TEST(Frontier, KnowsWhatIsAnAnswer) {
   const auto probed = [](Kind kind, const std::string& reason, const std::string& symptom = "") {
     return Probed{{{kind, reason, -1, -1}, symptom}, 1};
@@ -207,7 +207,7 @@ TEST(Frontier, ARangeIsTheParametersOwnOrHasToBeGiven) {
             "has a dot, as \"wind.strength\")");
 }
 
-// Springs are stable below 2/w, over-relaxation below 4/3 on one link (see below).
+// Springs are stable below 2/w, over-relaxation on one link below 4/3 (see below).
 TEST(Frontier, TheoryEndsWhereTheRangeDoes) {
   const auto predicted = [](double from, double to) {
     return *predicted_frontier({{"chain",
@@ -229,7 +229,8 @@ TEST(Frontier, TheoryEndsWhereTheRangeDoes) {
   EXPECT_EQ(above.law, inside.law);
 }
 
-// A chain of the same mass in more pieces has lighter ones: the last number of them that is stable.
+// More pieces of a chain of the same mass are lighter: theory names the last stable number of
+// pieces.
 TEST(Frontier, TheoryOfWholeNumbersIsTheLastThatIsStable) {
   for (const char* stiffness : {"20", "23", "31", "40"}) {
     const FrontierQuestion question{{"chain",
@@ -266,7 +267,7 @@ TEST(LinearStability, OneMassOnASpring) {
   const std::string spring = "mass-spring:substeps=1,structural=40";
   EXPECT_NEAR(margin(scene, spring, 2 / w), 1, 1e-9);
   EXPECT_NEAR(margin(scene, "mass-spring:substeps=4,structural=40", 8 / w), 1, 1e-9);
-  // With the share q of a velocity left by the air: w^2 h^2 = 2 (1 + q), q = e^(-damping h).
+  // The air leaves the share q of a velocity: w^2 h^2 = 2 (1 + q), q = e^(-damping h).
   Scene in_air = scene;
   in_air.damping = 3;
   const double h = 1.9 / w, q = std::exp(-3 * h);
@@ -277,8 +278,8 @@ TEST(LinearStability, OneMassOnASpring) {
   EXPECT_NEAR(margin(scene, spring + drag, 2 / w * (std::sqrt(1 + zeta * zeta) - zeta)), 1, 1e-5);
   EXPECT_NEAR(margin(scene, spring + drag + ",drag-at=central", 2 / w), 1, 1e-5);
   EXPECT_GT(margin(scene, spring + ",integrator=explicit-euler", 1e-3), 1);
-  // Both: x' = x + (q (1 - b) (x - x_before) - w^2 h^2 x)/(1 + b), b = c h/(2m), turns around at
-  // w^2 h^2 = 2 (1 + q) + 2 b (1 - q).
+  // With air and drag, x' = x + (q (1 - b) (x - x_before) - w^2 h^2 x)/(1 + b), b = c h/(2m),
+  // alternates its sign at w^2 h^2 = 2 (1 + q) + 2 b (1 - q).
   const double step = 0.05, c = 0.7, b = c * step / (2 * m), left = std::exp(-3 * step);
   const double stiff = m * (2 * (1 + left) + 2 * b * (1 - left)) / (step * step);
   EXPECT_NEAR(
@@ -298,7 +299,7 @@ TEST(LinearStability, DragHoldsExplicitEulerUpToItsClosedForm) {
   scene.dt = 1.5 * y / w2;
   const auto theory = linear_stability(scene, parse_solver(spring));
   EXPECT_NEAR(theory->growth, std::sqrt(1 - y * scene.dt + w2 * scene.dt * scene.dt), 1e-12);
-  // The invariant w^2 x^2 + v^2 + y x v of the continuous motion grows by |z|^2 in each step.
+  // The invariant of the continuous motion, w^2 x^2 + v^2 + y x v, grows by |z|^2 in each step.
   scene.start.x[1].y() -= 1e-6;
   const auto size = [&](const State& s) {
     const double x = s.x[1].y() + 1, v = s.v[1].y();
@@ -320,7 +321,8 @@ TEST(LinearStability, AChainOfSpringsHasItsClosedForm) {
   EXPECT_NEAR(margin(scene, "mass-spring:substeps=1", 2 / fastest), 1, 1e-9);
 }
 
-// Eigen's QR algorithm ends neither for large numbers, unless they are scaled, nor for none.
+// Eigen's QR algorithm does not terminate for large unscaled numbers, nor for numbers that
+// overflow.
 TEST(LinearStability, WhatCannotBeComputedIsNoTheory) {
   Scene scene = hanging_sheet(9, 7, {true, false, false});
   scene.pins.clear();
@@ -348,7 +350,8 @@ TEST(LinearStability, SweepsOfRelaxation) {
                   ->stable());
   EXPECT_FALSE(linear_stability(hung_chain(1), parse_solver(listing("iterations=1,omega=1.3334")))
                    ->stable());
-  // One link in air: z^2 - (1 + q) mu z + q mu = 0, mu = 1 - omega; its roots multiply to q mu.
+  // One link in air: z^2 - (1 + q) mu z + q mu = 0, mu = 1 - omega; the product of its roots is q
+  // mu.
   Scene in_air = hung_chain(1);
   in_air.damping = 40;
   const double mu = -0.7, q = std::exp(-40 * 0.01), half = (1 + q) * mu / 2;
@@ -364,7 +367,7 @@ TEST(LinearStability, SweepsOfRelaxation) {
   EXPECT_FALSE(linear_stability(hanging_sheet(20, 20), parse_solver(listing()))) << "too many";
 }
 
-/// Longest stable step of the scene by running it.
+/// Longest stable step of the scene, found by running it.
 Frontier measured(const Scene& scene, const std::string& solver, double from, double to) {
   return find_frontier(
       {.from = from, .to = to, .tolerance = 2e-3, .coarse = 5},

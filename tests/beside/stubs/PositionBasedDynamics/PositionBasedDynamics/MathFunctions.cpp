@@ -1,1 +1,1 @@
-// XPBD.cpp needs nothing of it here.
+// XPBD.cpp needs nothing from this file here.

@@ -1,4 +1,4 @@
-// Our stand-in for admm-elastic: the names that our adapter uses, and nodes that fall.
+// Stand-in for admm-elastic: the names that our adapter uses, and nodes that fall.
 #pragma once
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
