@@ -69,7 +69,7 @@ TAUT_TRUTH(box_of_triangles, 7, 11,
            "closed forms of a box") {
   const Vec3 half(0.3, 0.2, 0.45);
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.2, Vec3(1, 2, 3).normalized()));
-  const MeshBody body{.mesh = box_of_triangles(half), .rotation = turned};
+  const MeshBody body{.mesh = body_of_a_box(half), .rotation = turned};
   const Box box{Vec3::Zero(), half, turned};
   if (findings.wants(kStatic)) {
     Random random;
@@ -237,7 +237,7 @@ TAUT_TRUTH(thin_plate, 7, 17,
            "uniform phase of the steps; W is the plate's thickness and twice the cloth's") {
   constexpr int kPoints = 1000;
   constexpr double kPlate = 0.01, kThickness = 0.003, kSeen = kPlate + 2 * kThickness;
-  const Shape plate = MeshBody{.mesh = box_of_triangles(Vec3(1, kPlate / 2, 1))};
+  const Shape plate = MeshBody{.mesh = body_of_a_box(Vec3(1, kPlate / 2, 1))};
   for (const double way : {0.7 * kSeen, 1.6 * kSeen, 4 * kSeen}) {
     std::vector<Vec3> x;
     for (int k = 0; k < kPoints; ++k)

@@ -9,7 +9,7 @@
 namespace taut {
 
 /// A box of 12 triangles about the origin; half: its half extents [m].
-inline std::shared_ptr<const TriangleMesh> box_of_triangles(const Vec3& half) {
+inline std::shared_ptr<const TriangleMesh> body_of_a_box(const Vec3& half) {
   std::vector<Vec3> corners;
   for (const int v : {0, 1, 2, 3, 4, 5, 6, 7})
     corners.emplace_back((v & 1) != 0 ? half.x() : -half.x(), (v & 2) != 0 ? half.y() : -half.y(),

@@ -121,7 +121,7 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
   const Collider plate{Box{Vec3::Zero(), Vec3(2, thickness / 2, 2)}, {}, 0};
   const Collider ball{Ball{Vec3::Zero(), thickness / 2}, {}, 0};
   const Collider capsule{Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), thickness / 2}, {}, 0};
-  const Collider body{MeshBody{.mesh = box_of_triangles(Vec3(2, thickness / 2, 2))}, {}, 0};
+  const Collider body{MeshBody{.mesh = body_of_a_box(Vec3(2, thickness / 2, 2))}, {}, 0};
   const Collider thick{Box{Vec3::Zero(), Vec3(2, 0.03, 2)}, {}, 0};
   Scene s = above_plane(1, Vec3::UnitY(), 0);
   s.colliders = {plate};

@@ -74,7 +74,7 @@ TAUT_TRUTH(turning_disc, 7, 10,
   const int slipping = static_cast<int>(0.5 * in_step / s.dt),
             stuck = static_cast<int>(1.5 * in_step / s.dt) - slipping;
   // on a disc that is a plane, and on top of a box of 12 triangles
-  const MeshBody box{.mesh = box_of_triangles({1, 0.1, 1}), .center = {0, -0.1, 0}};
+  const MeshBody box{.mesh = body_of_a_box({1, 0.1, 1}), .center = {0, -0.1, 0}};
   const auto on = [&](const Shape& shape, const std::string& solver, const std::string& where) {
     s.colliders = {{shape, turn, mu}};
     if (!can_run(findings, solver, s)) return;

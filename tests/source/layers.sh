@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fails when an #include runs against the architecture, a library leaks out of the files that may know it, or two types
-# of one namespace share a name: a linker takes the inline functions of one of them for both, and nobody warns.
+# or inline functions of one namespace share a name: a linker takes those of one of them for both, and nobody warns.
 # Usage: layers.sh [ROOT]; `layers.sh --self-test` plants a violation of every rule in a copy and expects red.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
@@ -57,7 +57,7 @@ openssl/                | ^experiments/(case|report/chart)/.*\.cpp
 core/model/(solver|params)\.hpp | ^(core|bullet_ref|tests|experiments/[^m])
 '
 
-# awk: types at the margin of a file, outside unnamed namespaces
+# awk: types and inline functions at the margin of a file, outside unnamed namespaces
 twice='
 FNR == 1 { space = ""; own = 0 }
 /^namespace \{/ { own = 1 }
@@ -65,6 +65,15 @@ FNR == 1 { space = ""; own = 0 }
 /^namespace [a-z:]+ \{/ { space = $2 }
 !own && /^(struct|class|enum class) [A-Za-z]+( final)?( :| \{)/ {
   name = space "::" ($1 == "enum" ? $3 : $2)
+  if (name in seen && seen[name] != FILENAME) printf "%s:%d: %s is also in %s\n", FILENAME, FNR, name, seen[name]
+  seen[name] = FILENAME
+}
+!own && /^inline [^=;]*[A-Za-z_]+\([^()]*\)/ && !/operator/ {
+  match($0, /[ &*][A-Za-z_0-9]+\([^()]*\)/)
+  name = substr($0, RSTART + 1, RLENGTH - 1)
+  gsub(/ [A-Za-z_0-9]+,/, ",", name)  # names of parameters
+  sub(/ [A-Za-z_0-9]+\)$/, ")", name)
+  name = space "::" name
   if (name in seen && seen[name] != FILENAME) printf "%s:%d: %s is also in %s\n", FILENAME, FNR, name, seen[name]
   seen[name] = FILENAME
 }'
@@ -162,6 +171,7 @@ core/solver/planted.hpp|<Eigen/Sparse>
 core/model/planted.cpp|<nlohmann/json.hpp>
 experiments/case/planted.hpp|namespace taut {;struct Scene {
 experiments/report/planted.cpp|namespace taut {;enum class TruthVerdict {
+tests/planted.hpp|namespace taut {;inline int body_of_a_box(const Vec3& size) {
 PLANTED
   return $failures
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/model/text.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 
 namespace taut {
