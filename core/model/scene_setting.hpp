@@ -33,11 +33,11 @@ using SceneSettings = std::vector<SceneSetting>;
 
 SceneSettings scene_settings(const std::vector<std::string>& texts);
 
-/// The last of that key, which is the one that counts; nullptr: there is none.
+/// The last setting with this key, which is the one that applies; nullptr if none has it.
 const SceneSetting* find_setting(const SceneSettings&, std::string_view key);
-/// Without those of that key.
+/// The settings without those of this key.
 SceneSettings without(SceneSettings, std::string_view key);
-/// With more, each in the place of those of the same key.
+/// The settings with `more`, each in place of those of the same key.
 SceneSettings replaced(SceneSettings, const SceneSettings& more);
 
 }  // namespace taut
