@@ -164,7 +164,7 @@ RunResult score(const py::object& scene, const py::object& positions, const py::
                                static_cast<std::size_t>(at_rest.shape(0)), "rest");
   }
   if (!is_file && !allow_nan) check_finite(*frames.positions);
-  const auto load = [&](const std::vector<std::string>& with) { return given.read(with); };
+  const auto load = [&](const SceneSettings& with) { return given.read(with); };
   const Scene timed = load(fitted(load, given.settings, frames));
   return watched(timed, every,
                  [&](const RunOptions& options) { return taut::score(timed, frames, options); });
