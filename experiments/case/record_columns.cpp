@@ -1,5 +1,7 @@
 #include "experiments/case/record_columns.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <type_traits>
 
 namespace taut {
@@ -7,6 +9,7 @@ namespace taut {
 namespace {
 
 constexpr bool kResult = true, kMayLack = true;
+constexpr Unit kMilliseconds{"s", "ms", 1e3};
 
 const RecordColumn kColumns[] = {
     {"key", "key", &Record::key, "SHA-256 of everything that decides the result"},
@@ -20,15 +23,17 @@ const RecordColumn kColumns[] = {
     {"solver", "solver", &Record::solver, "name of the solver"},
     {"params", "parameters", &Record::params, "all parameters of the solver, as text"},
     {"substeps", "substeps", &Record::substeps,
-     "substeps of a step; -1: the solver names no parameter for them", !kResult, kMayLack},
+     "substeps of a step; -1: the solver names no parameter for them", !kResult, kMayLack,
+     "substeps per step"},
     {"sweeps", "sweeps", &Record::sweeps,
-     "sweeps of a substep; -1: the solver names no parameter for them", !kResult, kMayLack},
+     "sweeps of a substep; -1: the solver names no parameter for them", !kResult, kMayLack,
+     "sweeps per substep"},
     {"work_parameters", "work_parameters", &Record::work_parameters,
      "the parameters that set these two"},
-    {"dt", "dt", &Record::dt, "time step [s]"},
-    {"steps", "steps", &Record::steps, "of the whole case"},
-    {"vertices", "vertices", &Record::vertices, "of the cloth"},
-    {"links", "links", &Record::links, "of the cloth"},
+    {"dt", "dt", &Record::dt, "time step [s]", !kResult, !kMayLack, "time step", kMilliseconds},
+    {"steps", "steps", &Record::steps, "of the whole case", !kResult, !kMayLack, "steps"},
+    {"vertices", "vertices", &Record::vertices, "of the cloth", !kResult, !kMayLack, "vertices"},
+    {"links", "links", &Record::links, "of the cloth", !kResult, !kMayLack, "links"},
     {"status.kind", "status", &Status::kind,
      "ok, exploded, unsettled, extreme, unsupported, timeout, oom, crash, protocol, error",
      kResult},
@@ -38,8 +43,8 @@ const RecordColumn kColumns[] = {
      kResult, kMayLack},
     {"values", "", &Record::values,
      "metric values by name; `taut list metrics` says what each is and its unit", kResult},
-    {"projections", "projections", &Record::projections, "constraint projections per step",
-     kResult},
+    {"projections", "projections", &Record::projections, "constraint projections per step", kResult,
+     !kMayLack, "constraint projections per step"},
     {"step_cost", "passes", &Record::step_cost,
      "passes of a step: `pass`, `items`, `repeats`, `bytes` that exist because of it, whether it "
      "`projections` constraints",
@@ -69,5 +74,20 @@ std::string_view RecordColumn::type() const {
 }
 
 std::span<const RecordColumn> record_columns() { return kColumns; }
+
+const RecordColumn* find_axis(std::string_view json) {
+  const auto found = std::ranges::find(kColumns, json, &RecordColumn::json);
+  return found == std::end(kColumns) || found->title.empty() ? nullptr : found;
+}
+
+double number_in(const Record& record, const RecordColumn& column) {
+  const double number = with_member(record, column, [](const auto& value) {
+    if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>)
+      return static_cast<double>(value);
+    else
+      return std::numeric_limits<double>::quiet_NaN();
+  });
+  return column.may_lack && number < 0 ? std::numeric_limits<double>::quiet_NaN() : number;
+}
 
 }  // namespace taut

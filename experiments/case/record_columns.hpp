@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "experiments/case/record.hpp"
+#include "experiments/metrics/metric.hpp"
 
 // The fields of a record, a row for each. The table makes its JSON
-// (record_io), its row in a results file (experiments/results), `taut list record` and, by
-// tests/cli/keys_test.py --write, the tables of the documents. A new field is a member of Record
-// and a row here. Raise kRecordSchema and kSchemaVersion once per release that adds fields: every
-// stored result is then computed again.
+// (record_io), its row in a results file (experiments/results), its axis in a chart, `taut list
+// record` and, by tests/cli/keys_test.py --write, the tables of the documents. A new field is a
+// member of Record and a row here. Raise kRecordSchema and kSchemaVersion once per release that
+// adds fields: every stored result is then computed again.
 
 namespace taut {
 
@@ -30,9 +31,11 @@ struct RecordColumn {
   std::string_view json;    ///< its key; "status.kind": "kind" in the object "status"
   std::string_view column;  ///< in the table `cases`; "": the field has its own table
   Member member;
-  std::string_view help;   ///< one line
-  bool is_result = false;  ///< part of result_digest(): the same key must always give the same
-  bool may_lack = false;   ///< optional: -1 is stored as NULL; "" is left out of the JSON
+  std::string_view help;        ///< one line
+  bool is_result = false;       ///< part of result_digest(): the same key must always give the same
+  bool may_lack = false;        ///< optional: -1 is stored as NULL; "" is left out of the JSON
+  std::string_view title = "";  ///< of an axis of a chart; "": the field is on none
+  Unit unit = kNumber;
 
   std::string_view type() const;  ///< "text", "number", "whole number", "JSON"
   bool may_be_null() const { return may_lack && type() == "whole number"; }
@@ -40,6 +43,10 @@ struct RecordColumn {
 };
 /// In the order of the documents.
 std::span<const RecordColumn> record_columns();
+/// The column of this JSON key that may be an axis of a chart; null: there is none.
+const RecordColumn* find_axis(std::string_view json);
+/// The record's number in this column; NaN if the record lacks it.
+double number_in(const Record&, const RecordColumn&);
 
 // A column's member of a record, const as the record is.
 template <class AnyRecord, class Value>

@@ -13,6 +13,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/record_columns.hpp"
 #include "experiments/case/run_case.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/text.hpp"
@@ -76,24 +77,18 @@ const SolverEntry* find_entry(std::string_view solver) {
 }
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr Unit kMilliseconds{"s", "ms", 1e3}, kCost{"s", "ms", 1e3, true, true};
+constexpr Unit kCost{"s", "ms", 1e3, true, true};
 
-/// What is no metric's value: settings, sizes and costs.
+/// What is neither a record's field nor a metric's value: settings and costs.
 struct Titled {
   std::string_view name, title;
   Unit unit;
   std::string_view help = "";
 };
 constexpr std::array kTitles{
-    Titled{"dt", "time step", kMilliseconds},
     Titled{kSweeps, "sweeps per substep", kNumber,
            "passes over all links; most solvers call the parameter iterations"},
-    Titled{kSubsteps, "substeps per step", kNumber},
-    Titled{"steps", "steps", kNumber},
     Titled{"t", "simulated time", kTime},
-    Titled{"projections", "constraint projections per step", kNumber},
-    Titled{"vertices", "vertices", kNumber},
-    Titled{"links", "links", kNumber},
     Titled{"cpu.per_second", "CPU time per simulated second", kCost,
            "median of samples that alternate between the solvers, of all threads of the process"},
     Titled{"cpu.per_step", "CPU time per step", kCost,
@@ -151,13 +146,8 @@ std::string own_parameter(std::string_view solver, std::string_view name) {
 }
 
 double value_of(const Record& record, std::string_view name) {
-  if (name == "dt") return record.dt;
-  if (name == "steps") return record.steps;
-  if (name == "vertices") return record.vertices;
-  if (name == "links") return record.links;
-  if (name == "projections") return static_cast<double>(record.projections);
-  if (name == kSubsteps && record.substeps >= 0) return record.substeps;
-  if (name == kSweeps && record.sweeps >= 0) return record.sweeps;
+  if (const RecordColumn* field = find_axis(name == kSweeps ? "sweeps" : name))
+    if (const double value = number_in(record, *field); std::isfinite(value)) return value;
   if (name == kStrainFloor) {
     const ResolvedSetting* floor = find_setting(record.resolved_settings, kStrainFloor);
     return floor ? floor->number : kNaN;
@@ -177,6 +167,8 @@ Quantity quantity(std::string_view name) {
   std::string own(name);
   if (const auto known = std::ranges::find(kTitles, name, &Titled::name); known != kTitles.end())
     return {own, std::string(known->title), known->unit, std::string(known->help)};
+  if (const RecordColumn* field = find_axis(name))
+    return {own, std::string(field->title), field->unit};
   const ValueSpec* value = find_value(name).second;
   if (!value) return {own, own};
   return {own, value->title.empty() ? title_from(name) : std::string(value->title), value->unit,
@@ -191,6 +183,8 @@ std::string range_text(const std::set<double>& values, const Quantity& q) {
 std::vector<std::string> quantity_names() {
   std::vector<std::string> names = value_names();
   for (const Titled& known : kTitles) names.emplace_back(known.name);
+  for (const RecordColumn& column : record_columns())
+    if (!column.title.empty()) names.emplace_back(column.json);
   return names;
 }
 

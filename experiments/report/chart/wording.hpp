@@ -30,11 +30,10 @@ std::string joined(const std::vector<std::string>& names);
 /// them are called.
 inline constexpr const char *kSweeps = "iterations", *kSubsteps = "substeps";
 
-/// What a record holds under `name`: "dt" [s], "steps", "vertices", "links", "projections" (per
-/// step), kSweeps, kSubsteps, any numeric parameter of its solver ("omega", "xpbd:omega"), any
-/// metric value
+/// What a record holds under `name`: a field that may be an axis ("dt", record_columns.hpp),
+/// kSweeps, any numeric parameter of its solver ("omega", "xpbd:omega"), any metric value
 /// ("stretch.rms"), kStrainFloor, any scene key that its case sets to a number ("wind.strength").
-/// NaN if it has none.
+/// NaN if it holds no such thing.
 double value_of(const Record&, std::string_view name);
 
 /// The parameter that an axis of this solver alone varies, "structural" of "xpbd:structural"; the
