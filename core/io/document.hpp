@@ -109,6 +109,7 @@ class Section {
 
   const SourceLocation& place() const { return table_.place; }
   const std::string& name() const { return name_; }
+  const std::string& scene_section() const { return scene_section_; }
   Diagnostics& diagnostics() { return diagnostics_; }
   /// The raw value; nullptr if absent.
   const Value* find(const std::string& key);

@@ -82,10 +82,10 @@ std::vector<Motion::Key> read_path(Section& section) {
   return path;
 }
 
-Motion read_motion(Section& section, std::string_view of, const Vec3& pivot) {
+Motion read_motion(Section& section, const Vec3& pivot) {
   Motion motion;
   motion.pivot = pivot;
-  read_keys(section, of, motion);
+  read_keys(section, motion);
   motion.path = read_path(section);
   return motion;
 }
@@ -108,15 +108,15 @@ Collider read_collider(Section& section, const std::filesystem::path& folder) {
   if (type.empty())
     section.know();  // without a type all keys are accepted
   else
-    std::visit([&](auto& shape) { read_keys(section, "collider", shape); }, collider.shape);
+    std::visit([&](auto& shape) { read_keys(section, shape); }, collider.shape);
   if (Box* box = std::get_if<Box>(&collider.shape)) box->rotation = read_rotation(section);
   if (MeshBody* body = std::get_if<MeshBody>(&collider.shape)) {
     body->rotation = read_rotation(section);
     read_body(section, folder, collider);
   }
-  read_keys(section, "collider", collider);
+  read_keys(section, collider);
   const Vec3 pivot = std::visit([](const auto& shape) { return middle(shape); }, collider.shape);
-  collider.motion = read_motion(section, "collider", pivot);
+  collider.motion = read_motion(section, pivot);
   section.finish();
   return collider;
 }
@@ -154,7 +154,7 @@ void read_pin_motions(Section& root, bool built, Scene& scene, Timed& timed) {
     PinMotion group;
     section.need({"vertices"});
     if (built) group.vertices = read_vertices(section, "vertices", scene.mesh);
-    group.motion = read_motion(section, "pin_motion", Vec3::Zero());
+    group.motion = read_motion(section, Vec3::Zero());
     const auto release = section.number("release", allowed_at("pin_motion.release"));
     section.finish();
     for (const int vertex : group.vertices) {
@@ -284,7 +284,7 @@ Bending read_bending(Section& section, const Fabric* fabric) {
     bending.weft = fabric->weft;
   }
   bending.direction.setZero();
-  read_keys(section, "bending", bending);
+  read_keys(section, bending);
   section.finish();
   return bending;
 }
@@ -325,27 +325,28 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   const Fabric* fabric = read_fabric(root);
   if (fabric) judge_fabric(root);
   FileKeys said;
-  const auto read = [&](const char* name, auto&... parts) {
+  const auto read = [&](const char* name, auto&... own) {  // own: a part with keys of this section
     Section section(diagnostics, part(root, name), "[" + std::string(name) + "]", name);
-    (read_keys(section, name, parts), ...);
+    read_keys(section, said);
+    read_keys(section, scene);
+    (read_keys(section, own), ...);
     return section;
   };
-  Section links = read("links", said);
+  Section links = read("links");
   read_stiffness(links, scene);
   links.finish();
-  Section cloth = read("cloth", said, scene);
+  Section cloth = read("cloth");
   const bool built =
       root.table("cloth") && read_cloth(cloth, path.parent_path(), fabric, said, scene);
   const std::optional<double> release = read_release(cloth);
   if (root.table("cloth")) cloth.finish();
-  read("forces", said, scene).finish();
+  read("forces").finish();
   if (root.table("bending") || fabric) {
     Section bending = read("bending");
     scene.bending = read_bending(bending, fabric);
   }
-  if (root.table("wind")) read("wind", said, scene.wind.emplace()).finish();
-  if (root.table("self_collision"))
-    read("self_collision", said, scene.self_collision.emplace()).finish();
+  if (root.table("wind")) read("wind", scene.wind.emplace()).finish();
+  if (root.table("self_collision")) read("self_collision", scene.self_collision.emplace()).finish();
   if (built)
     read_seams(root, scene);
   else
@@ -353,7 +354,7 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   read_colliders(root, path.parent_path(), scene);
   Timed timed;
   read_pin_motions(root, built, scene, timed);
-  Section time = read("time", said, scene);
+  Section time = read("time");
   time.finish();
   set_steps(said, time, scene);
   set_releases(release, std::move(timed), root, scene);

@@ -29,10 +29,10 @@ void read_value(Section& section, const SceneKey& key, Enumeration& value) {
   value = static_cast<Enumeration>(read_choice(section, key, static_cast<int>(value)));
 }
 
-/// Reads every key of section `of` that is a member of the part.
+/// Reads every key of the section that is a member of the part.
 template <class Part>
-void read_keys(Section& section, std::string_view of, Part& part) {
-  each_key(of, part,
+void read_keys(Section& section, Part& part) {
+  each_key(section.scene_section(), part,
            [&](const SceneKey& key, auto& value, const auto&) { read_value(section, key, value); });
 }
 

@@ -50,7 +50,7 @@ class Bytes {
   }
   void add(const Collider& c) {
     add(c.shape.index());
-    std::visit([&](const auto& shape) { add("collider", shape); }, c.shape);
+    std::visit([&](const auto& shape) { add_keys(shape); }, c.shape);
     if (const Box* box = std::get_if<Box>(&c.shape))
       for (const double q : box->rotation.coeffs()) add(q);
     if (const MeshBody* body = std::get_if<MeshBody>(&c.shape)) {
@@ -59,16 +59,16 @@ class Bytes {
       add(body->mesh->triangles());
     }
     add_motion("collider", c.motion);
-    add("collider", c);
+    add_keys(c);
     if (c.frames) add_later(*find_scene_key(kFramesKey), [&](Bytes& b) { b.add(*c.frames); });
   }
   void add(const BodyFrames& f) { add_each(f.places, f.fps); }
   void add(const Bending& b) {
     add_each(b.warp, b.weft);
-    add("bending", b);
+    add_keys(b);
   }
-  void add(const Wind& w) { add("wind", w); }
-  void add(const SelfCollision& s) { add("self_collision", s); }
+  void add(const Wind& w) { add_keys(w); }
+  void add(const SelfCollision& s) { add_keys(s); }
   void add(const Mesh& m) { add_each(m.rest, m.triangles, m.mass, m.grid); }
   void add(const State& s) { add_each(s.x, s.v); }
   template <class T>
@@ -82,17 +82,20 @@ class Bytes {
     if (value) add(*value);
   }
   void add_motion(std::string_view section, const Motion& m) {
-    add(section, m);
+    const auto visit = [&](const auto&... key) { add_key(key...); };
+    each_key(section, m, visit, keys_);
     add(m.path);
   }
-  /// Adds the keys of the section that are members of the part.
+  /// Adds the keys that are members of the part.
   template <class Part>
-  void add(std::string_view section, const Part& part) {
-    const auto visit = [&](const SceneKey& key, const auto& value, const auto& initial) {
-      if (!key.added_later()) return add(value);
-      if (key.counts(value, initial)) add_later(key, [&](Bytes& b) { b.add(value); });
-    };
-    each_key(section, part, visit, keys_);
+  void add_keys(const Part& part) {
+    const auto visit = [&](const auto&... key) { add_key(key...); };
+    each_key(part, visit, keys_);
+  }
+  template <class Value>
+  void add_key(const SceneKey& key, const Value& value, const Value& initial) {
+    if (!key.added_later()) return add(value);
+    if (key.counts(value, initial)) add_later(key, [&](Bytes& b) { b.add(value); });
   }
   /// Adds a key that was added later and is present, with its name and its position among the
   /// others.
@@ -194,8 +197,7 @@ Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
   bytes.add(s.colliders);
   bytes.add(s.wind);
   bytes.add(s.self_collision);
-  bytes.add("forces", s);
-  bytes.add("cloth", s);
+  bytes.add_keys(s);
   bytes.add(s.dt);
   bytes.add(s.steps);
   // Stiffness is older than add_later(). A scene without it keeps the bytes that it had before

@@ -14,6 +14,7 @@
 // Keys of a scene file, a row for each. The table drives the reader (core/io), the bytes of a
 // scene's digest (content()), the file that external programs get, `taut list keys`, the tables of
 // experiments/scenes/README.md, the ranges of `taut frontier`, and what `taut require` leaves out.
+// It alone says which section has which members of a Scene and of its parts.
 
 namespace taut {
 
@@ -131,19 +132,36 @@ const SceneKey* find_scene_key(std::string_view path);
 std::string content(const Scene&, std::span<const SceneKey> keys);
 std::vector<LaterKey> later_keys(const Scene&, std::span<const SceneKey> keys);
 
+/// Calls visit(key, member, default) if the key is a member of the part.
+template <class Part, class Visit>
+void visit_member(const SceneKey& key, Part& part, const std::remove_const_t<Part>& initial,
+                  const Visit& visit) {
+  std::visit(
+      [&](auto member) {
+        if constexpr (std::is_invocable_v<decltype(member), Part&>)
+          visit(key, part.*member, initial.*member);
+      },
+      key.member);
+}
+
 /// Calls visit(key, member, default) for every key of the section that is a member of the part.
 template <class Part, class Visit>
 void each_key(std::string_view section, Part& part, const Visit& visit,
               std::span<const SceneKey> keys = scene_keys()) {
   const std::remove_const_t<Part> initial{};
   for (const SceneKey& key : keys)
-    if (key.section() == section)
-      std::visit(
-          [&](auto member) {
-            if constexpr (std::is_invocable_v<decltype(member), Part&>)
-              visit(key, part.*member, initial.*member);
-          },
-          key.member);
+    if (key.section() == section) visit_member(key, part, initial, visit);
+}
+
+/// The same for the keys of all sections, in the order in which scenes are hashed: [cloth] is last.
+/// Not for a Motion: two sections have its members, and whoever has it says which.
+template <class Part, class Visit>
+void each_key(Part& part, const Visit& visit, std::span<const SceneKey> keys = scene_keys()) {
+  static_assert(!std::is_same_v<std::remove_const_t<Part>, Motion>, "of which section?");
+  const std::remove_const_t<Part> initial{};
+  for (const bool of_cloth : {false, true})
+    for (const SceneKey& key : keys)
+      if ((key.section() == "cloth") == of_cloth) visit_member(key, part, initial, visit);
 }
 
 }  // namespace taut

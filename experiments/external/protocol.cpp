@@ -36,19 +36,23 @@ requires std::is_enum_v<Enumeration> Json json_of(Enumeration value, const Scene
   return parts_of(key.choices)[static_cast<std::size_t>(value)];
 }
 
-/// Values of those keys of the section that are members of `part`.
+template <class Value>
+void add_key(Json& all, const SceneKey& key, const Value& value, const Value& initial) {
+  if (key.counts(value, initial)) all[std::string(key.name())] = json_of(value, key);
+}
+
+/// Values of the keys that are members of `part`.
 template <class Part>
-Json json_of(std::string_view section, const Part& part) {
+Json keys_of(const Part& part) {
   Json all = Json::object();
-  each_key(section, part, [&](const SceneKey& key, const auto& value, const auto& initial) {
-    if (key.counts(value, initial)) all[std::string(key.name())] = json_of(value, key);
-  });
+  each_key(part, [&](const auto&... key) { add_key(all, key...); });
   return all;
 }
 
 Json motion_of(std::string_view section, const Motion& motion) {
   if (motion.at_rest()) return nullptr;
-  Json all = json_of(section, motion), path = Json::array();
+  Json all = Json::object(), path = Json::array();
+  each_key(section, motion, [&](const auto&... key) { add_key(all, key...); });
   for (const Motion::Key& key : motion.path)
     path.push_back({{"t", key.t}, {"displacement", json_of(key.displacement)}});
   all["path"] = path;
@@ -57,8 +61,7 @@ Json motion_of(std::string_view section, const Motion& motion) {
 
 Json json_of(const Collider& collider) {
   Json one{{"type", type_name(collider.shape)}};
-  one.update(
-      std::visit([](const auto& shape) { return json_of("collider", shape); }, collider.shape));
+  one.update(std::visit([](const auto& shape) { return keys_of(shape); }, collider.shape));
   const auto turn = [&](const Eigen::Quaterniond& q) {
     one["rotation"] = {q.w(), q.x(), q.y(), q.z()};
   };
@@ -73,7 +76,7 @@ Json json_of(const Collider& collider) {
     for (const std::vector<Vec3>& x : collider.frames->places) frames.push_back(json_of(x));
     one["fps"] = collider.frames->fps;
   }
-  one.update(json_of("collider", collider));
+  one.update(keys_of(collider));
   one["motion"] = motion_of("collider", collider.motion);
   return one;
 }
@@ -253,11 +256,9 @@ std::string scene_file(const Scene& scene) {
             {"links", links},
             {"triangles", scene.mesh.triangles},
             {"colliders", colliders},
-            {"wind", scene.wind ? json_of("wind", *scene.wind) : Json()},
-            {"self_collision",
-             scene.self_collision ? json_of("self_collision", *scene.self_collision) : Json()}};
-  file.update(json_of("forces", scene));
-  file.update(json_of("cloth", scene));
+            {"wind", scene.wind ? keys_of(*scene.wind) : Json()},
+            {"self_collision", scene.self_collision ? keys_of(*scene.self_collision) : Json()}};
+  file.update(keys_of(scene));
   if (!elastic_links(scene).empty()) file["stiffness"] = stiffness(scene);
   if (!scene.releases.empty()) {
     Json& releases = file["releases"] = Json::array();
@@ -266,7 +267,7 @@ std::string scene_file(const Scene& scene) {
   }
   if (scene.bending) {
     // Its key `warp` is the direction of the warp.
-    file["bending"] = json_of("bending", *scene.bending);
+    file["bending"] = keys_of(*scene.bending);
     file["bending"].update({{"warp", scene.bending->warp},
                             {"weft", scene.bending->weft},
                             {"direction", json_of(scene.bending->direction)}});

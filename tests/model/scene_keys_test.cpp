@@ -105,6 +105,16 @@ TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
   EXPECT_GE(counted.size(), 19u);
 }
 
+// The section of a row may be any: who reads, hashes or writes a scene has no list of its own.
+TEST(SceneKeys, ThatIsAMemberCountsInWhateverSectionItStands) {
+  std::vector<SceneKey> keys(scene_keys().begin(), scene_keys().end());
+  for (SceneKey& key : keys)
+    if (key.path == "forces.damping") key.path = "time.damping";
+  Scene scene = scene_of_all();
+  scene.damping = 0.5;
+  EXPECT_NE(content(scene, keys), content(scene_of_all(), keys));
+}
+
 // Tests each key as if it had been added later. A scene with the key's default then has the content
 // from before the key, and every other value has a content of its own.
 TEST(SceneKeys, OneThatCameLaterCountsOffItsDefault) {
