@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/model/triangle_mesh.hpp"
@@ -36,6 +37,16 @@ TEST(SceneKeys, SayWhatIsAllowedAndWhatIsTheDefault) {
   EXPECT_EQ(find_scene_key("forces.damping")->name(), "damping");
   EXPECT_EQ(find_scene_key("summary")->section(), "");
   EXPECT_EQ(find_scene_key("summary")->name(), "summary");
+}
+
+// Whoever looks up a path gets the first row that has it.
+TEST(SceneKeys, OfOnePathSayTheSame) {
+  const auto said = [](const SceneKey& key) {
+    return std::tuple(key.type, key.unit, key.range.min, key.range.max, key.range.above_min,
+                      key.choices, key.example);
+  };
+  for (const SceneKey& key : scene_keys())
+    EXPECT_EQ(said(key), said(*find_scene_key(key.path))) << key.path;
 }
 
 void move(double& value) { value += 1; }
