@@ -14,6 +14,8 @@ SceneSetting::SceneSetting(std::string text) : text_(std::move(text)) {
   if (first != text_.npos) value_ = text_.substr(first, text_.find_last_not_of(" \t") + 1 - first);
 }
 
+bool is_of_scene(std::string_view name) { return name == "fabric" || name.find('.') != name.npos; }
+
 SceneSettings scene_settings(const std::vector<std::string>& texts) {
   return {texts.begin(), texts.end()};
 }

@@ -28,6 +28,10 @@ class SceneSetting {
   std::string text_, key_, value_;
 };
 
+/// Whether a setting of this name is a scene's, and no parameter of a solver: it has a dot, or it
+/// is the fabric.
+bool is_of_scene(std::string_view name);
+
 /// In the order in which they are applied.
 using SceneSettings = std::vector<SceneSetting>;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/io/document.hpp"
+#include "core/model/scene_setting.hpp"
 #include "experiments/case/case.hpp"
 
 namespace taut {
@@ -17,7 +18,7 @@ namespace taut {
 struct StudyAxis {
   std::string name;
   std::vector<std::string> values;  ///< as typed: TOML for scene keys ("\"1/64\"", "[16, 16]")
-  bool of_scene() const { return name == "fabric" || name.find('.') != std::string::npos; }
+  bool of_scene() const { return is_of_scene(name); }
   std::string solver() const {  ///< "" for all that have the parameter
     return of_solver() ? name.substr(0, name.find(':')) : "";
   }

@@ -19,6 +19,11 @@ TEST(SceneSetting, HasKeyAndValueAndTheTextAsWritten) {
   EXPECT_EQ(SceneSetting("nokey").key(), "nokey");
 }
 
+TEST(SceneSetting, OfASceneHasADotOrIsTheFabric) {
+  EXPECT_TRUE(is_of_scene("time.dt") && is_of_scene("collider.0.radius") && is_of_scene("fabric"));
+  EXPECT_FALSE(is_of_scene("dt") || is_of_scene("xpbd:structural") || is_of_scene(""));
+}
+
 TEST(SceneSetting, TheLastOfAKeyCounts) {
   const SceneSettings all{"a.b=1", "a.bc=2", "a.b = 3"};
   EXPECT_EQ(find_setting(all, "a.b"), &all[2]);

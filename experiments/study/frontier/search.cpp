@@ -7,6 +7,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/names.hpp"
 #include "core/model/scene_keys.hpp"
+#include "core/model/scene_setting.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
@@ -128,8 +129,6 @@ const ParamSpec& find_param(const SolverChoice& choice, const std::string& name)
                    suggestion(name, names) + " (a scene key has a dot, as \"wind.strength\")");
 }
 
-bool of_scene(const std::string& of) { return of.find('.') != std::string::npos; }
-
 }  // namespace
 
 std::string_view to_string(Frontier::Kind kind) {
@@ -161,7 +160,7 @@ CaseSpec FrontierQuestion::at(double value) const {
     if (name == "dt")
       spec.settings =
           replaced(std::move(spec.settings), {SceneSetting("time.dt", '"' + text + '"')});
-    else if (of_scene(name))
+    else if (is_of_scene(name))
       spec.settings = replaced(std::move(spec.settings), {SceneSetting(name, text)});
     else
       spec.solver = parse_solver(spec.solver).with(name, text).brief();
@@ -175,10 +174,11 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
   if (of == "dt") {
     range.from = 1e-3;
     range.to = 0.5;
-  } else if (of_scene(of)) {
+  } else if (is_of_scene(of)) {
     const SceneKey* key = find_scene_key(of.substr(0, of.find('|')));
     if (key && !key->choices.empty())
       throw InputError("'" + of + "' is one of " + std::string(key->choices) + ", not a number");
+    if (key && key->type == "string") throw InputError("'" + of + "' is a text, not a number");
     if (key) {
       range.from = key->range.min;
       range.to = key->range.max;

@@ -202,6 +202,7 @@ TEST(Frontier, ARangeIsTheParametersOwnOrHasToBeGiven) {
             "--to");
   EXPECT_EQ(range("dt", 0.5, 0.5), "--from 0.5 must be below --to 0.5");
   EXPECT_EQ(range("order"), "'order' is one of mesh|coloured|reversed|random|jolt, not a number");
+  EXPECT_EQ(range("fabric", 1, 2), "'fabric' is a text, not a number");
   EXPECT_EQ(range("omeg"),
             "jakobsen has no parameter 'omeg'; did you mean 'omega'? (a scene key "
             "has a dot, as \"wind.strength\")");
