@@ -269,8 +269,9 @@ DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<Pas
     if (is_pinned(scene, pin)) free_mass_[to_index(pin)] = 0;
 }
 
-bool DivergenceDetector::explode(const char* reason, int step, std::size_t vertex) {
-  status_ = {Status::Kind::exploded, reason, step, static_cast<int>(vertex)};
+bool DivergenceDetector::explode(Reason reason, int step, std::size_t vertex) {
+  status_ = {Status::Kind::exploded, std::string(to_string(reason)), step,
+             static_cast<int>(vertex)};
   return false;
 }
 
@@ -279,7 +280,7 @@ void DivergenceDetector::judge_stretch(int step, const State& state) {
     const double most = (1 + legitimate_strain_) * link.rest;
     if ((state.x[to_index(link.b)] - state.x[to_index(link.a)]).squaredNorm() > square(most) &&
         strain_in_plane(scene_, link, state.x) > 0) {
-      status_ = {Status::Kind::extreme, reason::kStretch, step, link.a};
+      status_ = {Status::Kind::extreme, std::string(to_string(Reason::stretch)), step, link.a};
       return;
     }
   }
@@ -300,8 +301,8 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
   std::size_t fastest_vertex = 0;
   for (std::size_t i = 0; i < free_mass_.size(); ++i) {
     if (!state.x[i].allFinite() || !state.v[i].allFinite())
-      return explode(reason::kNonfinite, step, i);
-    if (state.x[i].lpNorm<Eigen::Infinity>() > box) return explode("box", step, i);
+      return explode(Reason::nonfinite, step, i);
+    if (state.x[i].lpNorm<Eigen::Infinity>() > box) return explode(Reason::box, step, i);
     if (free_mass_[i] == 0) continue;
     const double v2 = state.v[i].squaredNorm();
     energy += free_mass_[i] * v2 / 2;
@@ -310,7 +311,7 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
       fastest_vertex = i;
     }
   }
-  if (energy > 10 * budget_.available(t)) return explode("energy", step, fastest_vertex);
+  if (energy > 10 * budget_.available(t)) return explode(Reason::energy, step, fastest_vertex);
   if (status_.kind != Status::Kind::extreme) judge_stretch(step, state);
   fastest = std::sqrt(fastest);
   peak_ = std::max(peak_, fastest);
@@ -326,9 +327,10 @@ void DivergenceDetector::finish() {
   const double decayed = peak_ * std::exp(-(duration_ - *settling_) / *settling_);
   if (late_ <= std::max(slow_, decayed)) return;
   if (status_.kind == Status::Kind::extreme)
-    status_.reason = reason::kStretchAndUnsettled;
+    status_.reason = to_string(Reason::stretch_and_unsettled);
   else
-    status_ = {Status::Kind::unsettled, "moves after five settling times", -1, late_vertex_};
+    status_ = {Status::Kind::unsettled, std::string(to_string(Reason::unsettled)), -1,
+               late_vertex_};
 }
 
 }  // namespace taut

@@ -101,7 +101,7 @@ class DivergenceDetector {
 
  private:
   /// Notes that the run exploded; returns false, which observe() then does.
-  bool explode(const char* reason, int step, std::size_t vertex);
+  bool explode(Reason, int step, std::size_t vertex);
   void judge_stretch(int step, const State&);
   const Scene& scene_;
   EnergyBudget budget_;

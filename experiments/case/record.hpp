@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,11 +37,11 @@ struct Status {
   bool is_result() const { return kind <= Kind::unsupported; }
 };
 
-/// Reasons of DivergenceDetector that others ask for.
-namespace reason {
-inline constexpr const char *kNonfinite = "nonfinite", *kStretch = "stretch",
-                            *kStretchAndUnsettled = "stretch, moves after five settling times";
-}
+/// Why DivergenceDetector ends or marks a run. A Status has the text, which is stored.
+enum class Reason { nonfinite, energy, box, stretch, stretch_and_unsettled, unsettled };
+std::string_view to_string(Reason);
+/// The one of this status; nothing: its text is not of DivergenceDetector.
+std::optional<Reason> reason_of(const Status&);
 
 std::string_view to_string(Status::Kind);
 bool is_status(std::string_view);

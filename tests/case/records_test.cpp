@@ -102,6 +102,15 @@ TEST(StateDigest, OfAStateKnowsEveryBit) {
   EXPECT_EQ(program_digest().size(), 64u);
 }
 
+TEST(Status, SaysWhichReasonOfTheDetectorItHas) {
+  for (const Reason one : {Reason::nonfinite, Reason::energy, Reason::box, Reason::stretch,
+                           Reason::stretch_and_unsettled, Reason::unsettled})
+    EXPECT_EQ(reason_of({Status::Kind::extreme, std::string(to_string(one))}), one);
+  EXPECT_EQ(to_string(Reason::stretch_and_unsettled), "stretch, moves after five settling times")
+      << "as it is stored";
+  EXPECT_FALSE(reason_of({Status::Kind::crash, "SIGSEGV"}).has_value());
+}
+
 TEST(Status, HasANameAndIsAResultOrAFailure) {
   using enum Status::Kind;
   const std::vector<std::pair<Status::Kind, std::string>> all{{ok, "ok"},
