@@ -206,7 +206,8 @@ void require_cells(const btAlignedObjectArray<btSoftBody*>& bodies) {
     if (bodies[b]->m_cfg.collisions == 0) continue;
     const auto& nodes = bodies[b]->m_nodes;
     for (int i = 0; i < nodes.size(); ++i)
-      if (!near(nodes[i].m_x) || !near(nodes[i].m_q)) throw SolverFailure("exploded", "box");
+      if (!near(nodes[i].m_x) || !near(nodes[i].m_q))
+        throw SolverFailure(Status::Kind::exploded, "box");
   }
 }
 

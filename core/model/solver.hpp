@@ -18,6 +18,7 @@
 #include "core/model/declared_step.hpp"
 #include "core/model/params.hpp"
 #include "core/model/scene.hpp"
+#include "core/model/status.hpp"
 
 namespace taut {
 
@@ -69,12 +70,13 @@ class Solver {
   std::function<void(double)> visit_;
 };
 
-/// Failure of a solver that computes in a process of its own. `status` is the case's, by name
-/// ("crash", "timeout", "oom", "protocol", "error"); `log` is the end of its standard error.
+/// Failure of a solver, of most only if they compute in a process of their own. `status` is the
+/// case's; `log` is the end of the process's standard error.
 struct SolverFailure : std::runtime_error {
-  SolverFailure(std::string status_, const std::string& reason, std::string log_ = "")
-      : std::runtime_error(reason), status(std::move(status_)), log(std::move(log_)) {}
-  std::string status, log;
+  SolverFailure(Status::Kind status_, const std::string& reason, std::string log_ = "")
+      : std::runtime_error(reason), status(status_), log(std::move(log_)) {}
+  Status::Kind status;
+  std::string log;
 };
 
 /// A setting as the solver applies it.

@@ -2,15 +2,11 @@
 
 #include <cmath>
 
-#include "core/model/input_error.hpp"
 #include "core/model/names.hpp"
 
 namespace taut {
 
 namespace {
-constexpr Names<Status::Kind::interrupted> kNames{
-    "ok",  "exploded", "unsettled", "extreme", "unsupported", "timeout",
-    "oom", "crash",    "protocol",  "error",   "interrupted"};
 constexpr Names<Reason::unsettled> kReasons{"nonfinite",
                                             "energy",
                                             "box",
@@ -18,15 +14,6 @@ constexpr Names<Reason::unsettled> kReasons{"nonfinite",
                                             "stretch, moves after five settling times",
                                             "moves after five settling times"};
 }  // namespace
-
-std::string_view to_string(Status::Kind kind) { return kNames[kind]; }
-
-bool is_status(std::string_view name) { return kNames.find(name).has_value(); }
-
-Status::Kind status_kind(std::string_view name) {
-  if (const auto kind = kNames.find(name)) return *kind;
-  throw InputError("unknown status '" + std::string(name) + "'");
-}
 
 std::string_view to_string(Reason reason) { return kReasons[reason]; }
 

@@ -182,7 +182,7 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
     run_steps(scene, choice, options, run, solver, step);
     if (solver) run.record.log = solver->log();
   } catch (const SolverFailure& failure) {
-    run.record.status = {status_kind(failure.status), failure.what(), step - 1, -1};
+    run.record.status = {failure.status, failure.what(), step - 1, -1};
     run.record.log = failure.log;
   }
   return run;

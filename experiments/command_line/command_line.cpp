@@ -314,7 +314,7 @@ int command_line(int argc, char** argv) {
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
   } catch (const SolverFailure& failure) {
-    std::cerr << failure.status << ": " << failure.what() << '\n' << failure.log;
+    std::cerr << to_string(failure.status) << ": " << failure.what() << '\n' << failure.log;
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << error.path1().string() << ": " << error.code().message() << '\n';
   } catch (const std::system_error& error) {  // for example, if a thread cannot be started

@@ -184,7 +184,7 @@ std::string Connection::log() const {
   return text;
 }
 
-void Connection::fail(const std::string& status, const std::string& reason) {
+void Connection::fail(Status::Kind status, const std::string& reason) {
   process_.wait(0);  // also kills all processes that it started
   throw SolverFailure(status, reason, log());
 }
@@ -193,8 +193,8 @@ void Connection::ended() {
   const auto end = process_.wait(1);
   const std::string during = " during '" + op_ + "'", said = last_line(std::istringstream(log()));
   const std::string why = said.empty() ? "" : ": " + said;
-  if (!end) fail("protocol", "closed its standard output" + during);
-  if (end->signal == SIGXCPU) fail("timeout", "CPU time");
+  if (!end) fail(Status::Kind::protocol, "closed its standard output" + during);
+  if (end->signal == SIGXCPU) fail(Status::Kind::timeout, "CPU time");
   rlimit memory{};
   getrlimit(RLIMIT_DATA, &memory);
   const auto most = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
@@ -202,16 +202,17 @@ void Connection::ended() {
   if (end->from_outside(std::min<std::size_t>(most, memory.rlim_cur)))
     throw EndedFromOutside("the solver's program was ended (" + end->text() +
                            ") from outside; nothing is stored of its case");
-  if (end->signal == SIGKILL) fail("oom", "killed by the system" + during);
-  if (names_memory(log())) fail("oom", "out of memory" + during + why);
-  fail("crash", end->text() + during + why);
+  if (end->signal == SIGKILL) fail(Status::Kind::oom, "killed by the system" + during);
+  if (names_memory(log())) fail(Status::Kind::oom, "out of memory" + during + why);
+  fail(Status::Kind::crash, end->text() + during + why);
 }
 
 void Connection::silent(SteadyClock::time_point deadline) {
   if (SteadyClock::now() < deadline) ended();
   const std::size_t some = process_.unread().size();
-  fail("timeout", "no answer to '" + op_ + "' within " + shortest(command_.seconds) + " s" +
-                      (some == 0 ? "" : ", only " + std::to_string(some) + " bytes"));
+  fail(Status::Kind::timeout, "no answer to '" + op_ + "' within " + shortest(command_.seconds) +
+                                  " s" +
+                                  (some == 0 ? "" : ", only " + std::to_string(some) + " bytes"));
 }
 
 std::string Connection::take_line() {
@@ -219,8 +220,9 @@ std::string Connection::take_line() {
   std::string line;
   if (process_.read_line(line, command_.seconds, kLongestLine)) return line;
   if (process_.unread().size() > kLongestLine)
-    fail("protocol", "answered '" + op_ + "' with more than " + std::to_string(kLongestLine) +
-                         " bytes without a line feed: " + excerpt(process_.unread()));
+    fail(Status::Kind::protocol, "answered '" + op_ + "' with more than " +
+                                     std::to_string(kLongestLine) +
+                                     " bytes without a line feed: " + excerpt(process_.unread()));
   silent(deadline);
 }
 
@@ -233,12 +235,13 @@ std::string Connection::take(std::size_t bytes) {
 
 void Connection::send(const std::string& line, std::string_view bytes) {
   if (!process_.unread().empty())
-    fail("protocol",
+    fail(Status::Kind::protocol,
          "said more than it was asked for, after '" + op_ + "': " + excerpt(process_.unread()));
   for (const std::string_view part : {std::string_view(line), bytes})
     if (!process_.write(part, command_.seconds)) {
       if (process_.poll()) ended();
-      fail("timeout", "did not read its input within " + shortest(command_.seconds) + " s");
+      fail(Status::Kind::timeout,
+           "did not read its input within " + shortest(command_.seconds) + " s");
     }
 }
 
@@ -258,7 +261,7 @@ Json Connection::answer() {
   try {
     return parse_answer(said);
   } catch (const InputError& error) {
-    fail("protocol", "answered '" + op_ + "' with what is " + error.what());
+    fail(Status::Kind::protocol, "answered '" + op_ + "' with what is " + error.what());
   }
 }
 
@@ -275,7 +278,8 @@ Json Connection::ask(const Json& request, std::string_view bytes) {
   const auto error = answer.find("error");
   if (error == answer.end()) return answer;
   const std::string why = error->is_string() ? error->get<std::string>() : to_text(*error);
-  fail(names_memory(why) ? "oom" : "error", "refused '" + op_ + "': " + why.substr(0, 500));
+  fail(names_memory(why) ? Status::Kind::oom : Status::Kind::error,
+       "refused '" + op_ + "': " + why.substr(0, 500));
 }
 
 double Connection::cpu_seconds() const {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/model/status.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/system/json.hpp"
 #include "experiments/system/process.hpp"
@@ -50,7 +51,7 @@ class Connection {
   Json ask_line(const std::string& line);
   /// Reads exactly this number of bytes after an answer.
   std::string take(std::size_t bytes);
-  [[noreturn]] void fail(const std::string& status, const std::string& reason);
+  [[noreturn]] void fail(Status::Kind, const std::string& reason);
 
   /// CPU seconds of all threads of the program.
   double cpu_seconds() const;

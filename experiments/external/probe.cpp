@@ -72,7 +72,7 @@ class Prober {
       one.said = "says that it cannot: " + refused.said;
     } catch (const SolverFailure& failure) {
       one.verdict = Verdict::failed;
-      one.said = failure.status + ": " + failure.what();
+      one.said = std::string(to_string(failure.status)) + ": " + failure.what();
       one.status = failure.status;
       connection_.reset();
     }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/status.hpp"
 #include "experiments/external/protocol.hpp"
 
 namespace taut::external {
@@ -13,8 +14,8 @@ struct Check {
   enum class Verdict { passed, failed, skipped };
   std::string name;
   Verdict verdict = Verdict::passed;
-  std::string said;              ///< a sentence that says what was observed or what is wrong
-  std::string status = "error";  ///< status of a case whose program fails this check
+  std::string said;  ///< a sentence that says what was observed or what is wrong
+  Status::Kind status = Status::Kind::error;  ///< of a case whose program fails this check
 };
 std::string_view to_string(Check::Verdict);
 

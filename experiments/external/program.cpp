@@ -225,7 +225,7 @@ void Program::require_probed(const Params& params) {
         failure.emplace(check.status, "not scored, " + check.name + ": " + check.said);
     }
     if (!any && !failure)
-      failure.emplace("error", "not scored: it refuses every sheet of the probe");
+      failure.emplace(Status::Kind::error, "not scored: it refuses every sheet of the probe");
     at = probed_.emplace(params.canonical(), std::move(failure)).first;
   }
   if (at->second) throw SolverFailure(*at->second);
@@ -238,7 +238,7 @@ std::unique_ptr<Solver> Program::make(const Scene& scene, const Params& params) 
   auto waiting = waiting_.extract(key_of(scene, params));
   Loaded loaded = waiting ? std::move(waiting.mapped()) : load(scene, params);
   if (!loaded.answer.cannot.empty())
-    throw SolverFailure("error", "changed its mind: " + loaded.answer.cannot.front());
+    throw SolverFailure(Status::Kind::error, "changed its mind: " + loaded.answer.cannot.front());
   ResolvedSettings settings{{"program", hello_->name + " " + hello_->version}};
   settings.insert(settings.end(), loaded.answer.settings.begin(), loaded.answer.settings.end());
   settings_[key_of(scene, params)] = settings;

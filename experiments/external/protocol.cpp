@@ -96,7 +96,7 @@ auto judged(Connection& connection, Read read) {
   } catch (const EndedFromOutside&) {
     throw;
   } catch (const InputError& error) {
-    connection.fail("protocol", error.what());
+    connection.fail(Status::Kind::protocol, error.what());
   }
 }
 

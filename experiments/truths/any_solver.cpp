@@ -79,7 +79,8 @@ TAUT_TRUTH(any_solver, 3, 10, "Links move no centre of mass, pins stay, a sheet 
     for (const auto& check : {momentum, rest, pins}) try {
         check(findings, solver);
       } catch (const SolverFailure& failure) {
-        findings.below(solver, failure.status + ": " + failure.what(), "1", std::nan(""), 0);
+        findings.below(solver, std::string(to_string(failure.status)) + ": " + failure.what(), "1",
+                       std::nan(""), 0);
       }
   }
 }

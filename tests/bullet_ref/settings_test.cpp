@@ -157,7 +157,7 @@ bool too_far(const std::string& solver, const Vec3& at, const Vec3& velocity = V
   try {
     made->step(0, scene.dt);
   } catch (const SolverFailure& failure) {
-    EXPECT_EQ(failure.status, "exploded");
+    EXPECT_EQ(failure.status, Status::Kind::exploded);
     EXPECT_STREQ(failure.what(), "box");
     return true;
   }

@@ -296,7 +296,7 @@ TEST(RunCase, AFailingSolverEndsAtItsLastWholeStep) {
   Scene scene = chain(2, 1.0 / 64);
   scene.steps = 6;
   const CaseRun run = run_scripted(scene, [](int step, State& s) {
-    if (step == 4) throw SolverFailure("oom", "2 GiB", "its last words");
+    if (step == 4) throw SolverFailure(Status::Kind::oom, "2 GiB", "its last words");
     s.x[2].z() = step;
   });
   EXPECT_EQ(run.record.status.kind, Status::Kind::oom);

@@ -518,7 +518,7 @@ TEST(Connections, SayHowAProgramFailed) {
       connection.ask_line("go");
       ADD_FAILURE() << one.script;
     } catch (const SolverFailure& failure) {
-      EXPECT_EQ(failure.status, one.status) << one.script;
+      EXPECT_EQ(to_string(failure.status), one.status) << one.script;
       EXPECT_STREQ(failure.what(), one.reason);
       EXPECT_EQ(failure.log, one.log);
     }

@@ -27,7 +27,7 @@ struct FromOutside final : Solver {
     for (std::size_t i = 0; i < x.size(); ++i) before[i] -= scene.dt * s.v[i];
   }
   void step(double, double dt) override {
-    if (flaw == "fails") throw SolverFailure("crash", "SIGSEGV");
+    if (flaw == "fails") throw SolverFailure(Status::Kind::crash, "SIGSEGV");
     const bool rests = scene.gravity.isZero(0);
     for (std::size_t i = 0; i < x.size(); ++i) {
       const Vec3 now = x[i];
