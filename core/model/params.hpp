@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "core/model/mesh.hpp"
 
 namespace taut {
 
@@ -20,12 +23,32 @@ struct ParamSpec {
   std::string_view help;           ///< one line
   std::string_view where = {};  ///< "method=global": choice for which default_there is the default
   std::string_view default_there = {};  ///< default in that case
+  std::optional<Family> family = {};    ///< of the links whose stiffness [N/m] it is
+  bool is_compliance = false;           ///< [m/N] instead of a stiffness
+  std::string_view rigid = {};          ///< choice with which all links are rigid; "": none
 
   /// A copy that has another default where `where_` holds.
   constexpr ParamSpec but(std::string_view where_, std::string_view default_) const {
     ParamSpec same = *this;
     same.where = where_;
     same.default_there = default_;
+    return same;
+  }
+  /// A copy that is the stiffness of the links of this family [N/m], or their compliance [m/N].
+  constexpr ParamSpec stiffness_of(Family family_) const {
+    ParamSpec same = *this;
+    same.family = family_;
+    return same;
+  }
+  constexpr ParamSpec compliance_of(Family family_) const {
+    ParamSpec same = stiffness_of(family_);
+    same.is_compliance = true;
+    return same;
+  }
+  /// A copy with this choice for rigid links, whatever stiffness other parameters have.
+  constexpr ParamSpec rigid_with(std::string_view choice_) const {
+    ParamSpec same = *this;
+    same.rigid = choice_;
     return same;
   }
   /// The default for people: "1", "1; 3 with method=global".

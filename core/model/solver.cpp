@@ -58,30 +58,19 @@ std::vector<const SolverEntry*> all_solvers() {
 }
 
 Stiffness stiffness_of(const Scene& scene, const Params& params) {
-  Stiffness all;
-  all.fill(std::numeric_limits<double>::infinity());
   if (params.has(kMaterial.name) && takes_stiffness(scene, params)) return scene.stiffness;
+  Stiffness all = kRigid;
   for (const ParamSpec& spec : params.specs()) {
-    if (spec.name == "links" && params.is("links", "rigid")) return all;
-    for (const Family family : kFamilies)
-      if (spec.name == to_string(family)) {
-        double& k = all[static_cast<std::size_t>(family)];
-        const double value = params.real(spec.name);
-        if (spec.unit == "N/m") k = value;
-        if (spec.unit == "m/N" && value > 0) k = 1 / value;
-      }
+    if (!spec.rigid.empty() && params.is(spec.name, spec.rigid)) return kRigid;
+    if (!spec.family) continue;
+    double& k = all[static_cast<std::size_t>(*spec.family)];
+    const double value = params.real(spec.name);
+    if (!spec.is_compliance)
+      k = value;
+    else if (value > 0)
+      k = 1 / value;
   }
   return all;
-}
-
-DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
-  DeclaredStep step{.stiffness = stiffness_of(scene, params)};
-  if (params.has("substeps")) step.substeps = params.integer("substeps");
-  if (scene.self_collision && !(params.has("self") && params.is("self", "off")))
-    step.none = "self-collision is no part of it";
-  else if (!scene.colliders.empty() && params.has("faces") && !params.is("faces", "off"))
-    step.none = "contact of faces is no part of it";
-  return step;
 }
 
 DeclaredStep implicit_euler_of_a_frame(const Scene& scene, const Params&) {

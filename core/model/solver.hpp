@@ -233,12 +233,10 @@ inline bool takes_stiffness(const Scene& scene, const Params& params) {
   return scene.stiffness != kRigid && params.is("material", "scene");
 }
 
-/// Spring constants of the solver's links, from the scene or its own parameters; infinite: rigid.
+/// Spring constants of the solver's links, from the scene or from the parameters that say of which
+/// family they are; infinite: rigid.
 Stiffness stiffness_of(const Scene&, const Params&);
 
-/// SolverEntry::declared_step of a solver that approximates implicit Euler of each substep, with
-/// its links and contact of vertices.
-DeclaredStep implicit_euler(const Scene&, const Params&);
 /// SolverEntry::declared_step of stored positions, one frame a step, made by an unknown method.
 DeclaredStep implicit_euler_of_a_frame(const Scene&, const Params&);
 /// The step that the entry declares.

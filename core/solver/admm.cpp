@@ -23,7 +23,8 @@ constexpr ParamSpec kOwn[] = {
     loop::iterations("15", "solutions of the system per substep"),
     loop::substeps("1", "each step is this many steps of dt / substeps"),
     ParamSpec::choice("links", "rigid", "rigid|elastic",
-                      "links keep their length, or are springs of the stiffness below"),
+                      "links keep their length, or are springs of the stiffness below")
+        .rigid_with("rigid"),
     kStiffness[0],
     kStiffness[1],
     kStiffness[2],
@@ -164,7 +165,7 @@ TAUT_SOLVER(admm) = {
     .make = taut::solver::admm::make,
     .unsupported = taut::loop::unsupported,
     .resolved_settings = taut::solver::admm::resolved_settings,
-    .declared_step = taut::implicit_euler,
+    .declared_step = taut::loop::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .all_at_once = true,

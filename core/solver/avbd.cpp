@@ -154,7 +154,7 @@ TAUT_SOLVER(avbd) = {
     .make = taut::solver::avbd::make,
     .unsupported = taut::solver::avbd::unsupported,
     .resolved_settings = taut::solver::avbd::resolved_settings,
-    .declared_step = taut::implicit_euler,
+    .declared_step = taut::loop::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .alternatives = taut::solver::avbd::kAlternatives,

@@ -314,7 +314,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 }
 
 DeclaredStep declared_step(const Scene& scene, const Params& params) {
-  DeclaredStep step = implicit_euler(scene, params);
+  DeclaredStep step = loop::implicit_euler(scene, params);
   if (!params.is("integrator", "euler"))
     step.none = "it is a step of " +
                 std::string(params.is("integrator", "bdf2") ? "BDF2" : "the midpoint rule");

@@ -148,7 +148,7 @@ TAUT_SOLVER(jakobsen) = {
     .make = taut::solver::jakobsen::make,
     .unsupported = taut::solver::jakobsen::unsupported,
     .resolved_settings = taut::solver::jakobsen::resolved_settings,
-    .declared_step = taut::implicit_euler,
+    .declared_step = taut::loop::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .link_order = "order",

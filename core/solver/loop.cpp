@@ -340,6 +340,16 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
           std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
 }
 
+DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
+  DeclaredStep step{.stiffness = stiffness_of(scene, params),
+                    .substeps = params.integer("substeps")};
+  if (scene.self_collision && !params.is("self", "off"))
+    step.none = "self-collision is no part of it";
+  else if (!scene.colliders.empty() && !params.is("faces", "off"))
+    step.none = "contact of faces is no part of it";
+  return step;
+}
+
 ResolvedSetting link_order(const Params& params, const std::string& of) {
   const std::string order(params.choice("order"));
   if (order == "mesh") return {kLinkOrder, "the scene's" + of, "mesh order"};

@@ -103,6 +103,10 @@ ResolvedSettings resolved_settings(
     std::string_view bending = "projected after the links with compliance and multipliers (XPBD)",
     std::string_view friction = kProjectedFriction);
 
+/// SolverEntry::declared_step of a solver of the loop that approximates implicit Euler of each
+/// substep, with its links and contact of vertices.
+DeclaredStep implicit_euler(const Scene&, const Params&);
+
 /// The setting of the parameter `order`. of: the links that are ordered.
 ResolvedSetting link_order(const Params&, const std::string& of = "");
 

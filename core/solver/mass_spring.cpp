@@ -24,9 +24,12 @@ constexpr auto kParams = loop::with_common(
     {ParamSpec::choice("integrator", "verlet", "explicit-euler|symplectic-euler|verlet",
                        "how the particles move"),
      ParamSpec::real("structural", "N/m", "50", 0, 1e12,
-                     "spring constant of structural links; 0: no spring"),
-     ParamSpec::real("shear", "N/m", "50", 0, 1e12, "spring constant of shear links; 0: no spring"),
-     ParamSpec::real("bend", "N/m", "5", 0, 1e12, "spring constant of bend links; 0: no spring"),
+                     "spring constant of structural links; 0: no spring")
+         .stiffness_of(Family::structural),
+     ParamSpec::real("shear", "N/m", "50", 0, 1e12, "spring constant of shear links; 0: no spring")
+         .stiffness_of(Family::shear),
+     ParamSpec::real("bend", "N/m", "5", 0, 1e12, "spring constant of bend links; 0: no spring")
+         .stiffness_of(Family::bend),
      ParamSpec::real("drag", "N s/m", "0", 0, 1e9,
                      "c of F = -c v on every particle, beside the scene's own damping"),
      ParamSpec::choice(

@@ -420,7 +420,7 @@ TAUT_SOLVER(pd) = {
     .make = taut::solver::pd::make,
     .unsupported = taut::solver::pd::unsupported,
     .resolved_settings = taut::solver::pd::resolved_settings,
-    .declared_step = taut::implicit_euler,
+    .declared_step = taut::loop::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .all_at_once = true,

@@ -29,10 +29,13 @@ struct Spring {
 /// Stiffness parameters of spring solvers, one for each family.
 inline constexpr std::array kStiffness{
     ParamSpec::real("structural", "N/m", "10000", 0, 1e12,
-                    "spring constant of structural links; 0: no spring"),
+                    "spring constant of structural links; 0: no spring")
+        .stiffness_of(Family::structural),
     ParamSpec::real("shear", "N/m", "10000", 0, 1e12,
-                    "spring constant of shear links; 0: no spring"),
-    ParamSpec::real("bend", "N/m", "100", 0, 1e12, "spring constant of bend links; 0: no spring")};
+                    "spring constant of shear links; 0: no spring")
+        .stiffness_of(Family::shear),
+    ParamSpec::real("bend", "N/m", "100", 0, 1e12, "spring constant of bend links; 0: no spring")
+        .stiffness_of(Family::bend)};
 
 /// Stiffnesses that a search may try, for solvers that need more iterations the stiffer the
 /// springs.

@@ -27,10 +27,13 @@ constexpr auto kParams = loop::with_common(
          "1",
          "sweeps per substep (Small Steps finds one to be best), or solutions with method=global")
          .but("method=global", "3"),
-     ParamSpec::real("structural", "m/N", "0", 0, 1e12, "compliance of structural links"),
-     ParamSpec::real("shear", "m/N", "0", 0, 1e12, "compliance of shear links"),
-     ParamSpec::real("bend", "m/N", "0", 0, 1e12, "compliance of bend links"), loop::kPrecision,
-     kMaterial,
+     ParamSpec::real("structural", "m/N", "0", 0, 1e12, "compliance of structural links")
+         .compliance_of(Family::structural),
+     ParamSpec::real("shear", "m/N", "0", 0, 1e12, "compliance of shear links")
+         .compliance_of(Family::shear),
+     ParamSpec::real("bend", "m/N", "0", 0, 1e12, "compliance of bend links")
+         .compliance_of(Family::bend),
+     loop::kPrecision, kMaterial,
      ParamSpec::choice("multipliers", "keep", "keep|reset",
                        "keep multipliers from sweep to sweep within a substep, as published, or "
                        "reset them to 0 before each sweep, which loses the compliance"),
@@ -148,7 +151,7 @@ TAUT_SOLVER(xpbd) = {
     .make = taut::solver::xpbd::make,
     .unsupported = taut::solver::xpbd::unsupported,
     .resolved_settings = taut::solver::xpbd::resolved_settings,
-    .declared_step = taut::implicit_euler,
+    .declared_step = taut::loop::implicit_euler,
     .accuracy = {.substeps = "substeps",
                  .sweeps = "iterations",
                  .link_order = "order",

@@ -132,6 +132,11 @@ class SpecReader {
       read_number(type == "integer");
     else
       j.at("type").fail("'" + type + "' is not one of integer, real, choice, text");
+    for (const Family family : kFamilies)
+      if (spec_.name == to_string(family) && (spec_.unit == "N/m" || spec_.unit == "m/N")) {
+        spec_.family = family;
+        spec_.is_compliance = spec_.unit == "m/N";
+      }
   }
   const ParamSpec& spec() const { return spec_; }
 
