@@ -44,7 +44,7 @@ void add_best(Answer& answer, const AdviceWanted& wanted, const Advice& advice) 
   answer.add({"same_bits", "run again, the same bits"}, advice.same_bits);
   answer.add(Column("confirmed").in_detail(), advice.confirmed());
   answer.add(Column("certainty").in_detail(), to_string(chosen.certainty));
-  answer.add({"command", "compare again"}, command(wanted, advice));
+  answer.add(Column("command", "compare again").of_commands(), command(wanted, advice));
 }
 
 /// Adds the closest miss if nothing meets the target.

@@ -77,6 +77,12 @@ Column Column::in_detail() const {
   return other;
 }
 
+Column Column::of_commands() const {
+  Column other = *this;
+  other.command = true;
+  return other;
+}
+
 void Answer::add(Column column, Cell cell) {
   facts.push_back({std::move(column), std::move(cell)});
 }

@@ -70,12 +70,14 @@ struct Column {
   std::string unit = "1";
   std::string shown = {};  ///< the unit shown to people: `shown = scale * SI`
   double scale = 1;
-  int digits = 3;       ///< significant digits shown to people
-  bool detail = false;  ///< shown to people only if they ask for details; data always include it
+  int digits = 3;        ///< significant digits shown to people
+  bool detail = false;   ///< shown to people only if they ask for details; data always include it
+  bool command = false;  ///< its texts stay on one line in a terminal, since people copy them
 
   /// An empty heading is replaced by the name, with blanks between its words.
   Column(std::string name, std::string heading = {}, const Unit& = kNumber, int digits = 3);
   Column in_detail() const;
+  Column of_commands() const;
   Unit as_unit() const { return {unit, shown, scale}; }
   bool operator==(const Column&) const = default;
 };

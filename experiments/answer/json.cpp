@@ -42,6 +42,7 @@ void add_column(Json& json, const Column& column) {
   if (column.scale != 1) json["scale"] = column.scale;
   if (column.digits != Column("").digits) json["digits"] = column.digits;
   if (column.detail) json["detail"] = true;
+  if (column.command) json["command"] = true;
 }
 
 Json json_of(const Table& table) {
@@ -100,6 +101,7 @@ Column read_column(std::string name, const JsonReader& json) {
   if (const auto scale = json.find("scale")) column.scale = scale->number();
   if (const auto digits = json.find("digits")) column.digits = digits->integer(1, 17);
   if (const auto detail = json.find("detail")) column.detail = detail->flag();
+  if (const auto command = json.find("command")) column.command = command->flag();
   return column;
 }
 

@@ -20,12 +20,18 @@ std::string padded(const std::string& text, std::size_t width, bool left) {
   return left ? text + blanks : blanks + text;
 }
 
+/// What is printed of a cell.
+struct Printed {
+  std::string text;
+  bool command = false;
+};
+
 /// Breaks a text at blanks into lines of at most `most` characters. A longer word has a line to
 /// itself. A command stays on one line, since people copy it.
-std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
-  if (characters(text) <= most || text.starts_with("taut ")) return {text};
+std::vector<std::string> wrapped(const Printed& cell, std::size_t most) {
+  if (characters(cell.text) <= most || cell.command) return {cell.text};
   std::vector<std::string> lines;
-  std::istringstream words(text);
+  std::istringstream words(cell.text);
   for (std::string word; words >> word;)
     if (!lines.empty() && characters(lines.back()) + 1 + characters(word) <= most)
       lines.back() += ' ' + word;
@@ -36,11 +42,11 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
 
 /// Widths of columns: as wide as their content. If a line would exceed `most` characters, columns
 /// of words shrink until it fits, but not below their longest word.
-std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows,
+std::vector<std::size_t> widths_of(const std::vector<std::vector<Printed>>& rows,
                                    const std::vector<bool>& left, std::size_t most) {
   std::vector<std::size_t> all(left.size());
   for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) all[i] = std::max(all[i], characters(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) all[i] = std::max(all[i], characters(row[i].text));
   std::vector<std::size_t> fit = all;
   const auto line = [&] { return std::accumulate(fit.begin(), fit.end(), 2 * fit.size()); };
   if (line() <= most) return all;
@@ -55,8 +61,8 @@ std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& 
 }
 
 /// Columns of words are aligned left, columns of numbers right.
-std::string lines_of(const std::vector<std::vector<std::string>>& rows,
-                     const std::vector<bool>& left, std::size_t most) {
+std::string lines_of(const std::vector<std::vector<Printed>>& rows, const std::vector<bool>& left,
+                     std::size_t most) {
   const std::vector<std::size_t> width = widths_of(rows, left, most);
   std::string all;
   for (const auto& row : rows) {
@@ -76,16 +82,16 @@ std::string lines_of(const std::vector<std::vector<std::string>>& rows,
 
 std::string text_of(const Table& table, bool details, std::size_t width) {
   const std::size_t shown = table.rows_shown(details);
-  std::vector<std::vector<std::string>> rows(shown + 1);
+  std::vector<std::vector<Printed>> rows(shown + 1);
   std::vector<bool> left;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Column& column = table.columns[i];
     if (column.detail && !details) continue;
-    rows[0].push_back(label(column));
+    rows[0].push_back({label(column)});
     bool words = true;
     for (std::size_t r = 0; r < shown; ++r) {
       const Cell& cell = table.rows[r][i];
-      rows[r + 1].push_back(text(cell, column, false));
+      rows[r + 1].push_back({text(cell, column, false), column.command});
       words = words && std::isnan(cell.number());
     }
     left.push_back(words);
@@ -94,16 +100,17 @@ std::string text_of(const Table& table, bool details, std::size_t width) {
   out += lines_of(rows, left, width);
   if (shown < table.rows.size())
     out += "  and " + std::to_string(table.rows.size() - shown) + " more: --all\n";
-  return table.caption.empty() ? out : out + lines_of({{table.caption}}, {true}, width);
+  return table.caption.empty() ? out : out + lines_of({{Printed{table.caption}}}, {true}, width);
 }
 
 }  // namespace
 
 std::string to_text(const Answer& answer, bool details, std::size_t width) {
   std::string out = answer.subject.empty() ? "" : answer.subject + '\n';
-  std::vector<std::vector<std::string>> facts;
+  std::vector<std::vector<Printed>> facts;
   for (const auto& [column, cell] : answer.facts)
-    if (details || !column.detail) facts.push_back({column.heading, text(cell, column)});
+    if (details || !column.detail)
+      facts.push_back({Printed{column.heading}, Printed{text(cell, column), column.command}});
   if (!facts.empty()) out += lines_of(facts, {true, true}, width);
   for (const Table& table : answer.tables)
     if (table.is_shown(details)) out += (out.empty() ? "" : "\n") + text_of(table, details, width);

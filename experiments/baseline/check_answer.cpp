@@ -26,7 +26,7 @@ Table findings_table() {
            {"kind"},
            {"case"},
            {"change"},
-           {"command"},
+           Column("command").of_commands(),
            Column("solver").in_detail(),
            Column("scene").in_detail(),
            Column("value").in_detail(),

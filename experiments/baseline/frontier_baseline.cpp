@@ -54,7 +54,9 @@ FrontierCheck check_frontiers(const Answer& now, const std::string& solver, cons
 }
 
 Table commands_of(const std::vector<ParameterFrontier>& found) {
-  Table table{"commands", "what runs the case beyond", {{"solver"}, {"parameter"}, {"command"}}};
+  Table table{"commands",
+              "what runs the case beyond",
+              {{"solver"}, {"parameter"}, Column("command").of_commands()}};
   for (const ParameterFrontier& one : found)
     if (!std::isnan(one.bad))
       table.rows.push_back({one.solver, one.parameter, reproduce(one.beyond)});

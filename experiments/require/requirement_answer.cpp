@@ -188,7 +188,8 @@ Answer answer_of(const Requirement& found, const Store& store, const std::string
              found.chaotic ? Cell(found.horizon) : Cell());
   answer.add({"bytes", "memory of a step", kKilobytes}, bytes);
   if (found.smallest) {
-    answer.add({"smallest", "smallest model"}, command_of(found.smallest->spec));
+    answer.add(Column("smallest", "smallest model").of_commands(),
+               command_of(found.smallest->spec));
     answer.add({"file", "its scene"}, found.file.string());
     answer.add({"verified", "run again from its file, the same bits"}, found.verified);
     answer.add({"time_left", "its CPU time", kShare}, found.time_ratio);

@@ -243,9 +243,15 @@ TEST(Answers, BreakWordsWhereATerminalIsNarrowAndLoseNone) {
             "  ball-and-chain         7  falls\n"
             "  a caption of more words than a line has\n");
   Answer again{"frontier", ""};
-  again.add({"command"}, "taut case swing mass-spring --set cloth.size.0=0.0665646");
+  again.add(Column("command").of_commands(),
+            "taut case swing mass-spring --set cloth.size.0=0.0665646");
   EXPECT_EQ(to_text(again, false, 30),
             "  command  taut case swing mass-spring --set cloth.size.0=0.0665646\n");
+  EXPECT_EQ(answer_from_json(to_json(again), "made"), again);
+  again.facts.clear();
+  again.add({"code"}, "taut jakobsen:substeps=1,order=coloured");
+  EXPECT_EQ(to_text(again, false, 30), "  code  taut\n        jakobsen:substeps=1,order=coloured\n")
+      << "no command";
   EXPECT_NE(to_text(answer, false, 24).find("\n  a caption of more\n  words than a line has\n"),
             std::string::npos);
 }

@@ -200,9 +200,10 @@ Answer status_of(const fs::path& folder) {
   answer.add({"cases"}, cases);
   answer.add({"done"}, done);
   if (!to_start.empty())
-    answer.add({"start", "start what is not done"}, start_command(to_start, folder));
+    answer.add(Column("start", "start what is not done").of_commands(),
+               start_command(to_start, folder));
   if (!failed.rows.empty())
-    answer.add({"again", "failures again"},
+    answer.add(Column("again", "failures again").of_commands(),
                "export ONLY=failed; " + start_command(with_failures, folder));
   answer.add(std::move(shards));
   answer.add(std::move(failed));
