@@ -28,8 +28,9 @@ struct Cell {
 
   std::variant<std::monostate, std::string, double, Interval, bool> value;
   State state = State::none;
-  std::string note;   ///< what a reader has to know about the value
-  std::string key;    ///< key of the case that it comes from
+  std::string note;                ///< what a reader has to know about the value
+  std::vector<std::string> terms;  ///< words of the note that a page explains
+  std::string key;                 ///< key of the case that it comes from
   std::string scene;  ///< in a row's first cell: name of the scene to which the row belongs
   bool best = false;  ///< best of its row, by more than noise
 

@@ -22,13 +22,14 @@ Cell::State usual_state(const Cell& cell) {
 }
 
 bool has_notes(const Cell& cell) {
-  return !cell.note.empty() || !cell.key.empty() || !cell.scene.empty() || cell.best ||
-         cell.state != usual_state(cell);
+  return !cell.note.empty() || !cell.terms.empty() || !cell.key.empty() || !cell.scene.empty() ||
+         cell.best || cell.state != usual_state(cell);
 }
 
 void add_notes(Json& json, const Cell& cell) {
   if (cell.state != usual_state(cell)) json["state"] = std::string(to_string(cell.state));
   if (!cell.note.empty()) json["note"] = cell.note;
+  if (!cell.terms.empty()) json["terms"] = cell.terms;
   if (!cell.key.empty()) json["key"] = cell.key;
   if (!cell.scene.empty()) json["scene"] = cell.scene;
   if (cell.best) json["best"] = true;
@@ -88,6 +89,7 @@ Cell::State read_state(const JsonReader& json) {
 void read_notes(Cell& cell, const JsonReader& json) {
   if (const auto state = json.find("state")) cell.state = read_state(*state);
   if (const auto note = json.find("note")) cell.note = note->text();
+  if (const auto terms = json.find("terms")) cell.terms = terms->texts();
   if (const auto key = json.find("key")) cell.key = key->text();
   if (const auto scene = json.find("scene")) cell.scene = scene->text();
   if (const auto best = json.find("best")) cell.best = best->flag();

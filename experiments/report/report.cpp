@@ -187,27 +187,41 @@ class Builder {
           for (const auto& [key, value] : other_settings(*compared.cases.front()))
             settings += (settings.empty() ? "" : ", ") + key + "=" + retyped(value);
       one["settings"] = settings;
-      add_if(one, "arithmetic", arithmetics_of(solver));
+      const Arithmetics own = arithmetics_of(solver);
+      add_if(one, "arithmetic", own.text());
+      add_if(one, "terms", own.terms());
       all.push_back(std::move(one));
     }
     return all;
   }
 
-  /// Arithmetic of a solver's compared cases, and of its timed ones if it differs: "double; timed:
-  /// float".
-  std::string arithmetics_of(const std::string& solver) const {
+  /// Arithmetics of a solver's compared cases, and of its timed ones.
+  struct Arithmetics {
     std::vector<std::string> compared, timed;
+
+    /// "double; timed: float"; the timed ones only if they differ.
+    std::string text() const {
+      const std::string one = join(compared, " or "), other = join(timed, " or ");
+      return one == other || other.empty() ? one : one.empty() ? other : one + "; timed: " + other;
+    }
+    std::vector<std::string> terms() const {
+      std::vector<std::string> all = compared;
+      for (const std::string& one : timed) push_unique(all, one);
+      return all;
+    }
+  };
+  Arithmetics arithmetics_of(const std::string& solver) const {
+    Arithmetics all;
     for (const ComparedSolver& one : compared_.all)
       if (one.name == solver)
         for (const Record* r : one.cases)
-          push_unique(compared, arithmetic_of(*r, input_.vectors).brief());
+          push_unique(all.compared, arithmetic_of(*r, input_.vectors).brief());
     if (input_.bench)
       for (const SceneBench& scene : input_.bench->scenes)
         for (const BenchedCase& c : scene.cases)
           if (c.record.solver == solver)
-            push_unique(timed, arithmetic_of(c.record, input_.vectors).brief());
-    const std::string one = join(compared, " or "), other = join(timed, " or ");
-    return one == other || other.empty() ? one : one.empty() ? other : one + "; timed: " + other;
+            push_unique(all.timed, arithmetic_of(c.record, input_.vectors).brief());
+    return all;
   }
   /// A number of a setting as people type it: "1e9" for "1e+09".
   static std::string retyped(const std::string& value) {

@@ -65,6 +65,7 @@ class MadeUp {
                           Cell(up_to(99)), Cell(Interval{middle - 1, middle, middle + 1e-9})};
     Cell made = kinds[up_to(5)];
     if (up_to(3) == 0) made.note = word();
+    if (up_to(5) == 0) made.terms = {word(), word()};
     if (up_to(5) == 0) made.key = "0123abcd";
     if (up_to(5) == 0) made.state = static_cast<Cell::State>(up_to(4));
     if (up_to(5) == 0) made.scene = word();

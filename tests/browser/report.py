@@ -385,8 +385,13 @@ def winners(checks):
     page.settle()
     checks.true(page.run("cases.has(state.get('case'))"), "that opens its case")
     page.press("Escape")
-    lacking = page.run("[...document.querySelectorAll('#winners small')].map(e => e.textContent).filter(t => /^(float|double)/.test(t) && !explain(t))")
+    lacking = page.run("[...document.querySelectorAll('#winners small')].filter(e => /^(float|double)/.test(e.textContent) && !e.title).map(e => e.textContent)")
     checks.empty(lacking, "each arithmetic is explained")
+    terms = {term["term"]: term["meaning"] for term in model.get("terms", [])}
+    shown = page.run("[...document.querySelectorAll('#winners .price small')].map(e => e.title)")
+    wanted = ["\n".join(f"{term}: {terms[term]}" for term in one.get("terms", []) if term in terms)
+              for row in rows for cell in row["cells"] for one in cell.get("cheapest", [])]
+    checks.true(shown == wanted, "the tooltip of a setting explains what it names and nothing else", [shown[:3], wanted[:3]])
 
 
 def charts(checks):

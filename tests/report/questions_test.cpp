@@ -357,7 +357,8 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   EXPECT_NE(price.caption.find("Jakobsen coloured, Bullet mesh order"), std::string::npos);
   EXPECT_EQ(price.rows[0][1].note, "20 × 1, coloured; at most");
   EXPECT_EQ(price.rows[0][2].note, "1 × 1, mesh order");
-  EXPECT_EQ(setting_text(made.input.bench->scenes[0], 2), "20 × 1, mesh order")
+  EXPECT_EQ(price.rows[0][1].terms, (std::vector<std::string>{kWorkTerm, "coloured"}));
+  EXPECT_EQ(setting_label(made.input.bench->scenes[0], 2).text(), "20 × 1, mesh order")
       << "its order is said once";
 }
 
@@ -477,9 +478,9 @@ TEST(Winners, HaveTheirRangeInASentence) {
   EXPECT_EQ(one.said(), "Jakobsen is cheapest in 5 of 5 cells, by 3.0 to 9.0 times.");
   const WinnerRow row = one.map().rows.at(0);
   EXPECT_EQ(row.cells[0].next->links, "1e+05 N/m");
-  EXPECT_EQ(row.cells[0].next->setting, "1 × 1") << "its stiffness is said once, beside it";
+  EXPECT_EQ(row.cells[0].next->setting.text(), "1 × 1") << "its stiffness is said once, beside it";
   EXPECT_EQ(row.cells[2].next->links, "1000 N/m");
-  EXPECT_EQ(row.cells[2].next->setting, "2 × 1");
+  EXPECT_EQ(row.cells[2].next->setting.text(), "2 × 1");
   EXPECT_EQ(row.cells[0].cheapest[0].links, "");
   EXPECT_EQ(row.way, WayGone::By::nothing);
   EXPECT_EQ(line_of(row, 2),

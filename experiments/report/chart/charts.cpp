@@ -162,9 +162,9 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};
     if (along == "setting") {
       point.along = point.x;
-      const std::vector<std::string> parts = labels.parts(record);
-      point.name = join(parts, ", ");
-      point.parts = parts.size();
+      const Label label = labels.parts(record);
+      point.name = label.text();
+      point.parts = label.size();
     }
     curves[where->second].points.push_back(std::move(point));
   }

@@ -338,6 +338,19 @@ std::string named_setting(const std::string& name, const std::string& value) {
   return word ? value : name + "=" + value;
 }
 
+std::string Label::text() const { return join(*this, ", ", &LabelPart::text); }
+
+std::vector<std::string> Label::terms() const {
+  std::vector<std::string> all;
+  for (const LabelPart& part : *this)
+    if (!part.term.empty()) all.push_back(part.term);
+  return all;
+}
+
+LabelPart label_part(const Work& work) {
+  return {work.text(), work.substeps >= 0 && work.sweeps >= 0 ? kWorkTerm : ""};
+}
+
 SettingLabels::SettingLabels(const Records& all) {
   for (const Record* r : all)
     for (const std::string& name : names_in_labels(r->solver))
@@ -345,12 +358,11 @@ SettingLabels::SettingLabels(const Records& all) {
 }
 
 std::string SettingLabels::of(const Record& record, const std::vector<std::string>& beside) const {
-  return join(parts(record, beside), ", ");
+  return parts(record, beside).text();
 }
 
-std::vector<std::string> SettingLabels::parts(const Record& record,
-                                              const std::vector<std::string>& beside) const {
-  std::vector<std::string> all;
+Label SettingLabels::parts(const Record& record, const std::vector<std::string>& beside) const {
+  Label all;
   bool any = false, work = false;
   for (const std::string& name : names_in_labels(record.solver)) {
     const auto value = setting_of(record, name);
@@ -362,9 +374,9 @@ std::vector<std::string> SettingLabels::parts(const Record& record,
     if (name == kSubsteps || name == kSweeps)
       work = true;
     else if (*value != default_of(record.solver, name))
-      all.push_back(named_setting(name, *value));
+      all.push_back({named_setting(name, *value), name});
   }
-  if (work || (any && all.empty())) all.insert(all.begin(), work_of(record).text());
+  if (work || (any && all.empty())) all.insert(all.begin(), label_part(work_of(record)));
   return all;
 }
 

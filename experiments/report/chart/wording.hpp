@@ -113,6 +113,20 @@ std::string unequal_work(const Records&);
 /// "mesh", which speaks for itself; "levels=4" and "tethers=on", whose values do not.
 std::string named_setting(const std::string& name, const std::string& value);
 
+/// A part of a label.
+struct LabelPart {
+  std::string text;  ///< "tethers=on"
+  std::string term;  ///< the term of a page that explains it, "tethers"; "": it needs none
+};
+struct Label : std::vector<LabelPart> {
+  std::string text() const;                ///< "2 × 8, tethers=on"
+  std::vector<std::string> terms() const;  ///< of the parts that need one
+};
+
+/// The term of every work that has substeps and sweeps.
+inline constexpr const char* kWorkTerm = "2 × 8";
+LabelPart label_part(const Work&);
+
 /// Labels of records by those accuracy parameters that take several values among their solver's.
 class SettingLabels {
  public:
@@ -121,7 +135,7 @@ class SettingLabels {
   /// nothing does, the work. "" if nothing varies. Without the parameters that are shown beside it.
   std::string of(const Record&, const std::vector<std::string>& beside = {}) const;
   /// The same, a part for each: the work, then a part for every other parameter.
-  std::vector<std::string> parts(const Record&, const std::vector<std::string>& beside = {}) const;
+  Label parts(const Record&, const std::vector<std::string>& beside = {}) const;
 
  private:
   std::map<std::pair<std::string, std::string>, std::set<std::string>> seen_;  ///< solver, name

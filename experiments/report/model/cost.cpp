@@ -27,7 +27,9 @@ struct CostScene {
   /// come from cloth that hardly moves.
   Cell of(std::size_t at, Cell cell) const {
     const Record& r = timed.bench.cases[at].record;
-    cell.note = setting_text(timed.bench, at);
+    const Label label = setting_label(timed.bench, at);
+    cell.note = label.text();
+    cell.terms = label.terms();
     cell.key = refs.key(r);
     if (timed.is_upper_bound(at)) cell.note += kUpperBound;
     for (const ValueSpec* value : values_with_role()) {

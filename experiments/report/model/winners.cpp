@@ -10,9 +10,13 @@ namespace taut::report {
 namespace {
 
 Json json_of(const Contender& one) {
-  Json json{
-      {"solver", one.solver}, {"setting", one.setting}, {"arithmetic", one.arithmetic.brief()},
-      {"cost", one.cost},     {"error", one.error},     {"case", one.key}};
+  Json json{{"solver", one.solver},
+            {"setting", one.setting.text()},
+            {"arithmetic", one.arithmetic.brief()},
+            {"cost", one.cost},
+            {"error", one.error},
+            {"case", one.key}};
+  add_if(json, "terms", one.setting.terms());
   add_if(json, "links", one.links);
   if (std::isfinite(one.largest)) json["largest"] = one.largest;
   if (one.bound) json["at_most"] = true;

@@ -3,7 +3,7 @@
 // as the best of its row, have a bar, and lead to its case. The answer on the first screen consists
 // of such tables, each shown as one row that unfolds to its scenes.
 
-/** Tables by name; their cells are {value, state, note, key, scene, best}. */
+/** Tables by name; their cells are {value, state, note, terms, key, scene, best}. */
 function unpacked(tables) {
   for (const table of Object.values(tables ?? {})) {
     table.rows = table.rows.map((cells) => cells.map((value) => ({value})));
@@ -67,7 +67,7 @@ function cellContent(cell, column, most) {
   const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value),
         note = cell.note ?? '';
   const noted = cell.state === 'hardly_moves' ? 'hardly moves' : note;
-  const whole = [note, explain(note)].filter(Boolean).join('\n');
+  const whole = [note, explain(cell.terms)].filter(Boolean).join('\n');
   const share = 100 * Math.max(0, value) / most;
   const spread = Array.isArray(cell.value) && spreadOf(cell.value, column);
   const said = cell.best ? el('b', {className: 'best'}, text) : text;
@@ -99,8 +99,8 @@ function tableRow(table, cells, props, head, bars) {
  */
 function tableHeads(table, first) {
   const solverHead = ({name, heading}) => {
-    const {arithmetic} = solverOf(name);
-    const how = arithmetic && explained(arithmetic, {className: 'arithmetic'});
+    const {arithmetic, terms} = solverOf(name);
+    const how = arithmetic && explained(arithmetic, terms, {className: 'arithmetic'});
     return [named(name, heading), how];
   };
   const head = (column, i) => {

@@ -2,19 +2,18 @@
 // Winners: the map of the cheapest solvers, error over cost beside it, a summary in sentences, and
 // the meaning of every abbreviation.
 
-/** Meanings of the abbreviations in a text, one per line. */
-function explain(text) {
-  const plain = text.replaceAll('\u00A0', ' ');
-  const isWork = (term) => /^\d+ × \d+$/.test(term);
-  const hasWork = /\d+ × \d+/.test(plain) && !/^(float|double)/.test(plain);
-  return (model.terms ?? [])
-      .filter(({term}) => plain.includes(term) || (hasWork && isWork(term)))
-      .map(({term, meaning}) => `${term}: ${meaning}`)
+const meanings = new Map((model.terms ?? []).map(({term, meaning}) => [term, meaning]));
+/** Meanings of these terms, one per line. */
+function explain(terms) {
+  return (terms ?? [])
+      .filter((term) => meanings.has(term))
+      .map((term) => `${term}: ${meanings.get(term)}`)
       .join('\n');
 }
 /** Keeps "2 × 8" in a setting on one line. */
 const kept = (text) => text.replaceAll(' × ', '\u00A0×\u00A0');
-const explained = (text, props = {}) => el('small', {...props, title: explain(text)}, kept(text));
+const explained = (text, terms, props = {}) =>
+    el('small', {...props, title: explain(terms)}, kept(text));
 
 /** The list of all abbreviations. */
 function termList() {
@@ -49,8 +48,10 @@ function contender(one, over, level) {
       `up to ${shown(one.largest, metric(model.winners.metric), 2)} at some moment`;
   return el(
       'div', {className: 'contender'}, named(one.solver), over,
-      el('div', {className: 'price'}, caseLink(one.case, cost), ' ', explained(one.setting)),
-      explained([one.arithmetic, links].filter(Boolean).join(', '), {className: 'how'}),
+      el('div', {className: 'price'}, caseLink(one.case, cost), ' ',
+         explained(one.setting, one.terms)),
+      explained(
+          [one.arithmetic, links].filter(Boolean).join(', '), [one.arithmetic], {className: 'how'}),
       largest && el('small', {className: 'how'}, largest));
 }
 

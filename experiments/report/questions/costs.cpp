@@ -26,15 +26,16 @@ SceneBench with_shared_parameters(SceneBench bench) {
   return bench;
 }
 
-std::string setting_text(const SceneBench& bench, std::size_t at, std::vector<std::string> beside) {
+Label setting_label(const SceneBench& bench, std::size_t at, std::vector<std::string> beside) {
   Records records;
   for (const BenchedCase& c : bench.cases) records.push_back(&c.record);
   const Record& one = bench.cases[at].record;
   const std::string order = link_order(one);
   if (!order.empty()) beside.push_back(link_order_parameter(one.solver));
-  std::string label = SettingLabels(records).of(one, beside);
-  if (label.empty()) label = work_of(one).text();
-  return label + (order.empty() ? "" : ", " + order);
+  Label label = SettingLabels(records).parts(one, beside);
+  if (label.empty()) label.push_back(label_part(work_of(one)));
+  if (!order.empty()) label.push_back({order, order});
+  return label;
 }
 
 std::optional<Cell> only_uncounted(const JudgedScene& scene, const std::string& solver,
@@ -116,7 +117,9 @@ class Costs {
 
  private:
   Cell cell_of(const JudgedScene& scene, std::size_t at, Cell cell) {
-    cell.note = setting_text(scene.bench, at);
+    const Label label = setting_label(scene.bench, at);
+    cell.note = label.text();
+    cell.terms = label.terms();
     cell.key = list_.key(scene.bench.cases[at].record);
     return cell;
   }
@@ -276,7 +279,7 @@ class Costs {
 
   Cell setting_cell(const JudgedScene& scene, std::size_t at, double cost, bool bound,
                     const std::string& on) {
-    Cell cell(setting_text(scene.bench, at));
+    Cell cell(setting_label(scene.bench, at).text());
     cell.key = list_.key(scene.bench.cases[at].record);
     return cell.with((bound ? "at most " : "") + quantity("cpu.per_second").text(cost) + on);
   }

@@ -20,9 +20,9 @@ inline constexpr const char* kWithoutExtras =
     "without accelerators that another solver of the scene lacks";
 /// Without the cases that use a parameter which another solver of the scene lacks.
 SceneBench with_shared_parameters(SceneBench);
-/// "4 × 2, coloured": of cases of one scene those parameters that take several values, without the
-/// those that are shown beside it.
-std::string setting_text(const SceneBench&, std::size_t at, std::vector<std::string> beside = {});
+/// "4 × 2, coloured": of cases of one scene those parameters that take several values, without
+/// those that are shown beside it, and the order of the links.
+Label setting_label(const SceneBench&, std::size_t at, std::vector<std::string> beside = {});
 
 /// If the settings of a solver that reach the error do not count: a cell of these words, with the
 /// state and the reason of the cheapest, such as "hardly moves: 5 % of the way".

@@ -137,8 +137,11 @@ class Questions {
     cell.key = list_.key(*r);
     if (of_strain && std::isfinite(value)) cell.note = hardly_moves(*r);
     if (!cell.note.empty()) cell.state = Cell::State::hardly_moves;
-    if (compared_.common_work().empty())
-      cell.note += (cell.note.empty() ? "" : "; ") + work_of(*r).text();
+    if (compared_.common_work().empty()) {
+      const Label work{{label_part(work_of(*r))}};
+      cell.note += (cell.note.empty() ? "" : "; ") + work.text();
+      cell.terms = work.terms();
+    }
     return cell;
   }
 

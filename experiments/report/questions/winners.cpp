@@ -48,7 +48,7 @@ class SceneWinners {
     if (!links.empty())
       for (const std::string& name : stiffness_parameters(r.solver)) beside.push_back(name);
     return {r.solver,
-            setting_text(scene_.bench, at, beside),
+            setting_label(scene_.bench, at, beside),
             arithmetic_of(r, input_.vectors),
             links,
             scene_.candidates[at].cost,
@@ -209,7 +209,7 @@ std::string line_of(const WinnerRow& row, std::size_t level) {
       row.title + " at " + quantity(kErrorMetric).text(kErrorLevels[level], 1) + ": ";
   if (cell.cheapest.empty()) return head + "nobody, " + cell.why;
   const auto said = [](const Contender& one) {
-    return solver_title(one.solver) + " " + one.setting + ", " + one.arithmetic.text() +
+    return solver_title(one.solver) + " " + one.setting.text() + ", " + one.arithmetic.text() +
            (one.links.empty() ? "" : ", springs of " + one.links) + ": " +
            (one.bound ? "at most " : "") + shown(kFrameCost, one.cost.mid);
   };
@@ -293,7 +293,7 @@ std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<cons
     }
   std::vector<std::pair<std::string, std::string>> terms;
   if (works)
-    terms.emplace_back("2 × 8",
+    terms.emplace_back(kWorkTerm,
                        "each time step is cut into 2 substeps of 8 sweeps; of a solver that solves "
                        "all links at once, of 8 iterations");
   terms.insert(terms.end(), arithmetics.begin(), arithmetics.end());

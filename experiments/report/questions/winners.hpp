@@ -15,7 +15,7 @@ namespace taut::report {
 /// One timed setting that reaches an error.
 struct Contender {
   std::string solver;
-  std::string setting;  ///< "1 × 10, coloured"
+  Label setting;  ///< "1 × 10, coloured"
   Arithmetic arithmetic;
   std::string links;  ///< stiffness of its structural links, if they are not rigid: "1000 N/m"
   Interval cost;      ///< CPU s per simulated s
