@@ -274,8 +274,7 @@ std::vector<TimeSeries> stored_series(const Records& records, const std::string&
   std::vector<TimeSeries> all;
   const SettingLabels labels(records);
   for (const Record* r : records) {
-    const std::string setting = labels.of(*r);
-    const std::string label = solver_title(r->solver) + (setting.empty() ? "" : " " + setting);
+    const std::string label = titled(r->solver, labels.of(*r));
     TimeSeries series =
         column(store.series(r->key),
                {r->scene, r->solver, label, value, {}, {}, r->key, strain_floor(*r)});

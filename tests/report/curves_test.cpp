@@ -183,10 +183,20 @@ TEST(Settings, ArePutIntoFewWords) {
   EXPECT_EQ(searched_parameters("nobody's"), Names{});
   EXPECT_EQ(searched_parameters("mass-spring"), (Names{"precision", "structural", "shear"}));
   EXPECT_TRUE(std::ranges::count(searched_parameters("bullet"), "reorder"));
-  EXPECT_EQ(brief_settings("jakobsen:substeps=2,iterations=8,order=mesh"), "2 × 8, order=mesh");
-  EXPECT_EQ(brief_settings("mass-spring:substeps=4,drag=2"), "4 substeps, drag=2");
-  EXPECT_EQ(brief_settings("nosuch:abc"), "abc");
-  EXPECT_EQ(brief_settings("nosuch"), "");
+  const auto brief = [](const char* solver) { return brief_settings(parse_solver(solver)); };
+  EXPECT_EQ(brief("jakobsen:substeps=2,iterations=8,order=mesh"), "2 × 8, order=mesh");
+  EXPECT_EQ(brief("mass-spring:substeps=4,drag=2"), "4 substeps, drag=2");
+  EXPECT_EQ(brief("avbd:iterations=4"), "1 × 4") << "k-max=1e+09 is its default, 1e9";
+  Record gone;  // its solver is not here
+  gone.solver = "nosuch";
+  gone.spec.solver = "nosuch:a=1,sweeps=4";
+  gone.params = {{"a", "1"}, {"sweeps", "4"}};
+  gone.work_parameters = {"sweeps"};
+  gone.sweeps = 4;
+  EXPECT_EQ(brief_settings(gone), "1 × 4, a=1");
+  EXPECT_EQ(titled("nosuch", brief_settings(gone)), "Nosuch 1 × 4, a=1");
+  EXPECT_EQ(titled("jakobsen", ""), "Jakobsen");
+  EXPECT_EQ(named_setting(kSweeps, "8"), "8 sweeps");
   EXPECT_EQ((Work{-1, -1}).text(), "defaults");
   EXPECT_EQ((Work{-1, 4}).text(), "4 sweeps");
   EXPECT_EQ((Work{0, 0}).text(), "0 × 0");

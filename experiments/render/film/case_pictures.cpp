@@ -11,7 +11,7 @@ Image panel(const TitledCase& titled, const Store& store) {
   const Case one = make_case(titled.spec);
   RecordedRun run = recorded_run(*one.scene, store.motion(one.key));
   run.title = titled.title;
-  run.settings = report::brief_settings(one.choice.canonical());
+  run.settings = report::brief_settings(one.choice);
   run.colour = kInk;
   const PageLayout layout = PageLayout::page(800, 720, 1);
   SceneRendererOptions look;

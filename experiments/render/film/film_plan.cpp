@@ -27,10 +27,11 @@ struct PlannedFilm {
   std::vector<std::string> labels;  ///< of the runs: "Bullet float"
   bool studied = true;
 
-  /// One more who runs it; `key` of its case, "" of a scene that no study ran.
-  void add(const std::string& solver, const std::string& label, const std::string& key) {
-    film.request.solvers.push_back(solver);
-    media.panels.push_back({solver_name(solver), report::brief_settings(solver), key});
+  /// One more who runs it, with the solver of this record; `key` of its case, "" of a scene that no
+  /// study ran.
+  void add(const Record& one, const std::string& label, const std::string& key) {
+    film.request.solvers.push_back(one.spec.solver);
+    media.panels.push_back({one.solver, report::brief_settings(one), key});
     labels.push_back(label);
   }
 };
@@ -49,7 +50,7 @@ PlannedFilm of_studied(const report::ComparedSolvers& compared, const report::Qu
     }
     request.scene = one->spec.scene;
     request.settings = one->spec.settings;
-    planned.add(one->spec.solver, compared.all[i].label, one->key);
+    planned.add(*one, compared.all[i].label, one->key);
   }
   return planned;
 }
@@ -82,7 +83,7 @@ PlannedFilm of_other(const report::ComparedSolvers& compared, const OtherScene& 
     const SolverChoice choice = parse_solver((*quoted)->spec.solver);
     const std::string why = join(choice.entry->unsupported(scene, choice.params), "; ");
     if (why.empty())
-      planned.add((*quoted)->spec.solver, solver.label, "");
+      planned.add(**quoted, solver.label, "");
     else
       planned.media.refused.emplace_back(solver.name, why);
   }

@@ -25,13 +25,13 @@ Rgb8 colour_of(std::string_view hex) {
   return rgb(static_cast<std::uint32_t>(std::stoul(std::string(hex.substr(1)), nullptr, 16)));
 }
 
-/// A motion with the title, settings and colour of the solver that made it.
-RecordedRun shown_run(const Scene& scene, Trajectory motion) {
-  const std::string solver = motion.solver;
-  RecordedRun run = recorded_run(scene, std::move(motion));
-  const std::string name = solver_name(solver);
+/// The motion of a case with the title, settings and colour of its solver.
+RecordedRun shown_run(const Case& one, std::vector<Frame> frames) {
+  RecordedRun run =
+      recorded_run(*one.scene, {one.choice.canonical(), one.scene->dt, std::move(frames)});
+  const std::string_view name = one.choice.entry->name;
   run.title = report::solver_title(name);
-  run.settings = report::brief_settings(solver);
+  run.settings = report::brief_settings(one.choice);
   run.colour = colour_of(report::solver_style(name).colour.light);
   return run;
 }
@@ -45,8 +45,7 @@ RecordedRun finished_run(IsolatedCase& process) {
   if (!fs::exists(motion))
     throw InputError(one.choice.brief() + " left no motion of " + one.scene->name + ": " +
                      std::string(to_string(status.kind)) + ", " + status.reason);
-  RecordedRun run = shown_run(*one.scene, {one.choice.canonical(), one.scene->dt,
-                                           frames_in(read_text(motion), one.scene->mesh.size())});
+  RecordedRun run = shown_run(one, frames_in(read_text(motion), one.scene->mesh.size()));
   if (run.stop && status.kind != Status::Kind::ok) run.stop->why = to_string(status.kind);
   return run;
 }

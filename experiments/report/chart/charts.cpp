@@ -37,13 +37,6 @@ Settings settings(const Record& record, const std::vector<std::string>& free) {
   return all;
 }
 
-/// What a setting adds to the label of a curve.
-std::string in_label(const std::string& key, const std::string& value) {
-  if (key == kSweeps) return value + " sweeps";
-  if (key == kSubsteps) return value + " substeps";
-  return named_setting(key, value);
-}
-
 bool is_setting(const std::string& name) {
   return name == kSweeps || name == "dt" || name == kSubsteps || name == "vertices";
 }
@@ -156,7 +149,7 @@ std::vector<Curve> make_curves(const Records& records, const std::string& x, con
     if (fresh) {
       Curve curve{solver_title(record.solver), record.solver, variants[record.solver]++, {}};
       for (const auto& [key, value] : all)
-        if (varies(record, key)) curve.label += " " + in_label(key, value);
+        if (varies(record, key)) curve.label += " " + named_setting(key, value);
       curves.push_back(std::move(curve));
     }
     Point point{value_of(record, x), value_of(record, y), value_of(record, along), &record};

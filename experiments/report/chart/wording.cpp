@@ -264,22 +264,32 @@ Work work_of(const Record& r) {
   return {r.sweeps >= 0 ? std::max(1, r.substeps) : r.substeps, r.sweeps};
 }
 
-std::string brief_settings(const std::string& solver) try {
-  const SolverChoice choice = parse_solver(solver);
+namespace {
+
+std::string with_work(const Work& work, const std::string& others) {
+  if (others.empty()) return work.text();
+  return work == Work{} ? others : work.text() + ", " + others;
+}
+
+}  // namespace
+
+std::string brief_settings(const SolverChoice& choice) {
   Record described;
   describe_solver(described, choice);
-  std::string text;
-  for (const ParamSpec& spec : choice.params.specs()) {
-    const std::string name(spec.name), value(choice.params.value(spec.name));
-    const bool is_work = std::ranges::count(described.work_parameters, name) > 0;
-    if (!is_work && value != spec.default_value) text += ", " + name + "=" + value;
-  }
-  const Work work = work_of(described);
-  if (work == Work{} && !text.empty()) return text.substr(2);
-  return work.text() + text;
+  const std::string changed = choice.params.brief(join(described.work_parameters, "|"));
+  const auto text = [](const ParamItem& one) { return one.key + "=" + one.value; };
+  return with_work(work_of(described), join(param_items(changed), ", ", text));
+}
+
+std::string brief_settings(const Record& r) try {
+  return brief_settings(parse_solver(r.spec.solver));
 } catch (const InputError&) {
-  const auto colon = solver.find(':');
-  return colon == std::string::npos ? "" : solver.substr(colon + 1);
+  const auto text = [](const auto& one) { return one.first + "=" + one.second; };
+  return with_work(work_of(r), join(other_settings(r), ", ", text));
+}
+
+std::string titled(const std::string& solver, const std::string& settings) {
+  return solver_title(solver) + (settings.empty() ? "" : " " + settings);
 }
 
 std::string unequal_work(const Records& records) {
@@ -316,12 +326,12 @@ std::optional<std::string> setting_of(const Record& r, const std::string& name) 
   return at->second;
 }
 
-/// "" for a solver or a parameter that this program lacks.
-std::string_view default_of(const std::string& solver, const std::string& name) {
+/// In canonical form; "" for a solver or a parameter that this program lacks.
+std::string default_of(const std::string& solver, const std::string& name) {
   const SolverEntry* entry = find_entry(solver);
   if (!entry) return "";
-  const auto spec = std::ranges::find(entry->params, name, &ParamSpec::name);
-  return spec == entry->params.end() ? "" : spec->default_value;
+  const Params defaults(entry->name, entry->params, "");
+  return defaults.has(name) ? std::string(defaults.value(name)) : "";
 }
 
 std::vector<std::string> names_in_labels(const std::string& solver) {
@@ -333,6 +343,8 @@ std::vector<std::string> names_in_labels(const std::string& solver) {
 }  // namespace
 
 std::string named_setting(const std::string& name, const std::string& value) {
+  if (name == kSweeps) return value + " sweeps";
+  if (name == kSubsteps) return value + " substeps";
   const bool word = value != "on" && value != "off" &&
                     value.find_first_not_of("0123456789.+-e/") != std::string::npos;
   return word ? value : name + "=" + value;

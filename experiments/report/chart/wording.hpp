@@ -102,15 +102,20 @@ struct Work {
 };
 Work work_of(const Record&);
 
-/// "1 × 16, order=mesh" of "jakobsen:substeps=1,iterations=16,...": its work, and whatever differs
-/// from the defaults. For a solver that this program lacks: the text behind its name.
-std::string brief_settings(const std::string& solver);
+/// "1 × 16, order=mesh": the work, and whatever differs from the defaults.
+std::string brief_settings(const SolverChoice&);
+/// The same of a record; for a solver that this program lacks, with all of its parameters.
+std::string brief_settings(const Record&);
+
+/// "Jakobsen 1 × 16, order=mesh"; the title alone if there are no settings.
+std::string titled(const std::string& solver, const std::string& settings);
 
 /// The work of each solver with sweeps, "Jakobsen 5 × 1 to 64, Bullet 1 × 1 to 64" (substeps ×
 /// sweeps), if they have none in common; "" if they have.
 std::string unequal_work(const Records&);
 
-/// "mesh", which speaks for itself; "levels=4" and "tethers=on", whose values do not.
+/// "mesh", which speaks for itself; "levels=4" and "tethers=on", whose values do not; "8 sweeps" of
+/// kSweeps.
 std::string named_setting(const std::string& name, const std::string& value);
 
 /// A part of a label.

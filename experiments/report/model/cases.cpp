@@ -96,7 +96,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
            {"solver", r.solver},
            {"settings", r.spec.solver},
            {"parameters", r.params},
-           {"brief", brief_settings(r.spec.solver)},
+           {"brief", brief_settings(r)},
            {"studies", refs.studies_of(r)},
            {"dt", r.dt},
            {"steps", r.steps},

@@ -62,7 +62,7 @@ std::vector<Changed> all_changed(const std::vector<ComparedCase>& cases) {
 /// Row of a change: the case, its value in A and in B, the change, and whether that is better.
 std::vector<Cell> row_of(const Changed& changed, CaseList& refs) {
   const auto& [a, b] = *changed.pair;
-  Cell head(b.scene + " " + solver_title(b.solver) + " " + brief_settings(b.spec.solver) + ", " +
+  Cell head(b.scene + " " + titled(b.solver, brief_settings(b)) + ", " +
             quantity("dt").text(b.dt, 3));
   head.key = refs.key(b);
   if (!changed.value)

@@ -27,7 +27,8 @@ ComparedSolver choose(const std::string& solver, const std::vector<const Record*
   const auto most = std::ranges::max_element(groups, {}, [](const auto& g) { return g.size(); });
   ComparedSolver chosen{solver, solver_title(solver), *most};
   for (const auto& setting : other_settings(*most->front()))
-    if (having.at(setting) < groups.size()) chosen.label += " " + setting.second;
+    if (having.at(setting) < groups.size())
+      chosen.label += " " + named_setting(setting.first, setting.second);
   return chosen;
 }
 

@@ -31,10 +31,7 @@ std::string stiffness_of(const Record& r) {
 /// Column of a case: "swing, structural = 1e3".
 std::string column_of(const Record& r) { return r.scene + ", " + stiffness_of(r); }
 
-std::string row_of(const Record& r) {
-  const std::string settings = brief_settings(r.spec.solver);
-  return solver_title(r.solver) + (settings.empty() ? "" : " " + settings);
-}
+std::string row_of(const Record& r) { return titled(r.solver, brief_settings(r)); }
 
 const char* verdict(const Record& r) {
   const auto value = [&](std::string_view name) { return r.value(std::string(name)); };
