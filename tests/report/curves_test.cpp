@@ -172,6 +172,13 @@ TEST(Quantities, ReadARecordsSettingsSizesAndValues) {
   EXPECT_EQ(quantity("cpu.per_step").text(0.002), "2.0\u00A0ms");
   EXPECT_EQ(quantity("penetration.box.max").title, "largest penetration box");
   EXPECT_EQ(quantity("no.such").title, "no.such");
+  EXPECT_EQ(quantity("structural").label(), "structural") << "N/m of some, m/N of XPBD";
+  EXPECT_EQ(quantity("structural").help, "");
+  EXPECT_EQ(quantity("structural", "mass-spring").label(), "structural [N/m]");
+  EXPECT_EQ(quantity("xpbd:structural").label(), "structural [m/N]");
+  EXPECT_EQ(quantity("xpbd:structural").name, "xpbd:structural");
+  EXPECT_EQ(quantity("omega").label(), "omega");
+  EXPECT_TRUE(quantity("omega").help.starts_with("relaxation factor"));
 }
 
 TEST(Settings, ArePutIntoFewWords) {

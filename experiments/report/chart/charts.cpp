@@ -307,8 +307,8 @@ std::vector<StatusMap> make_maps(const Records& records, const std::string& scen
     StatusMap map{.scene = scene,
                   .solver = curve.solver,
                   .label = curve.label,
-                  .x = quantity(x),
-                  .y = quantity(y)};
+                  .x = quantity(x, curve.solver),
+                  .y = quantity(y, curve.solver)};
     std::set<double> columns, rows;
     for (const Point& p : curve.points) {
       columns.insert(p.x);

@@ -104,8 +104,6 @@ constexpr std::array kTitles{
            "of the prediction, weighted by mass"},
     Titled{"step.stretch", "RMS of length - rest length", kErrorLength},
     Titled{"step.residual", "|gradient of G|", {"N", "N", 1, true, true}},
-    Titled{"structural", "structural links: stiffness in N/m, of xpbd compliance in m/N", kNumber},
-    Titled{"omega", "relaxation factor", kNumber},
     Titled{"cloth.weights.0.factor", "mass ratio", kNumber},
 };
 
@@ -163,14 +161,35 @@ std::string Quantity::label() const {
   return unit.shown.empty() ? title : title + " [" + std::string(unit.shown) + "]";
 }
 
-Quantity quantity(std::string_view name) {
+namespace {
+
+/// A parameter by its row; `solver`: "" for all that have it. What their rows disagree on is left
+/// out.
+std::optional<Quantity> parameter_quantity(std::string_view name, std::string_view solver) {
+  std::optional<Quantity> found;
+  for (const SolverEntry* entry : solvers()) {
+    if (!solver.empty() && entry->name != solver) continue;
+    for (const ParamSpec& spec : entry->params) {
+      if (spec.name != own_parameter(entry->name, name)) continue;
+      const Unit unit = spec.unit.empty() ? kNumber : Unit{spec.unit, spec.unit};
+      if (!found) found = {std::string(name), std::string(spec.name), unit, std::string(spec.help)};
+      if (found->unit.si != unit.si) found->unit = kNumber;
+      if (found->help != spec.help) found->help.clear();
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+Quantity quantity(std::string_view name, std::string_view solver) {
   std::string own(name);
   if (const auto known = std::ranges::find(kTitles, name, &Titled::name); known != kTitles.end())
     return {own, std::string(known->title), known->unit, std::string(known->help)};
   if (const RecordColumn* field = find_axis(name))
     return {own, std::string(field->title), field->unit};
   const ValueSpec* value = find_value(name).second;
-  if (!value) return {own, own};
+  if (!value) return parameter_quantity(name, solver).value_or(Quantity{own, own});
   return {own, value->title.empty() ? title_from(name) : std::string(value->title), value->unit,
           std::string(value->help), value->window};
 }
@@ -185,6 +204,10 @@ std::vector<std::string> quantity_names() {
   for (const Titled& known : kTitles) names.emplace_back(known.name);
   for (const RecordColumn& column : record_columns())
     if (!column.title.empty()) names.emplace_back(column.json);
+  for (const SolverEntry* entry : solvers())
+    for (const ParamSpec& spec : entry->params)
+      if (spec.kind == ParamSpec::Kind::integer || spec.kind == ParamSpec::Kind::real)
+        push_unique(names, spec.name);
   return names;
 }
 

@@ -52,8 +52,9 @@ struct Quantity {
   std::string label() const;
   std::string text(double si, int digits = 2) const { return taut::shown(unit, si, digits); }
 };
-/// As the metric's own file declares it; unknown names are shown as they are.
-Quantity quantity(std::string_view name);
+/// As the metric's own file declares it, or the row of a parameter: that of `solver`, or what the
+/// rows of all solvers agree on. Unknown names are shown as they are.
+Quantity quantity(std::string_view name, std::string_view solver = "");
 
 /// "4 ms" of one value, "4 ms to 17 ms" of several; of at least one.
 std::string range_text(const std::set<double>& values, const Quantity&);

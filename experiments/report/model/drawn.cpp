@@ -211,14 +211,15 @@ void add_figure(DrawnCharts& drawn, std::string_view of, const Figure& figure, C
 }
 
 Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
+  for (const Quantity& axis : {map.x, map.y}) refs.use(axis.name);
   Json one{{"id", id},
            {"scene", map.scene},
            {"solver", map.solver},
            {"label", map.label},
            {"title", "How cases end over " + map.x.title + " and " + map.y.title},
            {"study", map.study},
-           {"x", json_of_axis(refs.use(map.x.name), map.columns)},
-           {"y", json_of_axis(refs.use(map.y.name), map.rows)}};
+           {"x", json_of_axis(map.x, map.columns)},
+           {"y", json_of_axis(map.y, map.rows)}};
   SceneSettings common = task_of(*map.cells.front().record).settings;
   for (const StatusMap::Cell& cell : map.cells)
     std::erase_if(common, [&](const SceneSetting& setting) {
