@@ -20,7 +20,7 @@ std::string in_id(const SceneSetting& one) {
   return text;
 }
 
-Case completed(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice,
+Case addressed(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice,
                const std::string& scene_digest) {
   Case one{spec, std::move(scene), std::move(choice), {}, {}, {}, {}};
   one.spec.solver = one.choice.canonical();
@@ -70,14 +70,14 @@ Case CaseMaker::make(const CaseSpec& spec) {
                        ": is not started, for neither the command line nor a study names it");
   });
   if (!wrong.empty()) throw InputError(wrong);
-  Case one = completed(spec, found->scene, std::move(choice), found->digest);
+  Case one = addressed(spec, found->scene, std::move(choice), found->digest);
   one.remarks = found->remarks;
   return one;
 }
 
 Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene> scene, SolverChoice choice) {
   const std::string scene_digest = digest(*scene);
-  return completed(spec, std::move(scene), std::move(choice), scene_digest);
+  return addressed(spec, std::move(scene), std::move(choice), scene_digest);
 }
 
 }  // namespace taut

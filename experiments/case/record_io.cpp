@@ -96,6 +96,10 @@ bool completed(const Status& status) {
   return status.kind == Status::Kind::ok || status.kind == Status::Kind::unsettled;
 }
 
+bool failed(const Status& status) {
+  return !completed(status) && status.kind != Status::Kind::unsupported;
+}
+
 std::string describe(const Status& status) {
   std::string text(to_string(status.kind));
   if (!status.reason.empty()) text += " (" + printable(status.reason) + ")";

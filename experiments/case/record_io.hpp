@@ -12,6 +12,9 @@ class JsonReader;
 
 /// Whether it ran to its end without an extreme, so that its values may be compared and averaged.
 bool completed(const Status&);
+/// Whether the solver tried and has no value. What it says beforehand that it cannot run is no
+/// failure.
+bool failed(const Status&);
 
 /// "exploded (energy) at step 12, vertex 3".
 std::string describe(const Status&);

@@ -8,6 +8,7 @@
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/chart/format.hpp"
 #include "experiments/report/chart/palette.hpp"
@@ -244,8 +245,7 @@ class Builder {
                      {"title", name},
                      {"glyph", style.glyph},
                      {"help", style.help},
-                     {"failed", kind != Status::Kind::ok && kind != Status::Kind::unsettled &&
-                                    kind != Status::Kind::unsupported},
+                     {"failed", taut::failed({.kind = kind})},
                      {"colour", json_of(style.colour)},
                      {"ink", json_of(style.ink)}});
     }

@@ -296,7 +296,7 @@ void add_bench(ReportInput& input, const std::vector<Study>& studies, const Stor
       for (StudyBench& bench : stored_benches(store, name)) {
         keep_current(bench);
         if (bench.scenes.empty()) continue;
-        input.cost_hosts.push_back(bench.host + ", build " + bench.build.substr(0, 10) + ": " +
+        input.cost_hosts.push_back(bench.host + ", program " + bench.build.substr(0, 10) + ": " +
                                    bench.machine +
                                    (input.bench ? "; not shown and not pooled" : "; shown"));
         if (!input.bench) input.bench = std::move(bench);

@@ -191,7 +191,7 @@ medians AS (
 SELECT study, cases.scene, solver, setting, dt,
   substeps, sweeps AS iterations,
   cpu, cpu / dt AS cpu_per_second, wall, peak_bytes AS memory, coalesce(taken, 0) AS samples,
-  failure, remark, status, host, build, cases.key
+  failure, remark, status, host, benches.build AS program, cases.key
 FROM timings JOIN benches USING (bench_id) JOIN cases USING (key)
   LEFT JOIN medians USING (timing_id);
 )SQL";

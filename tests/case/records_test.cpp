@@ -134,6 +134,8 @@ TEST(Status, HasANameAndIsAResultOrAFailure) {
   EXPECT_FALSE(is_status("okay"));
   EXPECT_THROW(status_kind("okay"), InputError);
   EXPECT_EQ(describe(Status{}), "ok");
+  EXPECT_FALSE(failed(Status{}) || failed(Status{unsettled}) || failed(Status{unsupported}));
+  EXPECT_TRUE(failed(Status{extreme}) && failed(Status{crash}));
   EXPECT_EQ(describe(Status{exploded, "energy", 0, 0}), "exploded (energy) at step 0, vertex 0");
   EXPECT_EQ(describe(Status{crash, "SIG\x1b", -1, 12}), "crash (SIG?), vertex 12");
   EXPECT_EQ(describe(Status{extreme, "", 3, -1}), "extreme at step 3");

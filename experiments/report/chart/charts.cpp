@@ -201,10 +201,7 @@ void add_floor(Chart& chart) {
   if (highest > 0) chart.floor = {highest, std::string(value->floor.text)};
 }
 
-bool failed(const Point& p) {
-  const Status& status = p.record->status;
-  return !completed(status) && status.kind != Status::Kind::unsupported;
-}
+bool failed(const Point& p) { return failed(p.record->status); }
 
 std::vector<std::string> coincident_curves(const Chart& chart) {
   constexpr double kSame = 0.01;  // of the value: less is the width of a line

@@ -1,4 +1,5 @@
 // The question of failures: how the cases ended that all solvers of a scene ran.
+#include <algorithm>
 #include <map>
 
 #include "core/model/text.hpp"
@@ -10,10 +11,6 @@ namespace taut::report {
 
 namespace {
 
-bool is_failure(const Status& status) {
-  return !completed(status) && status.kind != Status::Kind::unsupported;
-}
-
 /// How the cases of a solver ended, and the key of one that failed.
 struct Count {
   int cases = 0, failed = 0;
@@ -23,7 +20,7 @@ struct Count {
   void add(const Record& r) {
     ++cases;
     if (completed(r.status)) return;
-    const bool fails = is_failure(r.status);
+    const bool fails = taut::failed(r.status);
     failed += fails;
     ++kinds[fails ? std::string(to_string(r.status.kind)) : "unsupported"];
     if (fails && key.empty()) key = r.key;
@@ -70,10 +67,10 @@ std::vector<Cell> row_of(Cell head, const std::vector<Count>& counts, CaseList& 
 
 /// "; of all 240 cases of this page, 3 failed"
 std::string on_whole_page(const CaseList& list) {
-  int failed = 0;
-  for (const Record* r : list.cases()) failed += is_failure(r->status);
+  const auto failures =
+      std::ranges::count_if(list.cases(), [](const Record* r) { return failed(r->status); });
   return "; of all " + std::to_string(list.cases().size()) + " cases of this page, " +
-         std::to_string(failed) + " failed";
+         std::to_string(failures) + " failed";
 }
 
 }  // namespace
