@@ -29,7 +29,7 @@ constexpr int kMostKeyParts = 16;
 /// Most levels of a document; no key is deeper.
 constexpr int kMostLevels = 64;
 
-/// Offset of the first dotted key with more parts than kMostKeyParts; npos if there is none.
+/// Offset of the first dotted key with more parts than kMostKeyParts; npos if there is no such key.
 std::size_t too_long_key(std::string_view text) {
   const auto bare = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
@@ -101,7 +101,8 @@ Value convert(const toml::node& node, int setting, int level = 0) {
   return value;
 }
 
-/// The element of an array that a dotted key names by its index; nullptr if there is none.
+/// The element of an array that a dotted key names by its index; nullptr if there is no such
+/// element.
 Value* element(Value& array, const std::string& key) {
   const auto index = whole<std::size_t>(key);
   return index && *index < array.items.size() ? &array.items[*index] : nullptr;

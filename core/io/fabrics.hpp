@@ -19,7 +19,8 @@ struct Fabric {
 /// All fabrics, sorted by name.
 std::span<const Fabric> fabrics();
 
-/// The fabric of this name. Null if there is none; `problem` then says so, with a suggestion.
+/// The fabric of this name. Null if there is no such fabric; `problem` then says so, with a
+/// suggestion.
 const Fabric* find_fabric(const std::string& name, std::string& problem);
 
 }  // namespace taut

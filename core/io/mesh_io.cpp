@@ -207,7 +207,7 @@ std::vector<int> first_at_each_place(const std::vector<Vec3>& vertices) {
   return first;
 }
 
-/// For each vertex, the first vertex within `reach` that stays, or itself if there is none.
+/// For each vertex, the first vertex within `reach` that stays, or itself if no vertex does.
 /// Vertices that stay are kept in cells of size `reach`, and each vertex searches the cells around
 /// its own.
 std::vector<int> joined(const std::vector<Vec3>& x, double reach) {

@@ -139,7 +139,7 @@ void judge_frames(const Value& item, Section& root, const Collider& collider, co
     }
 }
 
-/// Length of the shortest structural link, seams excluded [m]; 0 if there is none.
+/// Length of the shortest structural link, seams excluded [m]; 0 if there is no such link.
 double spacing(const Scene& scene) {
   double least = 0;
   for (const Link& link : scene.links)

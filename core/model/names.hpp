@@ -22,7 +22,7 @@ class Names {
   constexpr std::string_view operator[](Enumeration value) const {
     return all_[static_cast<std::size_t>(value)];
   }
-  /// The value of that name; nothing: it is none of them.
+  /// The value of that name; nothing if no value has it.
   constexpr std::optional<Enumeration> find(std::string_view name) const {
     const auto at = std::ranges::find(all_, name);
     if (at == all_.end()) return {};

@@ -101,7 +101,7 @@ using ResolvedSettings = std::vector<ResolvedSetting>;
 inline constexpr std::string_view kLinkOrder = "link order";
 /// Setting for the stiffness of links. Its number is that of structural links [N/m], NaN if rigid.
 inline constexpr std::string_view kLinksSetting = "links";
-/// The setting with that name; nullptr if there is none.
+/// The setting with that name; nullptr if there is no such setting.
 const ResolvedSetting* find_setting(const ResolvedSettings&, std::string_view name);
 
 /// Names of parameters, or values, as typed: {"structural", "shear"}.
@@ -129,7 +129,7 @@ struct AccuracyParameters {
   };
   std::string_view substeps;    ///< steps of dt / substeps; "": the solver has none
   std::string_view sweeps;      ///< more sweeps need fewer substeps; "": the solver has none
-  std::string_view link_order;  ///< parameter that kLinkOrder resolves; "": there is none
+  std::string_view link_order;  ///< parameter that kLinkOrder resolves; "": no parameter
   bool all_at_once = false;     ///< an iteration solves for all links at once and is not a sweep
   /// Springs that may be softer or stiffer. Without sweeps, each value needs its own substeps. With
   /// sweeps, stiffer values are tried where the default misses the error; then every value is tried
@@ -252,7 +252,7 @@ std::span<const SolverEntry* const> solvers();
 /// long as the program.
 struct SolverSource {
   std::vector<std::string> (*names)() = nullptr;
-  /// The entry of "name:params"; null if there is none of that name. A solver that was not admitted
+  /// The entry of "name:params"; null if there is no such name. A solver that was not admitted
   /// is neither started nor opened: its entry has no `make`. Throws InputError.
   const SolverEntry* (*find)(std::string_view name, std::string_view params) = nullptr;
   /// Null: the source's solvers need no admission.

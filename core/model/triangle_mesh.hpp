@@ -56,7 +56,7 @@ class TriangleMesh {
   /// Angle-weighted normal, not normalised. Precondition: a triangle has the vertex.
   Vec3 corner_normal(int vertex) const;
   /// Edges are numbered 3 triangle + k, from corner k of the triangle to the next. Returns the
-  /// number of this edge in the triangle beyond it; negative if there is none.
+  /// number of this edge in the triangle beyond it; negative if there is no such triangle.
   int beyond(int triangle, int k) const { return across_[to_place(triangle)][to_place(k)]; }
 
   /// Moves the vertices and keeps the triangles. Boxes and normals are recomputed, the shape of the

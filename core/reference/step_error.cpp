@@ -224,7 +224,7 @@ class StepError::Work {
   double stiffness(const Member& l) const { return is_rigid(l) ? rigid_ : l.stiffness; }
 
   /// Sets way_ to the displacement from x to the minimum of the model there. Returns false if there
-  /// is none.
+  /// is no minimum.
   bool newton(const Points& x, int rounds) {
     for (Member& l : links_) {
       const Vec3 d = x[l.b] - x[l.a];

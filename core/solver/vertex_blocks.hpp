@@ -26,8 +26,8 @@ class AdaptiveStart {
   AdaptiveStart(const Scene& scene, bool on)
       : gravity_(scene.gravity), on_(on && gravity_.norm() > 0) {}
 
-  /// Moves p.x from y to the start. p.previous is x_t. y is that of the last substep, empty if
-  /// there was none, and becomes this one's.
+  /// Moves p.x from y to the start. p.previous is x_t. y is that of the last substep, empty
+  /// before the first one, and becomes this one's.
   void begin(Particles<Real>& p, Points<Real>& y, double h) const {
     if (!on_ || y.empty()) {
       y = p.x;

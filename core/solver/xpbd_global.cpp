@@ -95,7 +95,7 @@ class GlobalLinks final : public Pass<Real> {
     double softness = 0;    ///< a [1/kg], of this substep
     double lambda = 0;      ///< kg m
     double excess = 0;      ///< C [m], at x
-    Vec3 u = Vec3::Zero();  ///< unit direction at x; 0 if there is none
+    Vec3 u = Vec3::Zero();  ///< unit direction at x; 0 if the ends meet
   };
   /// Entry of the matrix to which a vertex shared by two links adds its mobility times u.u.
   struct Shared {

@@ -62,7 +62,7 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 std::string_view to_string(Cell::State);
-std::optional<Cell::State> cell_state(std::string_view);  ///< nothing: it is none of them
+std::optional<Cell::State> cell_state(std::string_view);  ///< nothing: no state has that name
 
 /// Description of a column: its name in data ("cpu"), its heading and its unit.
 struct Column {
@@ -125,8 +125,8 @@ struct Answer {
 
   void add(Column, Cell);
   Table& add(Table);
-  const Cell& fact(std::string_view name) const;    ///< an empty cell if there is none
-  const Table& table(std::string_view name) const;  ///< a table without rows if there is none
+  const Cell& fact(std::string_view name) const;    ///< an empty cell: no such fact
+  const Table& table(std::string_view name) const;  ///< a table without rows: no such table
   bool operator==(const Answer&) const = default;
 };
 

@@ -37,7 +37,7 @@ struct BaselineRow {
 };
 /// Sorted by id.
 using Baseline = std::vector<BaselineRow>;
-const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullptr if there is none
+const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullptr: no such row
 
 /// Row for a record. `scene` is digest(Scene) of the scene that the record's spec names. The solver
 /// keeps only parameters that differ from their defaults, so that a new parameter changes no row.
@@ -119,8 +119,8 @@ Comparison compare(const Baseline& before, const Baseline& now, const Tolerances
 /// from `now`, rounded to a hundredth of the tolerance.
 Baseline updated(const Baseline& before, const Baseline& now, const Tolerances&);
 
-/// Reads every <solver>.jsonl in a study's folder; empty if there is none. Throws InputError with
-/// file and line.
+/// Reads every <solver>.jsonl in a study's folder; empty without such a file. Throws InputError
+/// with file and line.
 Baseline read_baseline(const std::filesystem::path& folder);
 
 /// Writes <solver>.jsonl with one row per line, sorted by id. Leaves unchanged files alone and

@@ -39,7 +39,7 @@ struct ComparedValue {
     same,    ///< within the tolerance
     moved,   ///< beyond it, or a number has come or gone
     lost,    ///< there is no such value any more
-    gained,  ///< there was none
+    gained,  ///< there was no value
   };
   std::string value;           ///< "stretch.rms"
   double before = 0, now = 0;  ///< NaN: no meaning, or none

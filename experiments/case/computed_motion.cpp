@@ -66,7 +66,7 @@ class Neighbours {
     std::ranges::sort(order_, {}, [&](std::size_t i) { return all_[i].x(); });
   }
 
-  /// The nearest within `radius`; kNoVertex: there is none.
+  /// The nearest within `radius`; kNoVertex: there is no such vertex.
   std::size_t within(const Vec3& x, double radius) const {
     std::size_t best = kNoVertex;
     auto at = std::ranges::lower_bound(order_, x.x() - radius, {},

@@ -93,7 +93,7 @@ std::vector<Study> load_studies_to_plot(const std::vector<std::string>& names_or
 std::vector<StudyCases> cases_of_each(const std::vector<Study>&);
 
 /// Hint at presets of a study whose cases are all stored: "; preset quick has all of its results:
-/// --preset quick"; "" if there is none.
+/// --preset quick"; "" if no other preset has.
 std::string where_else(const Study&, const Store&);
 /// The study as words of a command: "iterations --preset quick".
 std::string study_words(const Study&);

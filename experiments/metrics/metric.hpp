@@ -127,7 +127,7 @@ class Metric {
   virtual std::vector<double> finish() = 0;
   /// The values at this moment, for series, in the same order; NaN where `in_series` is false.
   virtual std::vector<double> now(const Snapshot&) const = 0;
-  /// After a run: what its values refer to, or why there are none; "": the entry says it all.
+  /// After a run: what its values refer to, or why there is no value; "": the entry says it all.
   virtual std::string remark() const { return ""; }
 };
 
@@ -145,7 +145,7 @@ struct MetricEntry {
 /// All metrics of this program, sorted by name (generated; see cmake/registry.cmake).
 std::span<const MetricEntry* const> metrics();
 
-/// The value of this name and its metric; nulls if there is none.
+/// The value of this name and its metric; nulls if there is no such value.
 inline std::pair<const MetricEntry*, const ValueSpec*> find_value(std::string_view name) {
   for (const MetricEntry* metric : metrics())
     for (const ValueSpec& value : metric->values)

@@ -11,15 +11,15 @@ namespace taut::report {
 // InputError if an answer cannot be understood.
 
 /// Answer of `taut verify --record`: for each truth the finding nearest to its tolerance, and all
-/// findings that did not simply pass. nullopt if there is none.
+/// findings that did not simply pass. nullopt if there is no answer.
 std::optional<Truths> stored_truths(const Store&, std::string_view program);
 
 /// Answer of `taut check --record`: how much was compared with the committed baselines, and what
-/// moved. nullopt if there is none.
+/// moved. nullopt if there is no answer.
 std::optional<Json> stored_regressions(const Store&, std::string_view program);
 
 /// Answers of `taut require`, by name of the scene: a row for the smallest model that keeps the
-/// scene's answers. Null if there are none.
+/// scene's answers. Null if there is no answer.
 Json stored_requirements(const Store&, std::string_view program);
 
 /// Answers of `taut frontier --all`, solver by solver.

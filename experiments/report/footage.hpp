@@ -16,7 +16,7 @@ struct ColourBar {
 /// A picture or video of a scene, held as bytes so that the report stays one file.
 struct Footage {
   std::string type;         ///< "video/mp4", "image/jpeg" or "image/png"
-  std::string bytes;        ///< the file; "": there is none
+  std::string bytes;        ///< the file; "": there is no file
   std::string poster;       ///< picture shown before a video plays and in print; may be empty
   std::string poster_type;  ///< "image/jpeg" or "image/png"
   std::string alt;          ///< description for readers who cannot see it

@@ -23,8 +23,8 @@ struct FigureRequest {
   Title title = Title::single;  ///< `single`: only with a single panel
 };
 
-/// The pictures that the study's file requests. Throws InputError if there are none or a slope is
-/// not a number.
+/// The pictures that the study's file requests. Throws InputError if there is no picture or a slope
+/// is not a number.
 std::vector<FigureRequest> figures_of(const Study&);
 
 /// Keeps only the records of these solvers and scenes; an empty list stands for all. Throws

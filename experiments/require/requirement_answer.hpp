@@ -17,7 +17,7 @@ struct RequirementSummary {
 };
 RequirementSummary summary_of(const Requirement&);
 
-/// The answer of `taut require`. `picture` is its file, or "" if there is none; `seconds` of the
+/// The answer of `taut require`. `picture` is its file, or "" without a picture; `seconds` of the
 /// patience were used. The memory of a step of the full model is read from the store.
 Answer answer_of(const Requirement&, const Store&, const std::string& picture, double seconds,
                  double patience);

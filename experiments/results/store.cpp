@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kMostErrors = std::size_t{64} << 10;  ///< most bytes of stderr that are kept
 
-/// The last `most` bytes of a file; "" if there is none.
+/// The last `most` bytes of a file; "" if there is no file.
 std::string end_of(const fs::path& file, std::size_t most) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   if (!in) return {};
@@ -230,7 +230,7 @@ Trajectory Store::motion(const std::string& key) const {
   const auto fail = [&](const std::string& why) {
     throw InputError(file().string() + ": motion of " + key + ": " + why);
   };
-  if (!row.next()) fail("there is none");
+  if (!row.next()) fail("it is not stored");
   if (sha256(row.text(0)) != row.text(4)) fail("it does not match its digest");
   try {
     return {row.text(2), row.number(3), frames_in(row.text(0), whole_or_none(row, 1))};

@@ -17,7 +17,7 @@ namespace taut {
 
 class Database;
 
-/// Files that a case leaves beside its record, as texts; "" if there is none.
+/// Files that a case leaves beside its record, as texts; "" if there is no such file.
 struct CaseFiles {
   std::string series;  ///< kSeriesFile: values over time, in the form of to_json(Series)
   std::string motion;  ///< kFramesFile
@@ -45,12 +45,12 @@ class Store {
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path file() const { return root_ / "results.db"; }
 
-  /// The stored record, or nothing if there is none. A record that does not match its digest is
-  /// reported and treated as missing. Throws InputError if the file is damaged or unreadable.
+  /// The stored record, or nothing if there is no record. A record that does not match its digest
+  /// is reported and treated as missing. Throws InputError if the file is damaged or unreadable.
   std::optional<Record> find(const std::string& key) const;
   /// The stored record under the names that this case has now.
   std::optional<Record> find(const Case&) const;
-  /// Values over time of a stored case; empty if there are none.
+  /// Values over time of a stored case; empty if there are no values.
   Series series(const std::string& key) const;
   /// Whether the motion of a stored case is kept.
   bool has_frames(const std::string& key) const;

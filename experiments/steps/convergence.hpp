@@ -17,7 +17,7 @@ struct ConvergencePoint {
   /// mass-weighted distance from the exact step, relative to that of the prediction. NaN if there
   /// is no exact step.
   double gap = 0;
-  double distance = 0;      ///< m, RMS distance from the exact step; NaN if there is none
+  double distance = 0;      ///< m, RMS distance from the exact step; NaN without one
   double milliseconds = 0;  ///< CPU time of the step, the least of three
 };
 
@@ -45,7 +45,7 @@ State state_at(const Scene&, const SolverChoice& from, double at);
 std::vector<Convergence> converge(const Scene&, const State& state, double at,
                                   const std::vector<std::string>& solvers, int most);
 
-/// Index of the first point from which on the gap is at most `gap`; -1 if there is none.
+/// Index of the first point from which on the gap is at most `gap`; -1 if there is no such point.
 int reached(const Convergence&, double gap);
 
 }  // namespace taut

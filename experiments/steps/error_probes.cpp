@@ -95,7 +95,7 @@ struct Probed {
   const Scene& scene;
   double at;
   State from;
-  std::vector<Vec3> exact;  ///< empty if there is none
+  std::vector<Vec3> exact;  ///< empty if there is no exact step
   reference::StepError error;
 
   Probed(const Scene& s, double time, const std::string& solver)

@@ -38,7 +38,7 @@ struct StepSolver {
   std::string text;        ///< "vbd:structural=800"
   double structural = 0;   ///< stiffness [N/m]; NaN: rigid
   double contraction = 0;  ///< factor of the distance per further iteration
-  double floor = 0;  ///< m, distance of another fixed point where they end; NaN if there is none
+  double floor = 0;  ///< m, distance of another fixed point where they end; NaN: no such point
   double moved = 0;  ///< m, last correction of the exact step
   /// Distance from the exact step [m], by number of iterations.
   std::map<int, double> distances = {};

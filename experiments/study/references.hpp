@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// Result for one reference: its floor, or why there is none.
+/// Result for one reference: its floor, or why there is no reference.
 struct ReferenceOutcome {
   std::string scene, kind, derivation, refused;
   double t = 0, floor = 0;  ///< s, m

@@ -18,8 +18,8 @@ auto distinct(const Range& range, const Key& key = {}) {
   return keys;
 }
 
-/// The values grouped under `name`; adds an empty group if there is none. Groups stay in order of
-/// appearance.
+/// The values grouped under `name`; adds an empty group if there is no such group. Groups stay in
+/// order of appearance.
 template <class Value>
 std::vector<Value>& group_of(std::vector<std::pair<std::string, std::vector<Value>>>& groups,
                              const std::string& name) {

@@ -39,7 +39,7 @@ Scene let_go(int n, double degrees) {
 }
 
 /// Order in dt of the distance after 0.25 s between a solver and the converged motion; NaN if there
-/// is none.
+/// is no order.
 PowerLaw order_from(const reference::Trajectory& converged, const std::vector<double>& steps,
                     const Scene& s, const std::string& solver) {
   return fit_over(steps, [&](double dt) {

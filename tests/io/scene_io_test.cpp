@@ -29,7 +29,7 @@ Scene shipped(const std::string& name, const SceneSettings& settings = {}) {
   return load_scene(kScenes / (name + ".toml"), settings);
 }
 
-/// Errors in the text of a scene file called x; "" if there are none.
+/// Errors in the text of a scene file called x; "" if there is no error.
 std::string errors_of(const std::string& text, const SceneSettings& settings = {}) {
   try {
     parse_scene("x", text, settings);

@@ -162,7 +162,7 @@ def compared(value):
 
 
 def best_of(values, nothing):
-    """The solver whose value is smaller than all others by more than a twentieth; None if there is none."""
+    """The solver whose value is smaller than all others by more than a twentieth; None if there is no such solver."""
     ranked = sorted((max(v, nothing), s) for s, v in values.items())
     if len(ranked) < 2:
         return None

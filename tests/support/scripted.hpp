@@ -32,7 +32,7 @@ class Scripted {
     make_folder(folder());
   }
   std::filesystem::path folder() const { return scratch_.path() / "told"; }
-  /// Text that the script left in this file; "" if there is none.
+  /// Text that the script left in this file; "" if there is no file.
   std::string told(const std::string& name) const {
     return std::filesystem::exists(folder() / name) ? read_text(folder() / name) : "";
   }

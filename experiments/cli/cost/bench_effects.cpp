@@ -24,7 +24,7 @@ struct Options {
 
 constexpr Unit kNs = kNanoseconds;
 
-/// Result of `interval()` for these samples; empty if there are none.
+/// Result of `interval()` for these samples; empty without samples.
 template <class MakeInterval>
 Cell of(const std::vector<double>& samples, const MakeInterval& interval) {
   return samples.empty() ? Cell() : Cell(interval());

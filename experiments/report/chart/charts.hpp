@@ -89,7 +89,7 @@ std::vector<std::string> coincident_curves(const Chart&);
 /// Whether the point has no value to be drawn: it failed. What a solver cannot run is no failure.
 bool failed(const Point&);
 
-/// c of a theory line y = c x^slope below the lowest curve; NaN: there is none.
+/// c of a theory line y = c x^slope below the lowest curve; NaN: there is no line.
 double theory_factor(const Chart&);
 
 /// What the theory line is called: "theory of relaxation: 1/sweeps".

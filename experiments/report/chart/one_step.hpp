@@ -12,7 +12,7 @@ namespace taut::report {
 std::string solver_label(const OneStep&, const std::string& solver);
 
 /// The records with a value above 0, which a logarithmic axis can show. Throws InputError if there
-/// are none.
+/// is no such record.
 Records step_records(const OneStep&, std::string_view kind);
 /// A chart that points into the records. Throws as step_records() does.
 Chart step_chart(const OneStep&, std::string_view kind);

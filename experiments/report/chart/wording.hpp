@@ -84,7 +84,7 @@ std::map<std::string, std::string> other_settings(const Record&);
 /// The parameters that labels of this solver name beside substeps and sweeps, by its entry; empty
 /// for a solver that this program lacks.
 std::vector<std::string> labelled_parameters(const std::string& solver);
-/// The parameter that its link order comes of; "": there is none.
+/// The parameter that its link order comes of; "": there is no such parameter.
 std::string link_order_parameter(const std::string& solver);
 /// The parameters that are the stiffness of its springs.
 std::vector<std::string> stiffness_parameters(const std::string& solver);

@@ -83,7 +83,7 @@ function shown(value, quantity, digits) {
   return text === '–' || !quantity.unit ? text : text + '\u00A0' + quantity.unit;
 }
 
-/** A 95 % interval: "0.31–0.35 %"; "" if there is none. */
+/** A 95 % interval: "0.31–0.35 %"; "" without an end. */
 function interval(low, high, quantity) {
   if (typeof low !== 'number' || typeof high !== 'number') return '';
   return number(low * quantity.scale) + '–' + shown(high, quantity);

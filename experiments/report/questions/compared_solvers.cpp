@@ -51,8 +51,8 @@ Work commonest_work(const ComparedSolver& solver, Admits admits) {
 }
 
 /// Chooses the work at which each compared solver is quoted: of the works that all solvers with
-/// sweeps ran, the one nearest to 1 × 16. If there is none, each solver has its own, with the same
-/// number of sweeps if possible.
+/// sweeps ran, the one nearest to 1 × 16. If no work is common, each solver has its own, with the
+/// same number of sweeps if possible.
 void choose_work(std::vector<ComparedSolver>& compared) {
   std::map<Work, int> counts;
   std::map<int, int> sweep_counts;

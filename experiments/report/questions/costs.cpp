@@ -88,7 +88,7 @@ void mark_cheapest(std::vector<Cell>& row, const JudgedScene& scene, const Chose
       scene.bench.control);
 }
 
-/// Geometric mean of ratios; nothing: one of them is missing, or there is none.
+/// Geometric mean of ratios; nothing: one of them is missing, or there is no ratio.
 std::optional<Interval> mean_ratio(const std::vector<std::optional<Interval>>& ratios) {
   if (ratios.empty() || !std::ranges::all_of(ratios, &std::optional<Interval>::has_value))
     return {};

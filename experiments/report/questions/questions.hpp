@@ -10,7 +10,7 @@ namespace taut::report {
 
 /// The results of a run, with a table for each question. Its rows are scenes and its columns
 /// solvers. The last row combines the scenes on which every solver with any value in the table has
-/// one. A cell is a value, or the reason why there is none: "not run", "cannot: friction",
+/// one. A cell is a value, or the reason why there is no value: "not run", "cannot: friction",
 /// "exploded". Its note is the setting, if not all share it. The best of a row is marked in
 /// questions of cost, of what a cost buys, and of failures. It has to be better by more than
 /// kTolerance and, for costs, by more than identical code differed from itself (judge()).
