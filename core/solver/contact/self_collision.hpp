@@ -36,8 +36,10 @@ namespace taut {
 ///
 ///     c' = n max(0, least - n . (d - c)),    d = x_b - x_a,  n = d/|d|
 ///
-/// c' - c moves x and y alike, so that links feel m/h^2 c. At the end c is the multiplier of
-/// Signorini's conditions: with links, no pair yields more to a push than its free masses do.
+/// c' - c moves x and y alike, so that links feel the force m/h^2 c, m = 1/(w_a + w_b). Once the
+/// sweeps have converged, c is the multiplier of Signorini's conditions. Links that are not
+/// compressed hold a pair back: it yields at most as its free masses do, so that c' does not
+/// overshoot. Compressed links may let it yield more.
 template <class Real>
 class SelfCollidePass final : public Pass<Real> {
  public:
