@@ -270,6 +270,9 @@ class Launcher(unittest.TestCase):
         self.assertEqual(len(re.findall(r"random \.+ +Passed", whole.out)), 2, "with the program and with libFuzzer")
         self.assertIn("build/asan\n", whole.out)
         self.assertIn("default: absent\n  default: test_disk: needs a disk\n", whole.err)
+        slow = self.call("test", "--all", SECONDS="2700")
+        self.assertNotIn("planted .", slow.out)
+        self.assertIn("default: planted errors: what came before took 45 min (ctest --test-dir build/default -L mutation)\n", slow.err)
         cmake = self.clone / "CMakeLists.txt"
         good = cmake.read_text()
         cmake.write_text(good.replace("planted COMMAND true", "planted COMMAND sh -c \"seq 100; false\""))
