@@ -48,6 +48,17 @@ Cell Cell::of_scene(std::string name) const {
   return named;
 }
 
+Cell Cell::toned(Tone a_tone) const {
+  Cell other = *this;
+  other.tone = a_tone;
+  return other;
+}
+
+Cell cell_of(Status::Kind kind) {
+  return Cell(to_string(kind))
+      .toned(kind == Status::Kind::ok ? Cell::Tone::good : Cell::Tone::plain);
+}
+
 std::string Cell::text() const {
   const auto* own = std::get_if<std::string>(&value);
   return own ? *own : "";

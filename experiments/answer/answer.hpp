@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "core/model/status.hpp"
 #include "experiments/answer/number.hpp"
 
 namespace taut {
@@ -25,6 +27,8 @@ struct Cell {
     not_run,      ///< not run, or not timed
     hardly_moves  ///< the cloth hardly moves: a number is shown but not compared
   };
+  /// What a verdict means to a reader. A terminal shows it as a colour; data do not contain it.
+  enum class Tone { plain, good, doubtful, bad };
 
   std::variant<std::monostate, std::string, double, Interval, bool> value;
   State state = State::none;
@@ -33,6 +37,7 @@ struct Cell {
   std::string key;                 ///< key of the case that it comes from
   std::string scene;  ///< in a row's first cell: name of the scene to which the row belongs
   bool best = false;  ///< best of its row, by more than noise
+  Tone tone = Tone::plain;
 
   Cell() = default;
   Cell(std::string text) : value(std::move(text)), state(State::value) {}
@@ -53,6 +58,7 @@ struct Cell {
 
   Cell with(std::string a_note) const;
   Cell of_scene(std::string name) const;
+  Cell toned(Tone) const;
   bool empty() const { return value.index() == 0; }
   /// The text; "" for other values.
   std::string text() const;
@@ -61,6 +67,8 @@ struct Cell {
   double number() const;
   bool operator==(const Cell&) const = default;
 };
+/// The word of a status. `ok` is good; no other has a tone.
+Cell cell_of(Status::Kind);
 std::string_view to_string(Cell::State);
 std::optional<Cell::State> cell_state(std::string_view);  ///< nothing: no state has that name
 
@@ -137,13 +145,17 @@ std::string text(const Cell&, const Column&, bool with_unit = true);
 std::string label(const Column&);
 
 /// Text for a terminal: the subject, a line for each fact, and tables in columns. Words are wrapped
-/// where a row would exceed `width` characters.
-std::string to_text(const Answer&, bool details = false, std::size_t width = std::string::npos);
+/// where a row would exceed `width` characters. Every part passes through `shown`, after the
+/// widths of columns are known.
+using Shown = std::function<std::string(std::string_view part, Cell::Tone)>;
+std::string to_text(
+    const Answer&, bool details = false, std::size_t width = std::string::npos,
+    const Shown& shown = [](std::string_view part, Cell::Tone) { return std::string(part); });
 
 /// JSON in the schema that all verbs share (experiments/cli/README.md), with every number in SI, to
 /// the bit.
 std::string to_json(const Answer&);
-/// Inverse of to_json(). Throws InputError that names the file and the place in it.
+/// Inverse of to_json(), without tones. Throws InputError that names the file and the place in it.
 Answer answer_from_json(std::string_view text, const std::string& file);
 
 /// One table, by name, for spreadsheets and data frames; "facts" gives the facts, and "" the first

@@ -15,15 +15,11 @@ std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, begins));
 }
 
-std::string padded(const std::string& text, std::size_t width, bool left) {
-  const std::string blanks(width - std::min(width, characters(text)), ' ');
-  return left ? text + blanks : blanks + text;
-}
-
 /// What is printed of a cell.
 struct Printed {
   std::string text;
   bool command = false;
+  Cell::Tone tone = Cell::Tone::plain;
 };
 
 /// Breaks a text at blanks into lines of at most `most` characters. A longer word has a line to
@@ -62,7 +58,7 @@ std::vector<std::size_t> widths_of(const std::vector<std::vector<Printed>>& rows
 
 /// Columns of words are aligned left, columns of numbers right.
 std::string lines_of(const std::vector<std::vector<Printed>>& rows, const std::vector<bool>& left,
-                     std::size_t most) {
+                     std::size_t most, const Shown& shown) {
   const std::vector<std::size_t> width = widths_of(rows, left, most);
   std::string all;
   for (const auto& row : rows) {
@@ -72,48 +68,55 @@ std::string lines_of(const std::vector<std::vector<Printed>>& rows, const std::v
       lines = std::max(lines, cells.emplace_back(wrapped(row[i], width[i])).size());
     for (std::size_t k = 0; k < lines; ++k) {
       std::string line;
-      for (std::size_t i = 0; i < row.size(); ++i)
-        line += "  " + padded(k < cells[i].size() ? cells[i][k] : "", width[i], left[i]);
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        const std::string part = k < cells[i].size() ? cells[i][k] : "";
+        const std::string blanks(width[i] - std::min(width[i], characters(part)), ' ');
+        const std::string printed = part.empty() ? part : shown(part, row[i].tone);
+        line += "  " + (left[i] ? printed + blanks : blanks + printed);
+      }
       all += line.erase(line.find_last_not_of(' ') + 1) + '\n';
     }
   }
   return all;
 }
 
-std::string text_of(const Table& table, bool details, std::size_t width) {
-  const std::size_t shown = table.rows_shown(details);
-  std::vector<std::vector<Printed>> rows(shown + 1);
+std::string text_of(const Table& table, bool details, std::size_t width, const Shown& shown) {
+  const std::size_t most = table.rows_shown(details);
+  std::vector<std::vector<Printed>> rows(most + 1);
   std::vector<bool> left;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Column& column = table.columns[i];
     if (column.detail && !details) continue;
     rows[0].push_back({label(column)});
     bool words = true;
-    for (std::size_t r = 0; r < shown; ++r) {
+    for (std::size_t r = 0; r < most; ++r) {
       const Cell& cell = table.rows[r][i];
-      rows[r + 1].push_back({text(cell, column, false), column.command});
+      rows[r + 1].push_back({text(cell, column, false), column.command, cell.tone});
       words = words && std::isnan(cell.number());
     }
     left.push_back(words);
   }
-  std::string out = table.title.empty() ? "" : table.title + "\n";
-  out += lines_of(rows, left, width);
-  if (shown < table.rows.size())
-    out += "  and " + std::to_string(table.rows.size() - shown) + " more: --all\n";
-  return table.caption.empty() ? out : out + lines_of({{Printed{table.caption}}}, {true}, width);
+  std::string out = table.title.empty() ? "" : shown(table.title, Cell::Tone::plain) + "\n";
+  out += lines_of(rows, left, width, shown);
+  if (most < table.rows.size())
+    out += "  and " + std::to_string(table.rows.size() - most) + " more: --all\n";
+  return table.caption.empty() ? out
+                               : out + lines_of({{Printed{table.caption}}}, {true}, width, shown);
 }
 
 }  // namespace
 
-std::string to_text(const Answer& answer, bool details, std::size_t width) {
-  std::string out = answer.subject.empty() ? "" : answer.subject + '\n';
+std::string to_text(const Answer& answer, bool details, std::size_t width, const Shown& shown) {
+  std::string out = answer.subject.empty() ? "" : shown(answer.subject, Cell::Tone::plain) + '\n';
   std::vector<std::vector<Printed>> facts;
   for (const auto& [column, cell] : answer.facts)
     if (details || !column.detail)
-      facts.push_back({Printed{column.heading}, Printed{text(cell, column), column.command}});
-  if (!facts.empty()) out += lines_of(facts, {true, true}, width);
+      facts.push_back(
+          {Printed{column.heading}, Printed{text(cell, column), column.command, cell.tone}});
+  if (!facts.empty()) out += lines_of(facts, {true, true}, width, shown);
   for (const Table& table : answer.tables)
-    if (table.is_shown(details)) out += (out.empty() ? "" : "\n") + text_of(table, details, width);
+    if (table.is_shown(details))
+      out += (out.empty() ? "" : "\n") + text_of(table, details, width, shown);
   return out;
 }
 

@@ -83,11 +83,11 @@ class Report {
     const auto mismatched = std::ranges::count_if(comparison.findings, &Change::is_mismatch);
     cases_ += comparison.cases;
     values_ += comparison.values;
-    const char* verdict = moved                      ? "moved"
-                          : mismatched               ? "does not match the study"
-                          : end == CheckEnd::passed  ? "passed"
-                          : end == CheckEnd::nothing ? "nothing compared"
-                                                     : "not complete";
+    const Cell verdict = moved                      ? Cell("moved").toned(Cell::Tone::bad)
+                         : mismatched               ? Cell("does not match the study")
+                         : end == CheckEnd::passed  ? Cell("passed").toned(Cell::Tone::good)
+                         : end == CheckEnd::nothing ? Cell("nothing compared")
+                                                    : Cell("not complete");
     studies_.rows.push_back({study.name, verdict, comparison.cases, comparison.values, moved,
                              mismatched, study.not_run.size()});
     if (moved || mismatched)

@@ -150,7 +150,7 @@ void list_assertions(Answer& all) {
                {"truth"}}};
   for (const Assertion& assertion : assertions())
     table.rows.push_back({assertion.source, assertion.place, assertion.assertion,
-                          to_string(assertion.verdict), assertion.because,
+                          cell_of(assertion.verdict), assertion.because,
                           assertion.truth.empty() ? Cell() : Cell(assertion.truth)});
   all.add(std::move(table));
 }

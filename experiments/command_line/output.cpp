@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
-#include <sstream>
 #include <thread>
 
 #include "core/model/text.hpp"
@@ -26,24 +25,11 @@ namespace {
 
 bool g_shown = true;
 
-/// Colours the verdicts in a text, where they stand as words of their own.
-std::string with_verdicts(const std::string& text) {
-  static const std::pair<std::string_view, Colour> kVerdicts[] = {
-      {"passed", Colour::green},  {"ok", Colour::green},        {"holds", Colour::green},
-      {"broken", Colour::red},    {"FAILED", Colour::red},      {"overturned", Colour::red},
-      {"moved", Colour::red},     {"deviates", Colour::yellow}, {"not applicable", Colour::yellow},
-      {"skipped", Colour::yellow}};
-  std::string out;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line); out += line + '\n')
-    for (const auto& [word, colour] : kVerdicts)
-      if (const auto at = line.find("  " + std::string(word));
-          at != std::string::npos && (at + 2 + word.size() == line.size() ||
-                                      line.compare(at + 2 + word.size(), 2, "  ") == 0)) {
-        line.replace(at + 2, word.size(), coloured(word, colour));
-        break;
-      }
-  return out;
+/// The text in the colour of its tone: none, green, yellow, red.
+std::string coloured(const std::string& text, Cell::Tone tone) {
+  constexpr const char* kColours[] = {"", "\033[32m", "\033[33m", "\033[31m"};
+  if (tone == Cell::Tone::plain) return text;
+  return kColours[static_cast<std::size_t>(tone)] + text + "\033[0m";
 }
 
 /// Width of the terminal if standard output is one; lines in a file or a pipe are not limited.
@@ -55,16 +41,11 @@ std::size_t columns_of_output() {
 
 }  // namespace
 
-std::string coloured(std::string_view text, Colour colour) {
-  static const bool terminal = isatty(1) == 1 && std::getenv("NO_COLOR") == nullptr;
-  if (!terminal) return std::string(text);
-  return "\033[" + std::to_string(static_cast<int>(colour)) + "m" + std::string(text) + "\033[0m";
-}
-
 void print(const Answer& answer, const Format& format) {
   // Cells contain texts from programs and files, which may hold control characters; JSON escapes
   // them.
   const auto shown = [](const std::string& text) { return printable(text, std::string::npos); };
+  const bool colours = isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
   if (format.json)
     std::cout << to_json(answer);
   else if (format.markdown)
@@ -72,7 +53,11 @@ void print(const Answer& answer, const Format& format) {
   else if (!format.csv.empty())
     std::cout << shown(to_csv(answer, format.csv == "true" ? "" : format.csv));
   else
-    std::cout << with_verdicts(shown(to_text(answer, format.details, columns_of_output())));
+    std::cout << to_text(answer, format.details, columns_of_output(),
+                         [&](std::string_view part, Cell::Tone tone) {
+                           const std::string safe = shown(std::string(part));
+                           return colours ? coloured(safe, tone) : safe;
+                         });
   std::cout << std::flush;
 }
 
@@ -92,7 +77,7 @@ void print_files(const std::vector<std::string>& files, bool json) {
 
 Answer answer_of(const Record& record, std::string kind) {
   Answer answer{std::move(kind), record.id};
-  answer.add({"status"}, Cell(to_string(record.status.kind)).with(record.status.reason));
+  answer.add({"status"}, cell_of(record.status.kind).with(record.status.reason));
   if (record.status.step >= 0) answer.add({"step"}, record.status.step);
   if (record.status.vertex >= 0) answer.add({"vertex"}, record.status.vertex);
   answer.add({"steps"}, record.steps);

@@ -15,11 +15,6 @@
 
 namespace taut {
 
-enum class Colour { red = 31, green = 32, yellow = 33 };
-
-/// The text in a colour if stdout is a terminal and $NO_COLOR is not set; otherwise unchanged.
-std::string coloured(std::string_view text, Colour);
-
 /// Format of a printed answer; see add_format().
 struct Format {
   bool json = false, markdown = false;
@@ -30,8 +25,8 @@ struct Format {
   bool is_data() const { return json || markdown || !csv.empty(); }
 };
 
-/// Prints the answer on stdout: with coloured verdicts on a terminal, and as Markdown with the
-/// command that makes it. Throws InputError if there is no such table.
+/// Prints the answer on stdout: on a terminal with tones as colours unless $NO_COLOR is set, and as
+/// Markdown with the command that makes it. Throws InputError if there is no such table.
 void print(const Answer&, const Format&);
 
 /// Prints the files that a verb wrote: one line each, or {"files": [...]}.

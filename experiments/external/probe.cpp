@@ -5,7 +5,6 @@
 
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
-#include "core/model/names.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/text.hpp"
 
@@ -288,9 +287,16 @@ void physics(Prober& probe) {
 
 }  // namespace
 
-std::string_view to_string(Check::Verdict verdict) {
-  constexpr Names<Check::Verdict::skipped> kWords{"passed", "FAILED", "skipped"};
-  return kWords[verdict];
+Cell cell_of(Check::Verdict verdict) {
+  switch (verdict) {
+    case Check::Verdict::passed:
+      return Cell("passed").toned(Cell::Tone::good);
+    case Check::Verdict::failed:
+      return Cell("FAILED").toned(Cell::Tone::bad);
+    case Check::Verdict::skipped:
+      break;
+  }
+  return Cell("skipped").toned(Cell::Tone::doubtful);
 }
 
 std::vector<Check> quick_probe(const Command& command, const Json& params) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/status.hpp"
+#include "experiments/answer/answer.hpp"
 #include "experiments/external/protocol.hpp"
 
 namespace taut::external {
@@ -17,7 +18,7 @@ struct Check {
   std::string said;  ///< a sentence that says what was observed or what is wrong
   Status::Kind status = Status::Kind::error;  ///< of a case whose program fails this check
 };
-std::string_view to_string(Check::Verdict);
+Cell cell_of(Check::Verdict);
 
 /// Checks that a program has to pass, at these values of its parameters, before any of its results
 /// counts: free fall, time step, pins, the same bits twice and after a reload, restart from a

@@ -91,7 +91,7 @@ Truths truths_of(const Answer& answer) {
   truths.shown = {{"truths", found.truths.size()}, {"findings", findings}, {"verdicts", verdicts}};
   add_if(truths.shown, "rows", std::move(rows));
   for (const JudgedAssertion& one : found.assertions)
-    truths.assertions[one.assertion] = {one.verdict, one.figure};
+    truths.assertions[one.assertion] = {std::string(to_string(one.verdict)), one.figure};
   return truths;
 }
 

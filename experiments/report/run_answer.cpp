@@ -32,7 +32,7 @@ Answer run_answer(const CampaignProgress& campaign, const std::vector<Study>& st
   answer.add(Column("stored").in_detail(), campaign.reused);
   Table statuses{"statuses", "", {{"status"}, {"cases"}}};
   for (const auto& [kind, count] : campaign.by_status)
-    statuses.rows.push_back({to_string(kind), count});
+    statuses.rows.push_back({cell_of(kind), count});
   statuses.detail = true;
   answer.add(std::move(statuses));
   for (const Study& study : studies)

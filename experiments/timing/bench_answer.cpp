@@ -76,7 +76,7 @@ Table cases_of(const StudyBench& bench, const BenchReport& report) {
       const auto times = i > first ? scene.ratio(i, first) : std::nullopt;
       table.rows.push_back(
           {scene.scene, id, record.solver, cost, cpu, wall, bytes, record.value(report.metric),
-           to_string(record.status.kind), times,
+           cell_of(record.status.kind), times,
            times ? verdict(*times, scene.control, report.tolerance) : "",
            timing.failure.empty() ? timing.remark : "not timed: " + timing.failure});
     }

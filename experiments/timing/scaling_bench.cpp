@@ -147,12 +147,11 @@ Answer scaling_answer(const std::string& study, const std::vector<ScalingLine>& 
     for (const BenchedCase& c : line.cases) {
       const auto n = static_cast<double>(c.record.vertices);
       const Interval cpu = bootstrap_median(c.timing.samples);
-      sizes.rows.push_back({line.setting, c.record.vertices,
-                            parse_solver(c.record.spec.solver).brief(), cpu, median(c.timing.wall),
-                            cpu.mid / n, c.record.value("stretch.rms"), plan_bytes(c.record) / n,
-                            c.timing.peak_bytes,
-                            c.timing.failure.empty() ? std::string(to_string(c.record.status.kind))
-                                                     : c.timing.failure});
+      sizes.rows.push_back(
+          {line.setting, c.record.vertices, parse_solver(c.record.spec.solver).brief(), cpu,
+           median(c.timing.wall), cpu.mid / n, c.record.value("stretch.rms"),
+           plan_bytes(c.record) / n, c.timing.peak_bytes,
+           c.timing.failure.empty() ? cell_of(c.record.status.kind) : Cell(c.timing.failure)});
       for (std::size_t i = 0; i < c.timing.samples.size(); ++i)
         samples.rows.push_back(
             {line.setting, c.record.vertices, c.timing.samples[i], c.timing.wall[i]});

@@ -19,6 +19,15 @@ constexpr Names<TruthVerdict::broken> kVerdicts{"passed", "deviates", "not appli
 
 std::string_view to_string(TruthVerdict verdict) { return kVerdicts[verdict]; }
 
+Cell cell_of(TruthVerdict verdict) {
+  using enum Cell::Tone;
+  const bool half = verdict == TruthVerdict::deviates || verdict == TruthVerdict::not_applicable;
+  return Cell(to_string(verdict))
+      .toned(verdict == TruthVerdict::passed ? good
+             : half                          ? doubtful
+                                             : bad);
+}
+
 TruthVerdict verdict_of(std::string_view text) {
   return kVerdicts.find(text).value_or(TruthVerdict::broken);
 }

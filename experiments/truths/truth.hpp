@@ -10,6 +10,7 @@
 #include "core/model/index.hpp"
 #include "core/model/solver.hpp"
 #include "core/reference/fit.hpp"
+#include "experiments/answer/answer.hpp"
 
 namespace taut {
 
@@ -21,6 +22,7 @@ enum class TruthVerdict {
   broken           ///< differs: the testbed or the solver is wrong
 };
 std::string_view to_string(TruthVerdict);
+Cell cell_of(TruthVerdict);
 /// Inverse of to_string(); `broken` for any other text.
 TruthVerdict verdict_of(std::string_view);
 

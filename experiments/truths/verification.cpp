@@ -51,7 +51,7 @@ Table truths_table(const std::vector<CheckedTruth>& truths) {
   for (const CheckedTruth& truth : truths) {
     const auto worst = std::ranges::max_element(truth.findings, {}, badness);
     const bool any = worst != truth.findings.end();
-    table.rows.push_back({any ? to_string(worst->verdict) : "not applicable", truth.place,
+    table.rows.push_back({cell_of(any ? worst->verdict : TruthVerdict::not_applicable), truth.place,
                           truth.name, truth.findings.size(), any ? text_of(*worst) : "",
                           truth.section, truth.section_title, truth.statement, truth.source,
                           truth.seconds});
@@ -86,7 +86,7 @@ Table findings_table(const std::vector<CheckedTruth>& truths) {
                {"why"}}};
   for (const CheckedTruth& truth : truths)
     for (const Finding& f : truth.findings)
-      table.rows.push_back({to_string(f.verdict), truth.name, f.subject, f.quantity, f.unit,
+      table.rows.push_back({cell_of(f.verdict), truth.name, f.subject, f.quantity, f.unit,
                             f.measured, f.expected, f.tolerance, f.uncertainty, f.why});
   table.detail = true;
   return table;
@@ -111,13 +111,13 @@ Table assertions_table(const std::vector<JudgedAssertion>& assertions) {
               "what publications assert",
               {{"source"}, {"section"}, {"verdict"}, {"assertion"}, {"figure"}}};
   for (const auto& [source, section, assertion, verdict, figure] : assertions)
-    table.rows.push_back({source, section, verdict, assertion, figure});
+    table.rows.push_back({source, section, cell_of(verdict), assertion, figure});
   return table;
 }
 
 JudgedAssertion assertion_in(const Table& table, const std::vector<Cell>& row) {
   return {table.at(row, "source").text(), table.at(row, "section").text(),
-          table.at(row, "assertion").text(), table.at(row, "verdict").text(),
+          table.at(row, "assertion").text(), assertion_verdict_of(table.at(row, "verdict").text()),
           table.at(row, "figure").text()};
 }
 

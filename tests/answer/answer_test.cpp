@@ -257,6 +257,36 @@ TEST(Answers, BreakWordsWhereATerminalIsNarrowAndLoseNone) {
             std::string::npos);
 }
 
+TEST(Answers, ShowTheToneOfACellAndNotOfItsWords) {
+  const Cell verdict = Cell("not applicable").toned(Cell::Tone::doubtful);
+  const Answer answer{"check",
+                      "ok",
+                      {{Column("status"), cell_of(Status::Kind::ok)}},
+                      {{"studies",
+                        "moved",
+                        {Column("study"), Column("verdict"), Column("moved")},
+                        {{"ok", verdict, 3}, {"passed", Cell("x").toned(Cell::Tone::bad), "ok"}}}}};
+  const auto marked = [](std::string_view part, Cell::Tone tone) {
+    constexpr const char* kMarks[] = {"", "+", "~", "!"};
+    return kMarks[static_cast<std::size_t>(tone)] + std::string(part);
+  };
+  EXPECT_EQ(to_text(answer, false, std::string::npos, marked),
+            "ok\n"
+            "  status  +ok\n"
+            "\n"
+            "moved\n"
+            "  study   verdict         moved\n"
+            "  ok      ~not applicable      3\n"
+            "  passed  !x                  ok\n")
+      << "a mark takes no column, like the code of a colour";
+  Answer plain = answer;
+  plain.facts[0].cell = "ok";
+  plain.tables[0].rows[0][1] = "not applicable";
+  plain.tables[0].rows[1][1] = "x";
+  EXPECT_EQ(to_json(answer), to_json(plain)) << "data contain no tone";
+  EXPECT_EQ(to_text(answer), to_text(plain));
+}
+
 TEST(Answers, ShowACellInTheUnitOfItsColumn) {
   const Column time("cost", "CPU time", kMilliseconds);
   EXPECT_EQ(text(Cell(0.00123456), time), "1.23 ms");

@@ -111,8 +111,9 @@ TEST(ClaimFigures, AreTheNumberThatSpeaksForTheClaim) {
     for (const JudgedAssertion& one : judge_assertions(
              [&](std::string_view truth) { return truth == claim.truth ? &findings : nullptr; }))
       if (one.assertion == claim.assertion)
-        return std::pair(one.verdict == to_string(claim.verdict) ? "as before" : one.verdict,
-                         one.figure);
+        return std::pair(
+            std::string(one.verdict == claim.verdict ? "as before" : to_string(one.verdict)),
+            one.figure);
     return std::pair(std::string("none"), std::string());
   };
   using Both = std::pair<std::string, std::string>;
@@ -140,7 +141,7 @@ TEST(ClaimFigures, AreOfTheQuantityThatTheClaimQuotes) {
              [&](std::string_view truth) { return truth == claim.truth ? &findings : nullptr; })) {
       if (one.source != claim.source || one.assertion != claim.assertion) continue;
       EXPECT_EQ(one.figure, "bullet: " + own + " 1.25 (1 +- 0.5)") << "the first of that name";
-      EXPECT_EQ(one.verdict, to_string(claim.verdict));
+      EXPECT_EQ(one.verdict, claim.verdict);
       ++quoted;
     }
   }

@@ -31,7 +31,7 @@ Finding finding(const std::string& subject, double expected, double tolerance, d
 Truths truths_of(const std::vector<std::vector<Finding>>& findings) {
   const Scratch scratch;
   Verification all;
-  all.assertions = {{"source", "1", "c", "holds", "f"}};
+  all.assertions = {{"source", "1", "c", AssertionVerdict::holds, "f"}};
   for (const std::vector<Finding>& own : findings) {
     CheckedTruth& truth = all.truths.emplace_back();
     truth.name = "truth" + std::to_string(all.truths.size());

@@ -26,7 +26,7 @@ TEST(AssertionsBaseline, HasEveryAssertionWithVerdictAndFigure) {
   const auto all = judged(TruthVerdict::passed);
   ASSERT_EQ(all.size(), assertions().size());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i].verdict, to_string(assertions()[i].verdict));
+    EXPECT_EQ(all[i].verdict, assertions()[i].verdict);
     EXPECT_EQ(all[i].source, assertions()[i].source);
     EXPECT_EQ(all[i].figure.empty(), assertions()[i].truth.empty()) << all[i].assertion;
   }
@@ -37,7 +37,8 @@ TEST(AssertionsBaseline, ABrokenTruthOverturnsItsAssertionAlone) {
              deviating = judged(TruthVerdict::deviates);
   for (std::size_t i = 0; i < now.size(); ++i) {
     const bool its = now[i].assertion.starts_with("three sweeps suffice");
-    EXPECT_EQ(now[i].verdict, its ? "overturned" : before[i].verdict) << now[i].assertion;
+    EXPECT_EQ(now[i].verdict, its ? AssertionVerdict::overturned : before[i].verdict)
+        << now[i].assertion;
     EXPECT_EQ(deviating[i].verdict, before[i].verdict) << now[i].assertion;
   }
 }

@@ -27,7 +27,7 @@ int probe(const Options& options) {
   Answer answer{"external probe", command.text()};
   Table table{"checks", "", {{"verdict"}, {"check"}, {"said", "what it says"}}};
   for (const Check& check : checks)
-    table.rows.push_back({external::to_string(check.verdict), check.name, check.said});
+    table.rows.push_back({cell_of(check.verdict), check.name, check.said});
   answer.add(
       {"passed", "may be scored"},
       Cell(failed == 0)

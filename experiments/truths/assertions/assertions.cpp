@@ -4,10 +4,31 @@
 
 namespace taut {
 
-std::string_view to_string(AssertionVerdict verdict) {
-  constexpr Names<AssertionVerdict::cannot_be_tested> kNames{"holds", "holds under conditions",
-                                                             "does not hold", "cannot be tested"};
-  return kNames[verdict];
+namespace {
+constexpr Names<AssertionVerdict::overturned> kVerdicts{
+    "holds", "holds under conditions", "does not hold", "cannot be tested", "overturned"};
+}
+
+std::string_view to_string(AssertionVerdict verdict) { return kVerdicts[verdict]; }
+
+AssertionVerdict assertion_verdict_of(std::string_view text) {
+  return kVerdicts.find(text).value_or(AssertionVerdict::overturned);
+}
+
+Cell cell_of(AssertionVerdict verdict) {
+  const Cell word(to_string(verdict));
+  switch (verdict) {
+    case AssertionVerdict::holds:
+      return word.toned(Cell::Tone::good);
+    case AssertionVerdict::does_not_hold:
+      return word.toned(Cell::Tone::doubtful);
+    case AssertionVerdict::overturned:
+      return word.toned(Cell::Tone::bad);
+    case AssertionVerdict::holds_if:
+    case AssertionVerdict::cannot_be_tested:
+      break;
+  }
+  return word;
 }
 
 const std::vector<Assertion>& assertions() {

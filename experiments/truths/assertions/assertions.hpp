@@ -4,10 +4,21 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/answer/answer.hpp"
+
 namespace taut {
 
-enum class AssertionVerdict { holds, holds_if, does_not_hold, cannot_be_tested };
+enum class AssertionVerdict {
+  holds,
+  holds_if,
+  does_not_hold,
+  cannot_be_tested,
+  overturned  ///< its truth is broken; no Assertion says so
+};
 std::string_view to_string(AssertionVerdict);
+Cell cell_of(AssertionVerdict);
+/// Inverse of to_string(); `overturned` for any other text.
+AssertionVerdict assertion_verdict_of(std::string_view);
 
 /// An assertion of a publication about a solver, and its verdict here.
 struct Assertion {

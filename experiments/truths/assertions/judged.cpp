@@ -32,13 +32,13 @@ std::vector<JudgedAssertion> judge_assertions(const FindingsOf& findings_of) {
   std::vector<JudgedAssertion> all;
   for (const Assertion& assertion : assertions()) {
     JudgedAssertion judged{std::string(assertion.source), std::string(assertion.place),
-                           std::string(assertion.assertion),
-                           std::string(to_string(assertion.verdict)), ""};
+                           std::string(assertion.assertion), assertion.verdict, ""};
     if (!assertion.truth.empty()) {
       const std::vector<Finding>* findings = findings_of(assertion.truth);
       if (!findings) continue;
       const Finding* told = quoted(*findings, assertion.figure);
-      if (!told || told->verdict == TruthVerdict::broken) judged.verdict = "overturned";
+      if (!told || told->verdict == TruthVerdict::broken)
+        judged.verdict = AssertionVerdict::overturned;
       if (told) judged.figure = figure_text(*told);
     }
     all.push_back(std::move(judged));

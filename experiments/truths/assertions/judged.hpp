@@ -13,7 +13,7 @@ namespace taut {
 /// An assertion of a publication with the present verdict of its truth.
 struct JudgedAssertion {
   std::string source, section, assertion;
-  std::string verdict;  ///< to_string(AssertionVerdict), or "overturned" if its truth is broken
+  AssertionVerdict verdict;
   /// Quoted from the truth: "jakobsen: RMS stretch 0.061 (0.06 +- 0.01)"; may be empty.
   std::string figure;
 };
