@@ -80,6 +80,22 @@ const RecordColumn* find_axis(std::string_view json) {
   return found == std::end(kColumns) || found->title.empty() ? nullptr : found;
 }
 
+std::optional<ImpossibleNumber> impossible_number(const Record& record) {
+  static const Record kEmpty;
+  for (const RecordColumn& column : kColumns) {
+    const auto whole = [&](const Record& r) {
+      return with_member(r, column, [](const auto& value) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, int>) return value;
+        return 0;
+      });
+    };
+    if (whole(record) < whole(kEmpty))
+      return ImpossibleNumber{column.json, "expected at least " + std::to_string(whole(kEmpty))};
+  }
+  if (!(record.dt > 0)) return ImpossibleNumber{"dt", "expected a time step greater than 0"};
+  return {};
+}
+
 double number_in(const Record& record, const RecordColumn& column) {
   const double number = with_member(record, column, [](const auto& value) {
     if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>)

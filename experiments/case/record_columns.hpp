@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,6 +48,14 @@ std::span<const RecordColumn> record_columns();
 const RecordColumn* find_axis(std::string_view json);
 /// The record's number in this column; NaN if the record lacks it.
 double number_in(const Record&, const RecordColumn&);
+
+/// What a record that was read back cannot be, and the JSON key of the field.
+struct ImpossibleNumber {
+  std::string_view json;
+  std::string why;
+};
+/// A time step that is not above 0, or a whole number below that of an empty record.
+std::optional<ImpossibleNumber> impossible_number(const Record&);
 
 // A column's member of a record, const as the record is.
 template <class AnyRecord, class Value>

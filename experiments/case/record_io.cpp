@@ -88,7 +88,10 @@ Record record_of(const JsonReader& j) {
     if (value) with_member(r, column, [&](auto& member) { read_into(*value, member); });
   }
   if (!is_key(r.key)) j.at("key").fail("expected 64 hexadecimal digits");
-  if (!(r.dt > 0)) j.at("dt").fail("expected a time step greater than 0");
+  if (const auto wrong = impossible_number(r)) {
+    const auto [object, key] = object_and_key(wrong->json);
+    (object.empty() ? j : j.at(object.c_str())).at(key.c_str()).fail(wrong->why);
+  }
   return r;
 }
 

@@ -41,6 +41,7 @@ void read(const Database::Rows& row, int column, int& number) {
   number = whole_or_none(row, column);
 }
 void read(const Database::Rows& row, int column, std::size_t& count) {
+  if (row.integer(column) < 0) throw InputError("a count is below 0");
   count = static_cast<std::size_t>(row.integer(column));
 }
 void read(const Database::Rows& row, int column, Status::Kind& kind) {
@@ -62,8 +63,8 @@ Record record_in(const Database::Rows& row) {
   for (const RecordColumn& column : record_columns())
     if (!column.column.empty())
       with_member(r, column, [&](auto& member) { read(row, at++, member); });
-  if (!(r.dt > 0) || r.steps < 0 || r.vertices < 0 || r.links < 0)
-    throw InputError("its time step or its sizes cannot be");
+  if (const auto wrong = impossible_number(r))
+    throw InputError(std::string(wrong->json) + ": " + wrong->why);
   return r;
 }
 

@@ -264,7 +264,10 @@ TEST_F(StoreTest, ACaseOfAnotherDigestIsReportedAsMissing) {
   for (const char* damage :
        {"UPDATE numbers SET value = 8 WHERE value = 7", "DELETE FROM numbers WHERE value = 7",
         "UPDATE cases SET projections = 1", "UPDATE cases SET passes = '[1'",
-        "UPDATE cases SET status = 'well'", "UPDATE cases SET parameters = x'00ff'"}) {
+        "UPDATE cases SET status = 'well'", "UPDATE cases SET vertices = -1",
+        "UPDATE cases SET steps = -1", "UPDATE cases SET sweeps = -2",
+        "UPDATE cases SET projections = -1", "UPDATE cases SET dt = 0",
+        "UPDATE cases SET parameters = x'00ff'"}) {
     said_.clear();
     change(store_, damage);
     EXPECT_FALSE(store_.find(r.key)) << damage;
