@@ -86,13 +86,15 @@ class StepError::Work {
       out = {rms(all), rms(way_), false};
       if (k > 0 && out.last <= kSmall * out.distance) break;
     }
-    // Where steps shrink by a factor, as with slack links, sum the geometric series.
+    // Where steps shrink by a factor, as with slack links, sum the geometric series. Steps that
+    // grow have no sum.
     double along = 0, square = 0;
     for (std::size_t i = 0; i < moving_.size(); ++i) {
       along += way_[i].dot(last[i]);
       square += last[i].squaredNorm();
     }
-    const double ratio = square > 0 ? std::clamp(along / square, 0.0, kMostRatio) : 0;
+    const double factor = square > 0 ? along / square : 0;
+    const double ratio = factor < 1 ? std::clamp(factor, 0.0, kMostRatio) : 0;
     for (std::size_t i = 0; i < moving_.size(); ++i) all[i] += ratio / (1 - ratio) * way_[i];
     out.distance = rms(all);
     out.believed = out.last <= std::max(kBelieved * out.distance,
