@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <string>
 #include <thread>
 
 #include "core/model/input_error.hpp"
@@ -117,6 +119,19 @@ TEST(SceneRenderer, SameInputSameBytesFromEitherThread) {
   Image other;
   std::thread([&] { other = draw(); }).join();
   EXPECT_EQ(first.pixels(), other.pixels());
+}
+
+/// Mesa's own threads free what the caller walks over (gl.cpp).
+TEST(SceneRenderer, DrawsWithoutThreadsOfMesasRasteriser) {
+  const Scene scene = test::sheet_over_ball(17);
+  const std::vector<RecordedRun> runs{test::draped(scene, 7)};
+  const SceneRenderer renderer(scene, runs, small());
+  renderer.panel(0, 1);
+  for (const auto& task : fs::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::ifstream(task.path() / "comm") >> name;
+    EXPECT_FALSE(name.starts_with("llvmpipe")) << name;
+  }
 }
 
 TEST(SceneRenderer, MovingTheClothMovesThePicture) {

@@ -159,12 +159,16 @@ TEST_F(StoreTest, EveryFieldOfARecordIsKept) {
   EXPECT_EQ(to_json(*Store(root_).find(r.key)), to_json(r));
 }
 
-TEST_F(StoreTest, AWholeNumberBelowNoneIsKept) {
+/// Only -1 is stored as NULL, which means that there is no step.
+TEST_F(StoreTest, AWholeNumberBelowNoneIsKeptAndRefused) {
   Record r = some_record();
   r.status.step = -2;
   put(r);
-  ASSERT_TRUE(Store(root_).find(r.key));
-  EXPECT_EQ(Store(root_).find(r.key)->status.step, -2);
+  Database file(store_.file(), Database::Access::read);
+  Database::Rows row = file.rows("SELECT step FROM cases");
+  ASSERT_TRUE(row.next());
+  EXPECT_EQ(row.integer(0), -2);
+  EXPECT_FALSE(store_.find(r.key));
 }
 
 TEST_F(StoreTest, WhatASolverHasNotIsNull) {

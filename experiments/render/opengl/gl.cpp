@@ -2,6 +2,8 @@
 
 #include <dlfcn.h>
 
+#include <cstdlib>
+
 #include "core/model/input_error.hpp"
 
 namespace taut {
@@ -13,6 +15,10 @@ namespace {
 /// outlive a context.
 struct OsMesa {
   OsMesa() {
+    // Mesa's rasteriser without threads of its own, unless the environment says otherwise. In Mesa
+    // 22.3 its threads free the list of a scene's resources while the caller may still be walking
+    // it, without the lock that later versions take.
+    setenv("LP_NUM_THREADS", "0", 0);
     void* const library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     if (!library)
       throw InputError("pictures need off-screen OpenGL: " + std::string(dlerror()) +
