@@ -29,6 +29,11 @@ namespace {
 
 using Stream = ProcessOptions::Stream;
 
+/// The system's error in a largest resident set [bytes].
+constexpr std::size_t kPeakError = std::size_t{1} << 20;
+
+std::size_t peak_of(const rusage& used) { return static_cast<std::size_t>(used.ru_maxrss) * 1024; }
+
 /// A file descriptor that closes itself.
 class Descriptor {
  public:
@@ -179,6 +184,9 @@ Process::Process(std::vector<std::string> words, const ProcessOptions& options) 
   pid_ = fork();
   if (pid_ == 0) become(argv.data(), variables.data(), options, pipes, errors_file.get(), parent);
   const int fork_error = errno;
+  rusage own{};
+  getrusage(RUSAGE_SELF, &own);
+  inherited_ = peak_of(own);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (pid_ < 0) fail_start(words.front(), fork_error);
 
@@ -219,7 +227,9 @@ ProcessEnd Process::reap() {
   with_program_.reset();
   end_orphans(mark_);
   end_ = WIFEXITED(status) ? ProcessEnd{WEXITSTATUS(status), 0} : ProcessEnd{-1, WTERMSIG(status)};
-  end_->peak_bytes = static_cast<std::size_t>(used.ru_maxrss) * 1024;
+  // exec() does not forget what the copy of this process held: only a larger peak is its own.
+  const std::size_t peak = peak_of(used);
+  end_->peak_bytes = peak > inherited_ + kPeakError ? peak : 0;
   return *end_;
 }
 

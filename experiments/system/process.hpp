@@ -35,7 +35,7 @@ struct ProcessOptions {
 struct ProcessEnd {
   int exit_code = -1;  ///< -1 if a signal ended it
   int signal = 0;
-  std::size_t peak_bytes = 0;  ///< largest resident set
+  std::size_t peak_bytes = 0;  ///< largest resident set; 0 if the starting process's was as large
   bool good() const { return exit_code == 0; }
   /// Whether something outside ended it: a signal that asks it to end (a taut process reports that
   /// by its exit code), or SIGKILL while it used less than half of `memory`, its limit. A system
@@ -103,6 +103,7 @@ class Process {
   pid_t pid_ = -1;
   std::string mark_;  ///< a variable in the environment of all its descendants
   int descriptor_ = -1, input_ = -1, output_ = -1;
+  std::size_t inherited_ = 0;  ///< largest resident set of this process at the start [bytes]
   std::optional<ProcessEnd> end_;
   bool was_stopped_ = false;
   std::unique_ptr<EndsWithProgram> with_program_;

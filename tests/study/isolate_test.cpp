@@ -102,6 +102,12 @@ TEST_F(Isolated, WhatIsEndedFromOutsideHasNoRecord) {
   EXPECT_EQ(record_of("sleep 9", {.seconds = 0.05}).status.reason, "wall time");
 }
 
+// A process starts as a copy of the one that starts it, and the system counts what that one held.
+TEST_F(Isolated, MemoryOfWhatStartsItIsNotItsOwn) {
+  const std::string held(200 << 20, 'x');
+  EXPECT_THROW(record_of("kill -KILL $$", {.bytes = 300 << 20}), EndedFromOutside) << held.back();
+}
+
 TEST(ProcessEnds, OutOfMemoryIsToldFromAKill) {
   const std::size_t limit = std::size_t{1} << 30;
   EXPECT_TRUE((ProcessEnd{-1, SIGKILL, limit / 2 - 1}).from_outside(limit));
