@@ -252,9 +252,10 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                            "less than mu times the way into it; else each contact pass "
                            "takes the share mu of it, whatever the load"
                          : "none");
-  for (const Collider& collider : scene.colliders)
-    if (std::holds_alternative<Plane>(collider.shape))
-      lines.emplace_back("plane", "the top of a box of 100 m x 10 m x 100 m");
+  if (std::ranges::any_of(scene.colliders, [](const Collider& collider) {
+        return std::holds_alternative<Plane>(collider.shape);
+      }))
+    lines.emplace_back("plane", "the top of a box of at least 100 m x 10 m x 100 m");
   return lines;
 }
 

@@ -318,7 +318,7 @@ inline constexpr ParamSpec kAdaptiveStart =
                       "slow; or where the vertices would go without links");
 inline constexpr ParamSpec kVertexPrecision =
     ParamSpec::choice("precision", "double", "float|double",
-                      "scalar type of the simulation; in float a sweep costs 0.4 to 0.8 times as "
+                      "scalar type of the simulation; in float a sweep costs about 0.8 times as "
                       "much, and the error falls no lower than rounding");
 
 }  // namespace taut

@@ -24,7 +24,7 @@ void keep_frontiers(const Answer& answer, const fs::path& file) {
 
 std::optional<std::vector<Difference>> changes_of_frontiers(const Answer& now,
                                                             const fs::path& file) {
-  constexpr double kBracket = 0.02;  // twice the width of a bracket
+  constexpr double kBracket = 0.02;  // the width of a bracket (kTolerance in settings.cpp)
   if (!fs::exists(file)) return {};
   const Answer before = answer_from_json(read_text(file), file.string());
   return differences(before.table("parameters"), now.table("parameters"), {"solver", "parameter"},

@@ -12,10 +12,11 @@ namespace taut {
 
 namespace {
 
-/// time.dt="1/64" -> "dt=1/64": the two keys that everybody knows need no table.
+/// A setting in a case's id. The two common ones lose their section: time.dt="1/64" -> "dt=1/64".
 std::string in_id(const SceneSetting& one) {
-  const bool known = one.key() == "time.dt" || one.key() == "time.duration";
-  std::string text = (known ? one.key().substr(5) : one.key()) + "=" + one.value();
+  const bool common = one.key() == "time.dt" || one.key() == "time.duration";
+  std::string text =
+      (common ? one.key().substr(std::size("time.") - 1) : one.key()) + "=" + one.value();
   std::erase_if(text, [](char c) { return c == '"' || c == ' '; });
   return text;
 }

@@ -19,9 +19,10 @@ std::string digest(const Scene&);
 std::string digest(const State&);
 
 /// The address of a case's result: SHA-256 of canonical JSON (keys in a fixed order, no spaces,
-/// doubles in shortest exact form) over schema, scene content, solver with all parameters,
-/// implementation, measurement, dt and steps. Not the scene's name, the host, the time or the
-/// commit. `scene_digest` is digest(scene).
+/// doubles in shortest exact form) over schema, scene content, solver with all parameters except
+/// those that say where its program lies, implementation, for an external program the client that
+/// talks to it, measurement, dt and steps. Not the scene's name, the host, the time or the commit.
+/// `scene_digest` is digest(scene).
 std::string case_key(const Scene& scene, const std::string& scene_digest, const SolverChoice&);
 
 /// Digest of everything in this program that makes numbers: measurement() and every solver. What

@@ -18,11 +18,11 @@ namespace taut {
 /// sum of
 ///
 ///   start    m v^2/2 of every free vertex
-///   gravity  m |g| h: h is the discrete free fall |g| t (t + dt)/2, but for a piece of cloth that
-///            is pinned at most its reach: twice the longest way along links from a pin, plus the
-///            extension of the softest relaxation, one sweep a step, doubled for overshoot: a cut
-///            across c links with the mass M below it opens by M |g| dt^2 w/c (truth
-///            hanging-chain-sweeps: e_j = (N - j) |g| dt^2)
+///   gravity  m |g| h. h is the discrete free fall |g| t (t + dt)/2. For a piece of cloth that is
+///            pinned it is at most its reach, twice the longest way along links from a pin, plus
+///            the extension of the softest relaxation (one sweep a step), doubled for overshoot.
+///            In that relaxation a cut across c links with the mass M below it opens by
+///            M |g| dt^2 w/c (truth hanging-chain-sweeps: e_j = (N - j) |g| dt^2)
 ///   wind     law "relative": power c A (n.(u - v)) (n.v) <= c A |u|^2/4, times t;
 ///            law "literal": the speed c |u| t A/m of a vertex that is pushed all the time
 ///   motion   (2 V)^2 M/2, V the sum of the speeds that moving pins and colliders can impart: every
@@ -59,21 +59,20 @@ class EnergyBudget {
   double speed_ = 0;              ///< m/s that start, motion and wind can give
 };
 
-/// The largest strain [1] that a link of this scene may show, whoever solves it, without the case
-/// being called extreme: 2 (three times its length) or, where it is larger, twice that of the
-/// softest relaxation, one sweep a step (truth legitimate-strain: 2 (N - 1) g dt^2/l in a hanging
-/// chain; here by cuts, as in EnergyBudget), but at most 30: larger
-/// strains never enter a mean, even if start, step or forces cause them. Of the 942 cases of the
-/// main job that ended well before, 2 marks 29, none of which ended below 7 % of RMS stretch; 1
-/// would mark 57, some of which ended at 3 %.
+/// The largest strain [1] of a link with which a case is not yet extreme, whoever solves it. It is
+/// 2 (three times its length) or, if that is larger, twice the strain of the softest relaxation,
+/// one sweep a step (truth legitimate-strain: 2 (N - 1) g dt^2/l in a hanging chain; here by cuts,
+/// as in EnergyBudget). It is at most 30: larger strains never enter a mean, even if start, step or
+/// forces cause them. Why 2: of 942 cases of the main job that would otherwise count, it marks 29,
+/// all with more than 7 % of RMS stretch at the end; 1 would mark 57, some with 3 %.
 double legitimate_strain(const Scene&, int substeps = 1);
 
 /// Theoretical settling time [s]: in it the slowest mode of a hanging cloth decays by 1/e. Relaxing
 /// strain takes 8 N^2 dt/(pi^2 k) (Gauss-Seidel, N links from a pin to the farthest vertex, k
 /// sweeps per step); swinging takes the inverse of ln(1 + w^2 h^2)/(2 h) + damping/2 with h the
 /// substep and w = 1.2024 sqrt(g/L) (backward projection of the slowest transverse mode). Their
-/// sum. Empty where no such time is known: wind, motion, contact, no gravity, unpinned pieces, no
-/// sweeps.
+/// sum. Empty where no such time is known: wind, motion, contact, pins that let go, no gravity,
+/// unpinned pieces, no sweeps.
 std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& step_cost,
                                     int substeps = 1);
 

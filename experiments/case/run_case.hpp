@@ -31,11 +31,10 @@ struct RunOptions {
 struct CaseRun {
   Record record;  ///< key and id are empty: run_case of a Case (case.hpp) sets them
   Series series;
-  State last;  ///< the last stable boundary: the final state, or the last before an explosion;
-               ///< empty: nothing was computed
+  State last;  ///< the final state or, of a run that exploded, the state before; empty: nothing ran
 
-  /// Of all steps by the solver's clock, with metrics at work in between: a first impression, no
-  /// sample (experiments/timing). NaN: not asked for, or it cannot be measured.
+  /// CPU seconds of all steps. Metrics ran in between, so this is a first impression and no sample
+  /// (experiments/timing). NaN: not asked for, or it cannot be measured.
   double cpu_seconds = std::numeric_limits<double>::quiet_NaN();
 
   bool computed() const { return !last.x.empty(); }

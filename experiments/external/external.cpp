@@ -36,7 +36,7 @@ constexpr ParamSpec kLeading[] = {
 /// Entry for a solver text "external" that names no program.
 const SolverEntry kAny = {
     .name = "external",
-    .summary = "Any program that speaks taut-solver/1 to /4: external:cmd='python3 mine.py'",
+    .summary = "Any program that speaks taut-solver: external:cmd='python3 mine.py'",
     .source = "experiments/external/README.md",
     .params = kLeading,
     .make = [](const Scene&, const Params&) -> std::unique_ptr<Solver> {

@@ -11,8 +11,8 @@ namespace taut {
 namespace {
 
 /// Depth of the deepest point of a triangle in a solid body, to 1 % of its longest side; `at_least`
-/// if it is no deeper. Both are in the body's frame. Depth changes by no more than distance, so a
-/// part that cannot be deeper than the known maximum is not examined further.
+/// if it is no deeper. Both are in the body's frame. Two points at distance d differ in depth by at
+/// most d, so a part that cannot be deeper than the known maximum is not examined further.
 double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_least) {
   double longest = 0;
   Eigen::AlignedBox3d around;

@@ -67,15 +67,15 @@ class StepErrors final : public Metric {
        "largest distance from the exact step"},
       {.name = kShareBySteps,
        .unit = kSignedShare,
-       .help = "share of the way that the cloth would have gone in the time T = 1.3 sqrt(size/g), "
-               "half a second for a square metre, if every step had been exact at the lengths that "
-               "its links have: w.(w + l)/|w + l|^2. w is the cloth's way relative to its pins or, "
-               "without pins, to its centre of mass; l is the sum over steps of (T - t) times the "
-               "velocity that the step at t misses along its own way. 0 if the cloth stands still. "
-               "No value if it would have moved by at most 5 % of its size or by more than twice a "
-               "fall; if rounding may be more than a tenth of the way (a step rounds by "
-               "|x|/sqrt(3) times 2^-24 if all coordinates are floats, else 2^-53); or if "
-               "way.share has a value, which knows where exact steps lead",
+       // w.(w + l)/|w + l|^2 with w the cloth's way and l the sum over steps of (T - t) times the
+       // velocity that the step at t misses along its own way. A step rounds by |x|/sqrt(3) times
+       // 2^-24 if all coordinates are floats, else 2^-53.
+       .help = "how much of the way that exact steps would have led the cloth it has gone, in the "
+               "time T = 1.3 sqrt(size/g), half a second for a square metre; estimated from what "
+               "each step misses, relative to the pins or else to the centre of mass. 0: it stands "
+               "still. No value if the way is at most 5 % of the cloth's size or longer than twice "
+               "a fall, if rounding may be more than a tenth of it, or if way.share has a value, "
+               "which knows the exact steps",
        .window = Window::none,
        .title = "share of the way, from what steps miss"},
       {"step.error.believed", kSignedShare,

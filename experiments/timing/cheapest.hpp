@@ -59,9 +59,8 @@ struct JudgedScene {
   std::vector<std::size_t> best_of_each(const Target&) const;
   /// Of the solver's settings that reach the error and do not count, the cheapest.
   std::optional<std::size_t> uncounted(const std::string& solver, double error) const;
-  /// Whether a cheaper setting of the same solver may reach what the case reaches: none was tried,
-  /// and it does more than one sweep in one substep, than which nothing is cheaper. Its cost is
-  /// then an upper bound.
+  /// Whether the case's cost is only an upper bound: no cheaper setting of the same solver was
+  /// tried, though there is one (the case does more than one sweep in one substep).
   bool is_upper_bound(std::size_t at) const;
   /// A case beside another one.
   Rival beside(std::size_t at, std::size_t other, double tolerance = kTolerance) const;

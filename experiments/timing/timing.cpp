@@ -45,11 +45,11 @@ class Clock {
 
 StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall / steps}; }
 
-/// Start of a worker's answer that is an error instead of a time.
 // The worker's side of a session: kReady, then an answer to each line of a request.
 constexpr std::string_view kReady = "ready 2";  ///< with the version of what follows
 constexpr std::string_view kPilotRun = "pilot_run", kSample = "time", kRemark = "remark",
                            kMemory = "memory";
+/// Start of a worker's answer that is an error instead of a time.
 constexpr std::string_view kRefusal = "! ";
 
 std::vector<std::string> worker_command(const CaseSpec& spec,

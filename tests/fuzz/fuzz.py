@@ -27,7 +27,7 @@ import stored  # noqa: E402
 
 CODES = {0, 1, 2, 3, 4, 5, 6, 130}  # experiments/command_line/verb.hpp
 STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'protocol', 'error'}
-LEGITIMATE = 30  # strain from which a scene counts as extreme: experiments/case/divergence.hpp
+LEGITIMATE = 30  # the largest legitimate_strain() of any scene: experiments/case/divergence.cpp
 SECONDS = 60  # s, limit of a command; more counts as a hang
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ('[cloth]\ngrid = [3, 3]\nsize = [1, 1]\nmass = 0.1\npins = ["top-left"]\n'

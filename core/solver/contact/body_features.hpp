@@ -56,14 +56,15 @@ inline std::optional<LinesApart> lines_apart(const Vec3& p, const Vec3& q, const
   return apart;
 }
 
-/// First crossing of an edge of the cloth, whose ends move straight from `before` to `now`, with an
-/// edge of a body, ends included: the lines at the crossing and at the end. The normals point to
-/// the side from which the edge comes.
+/// The first crossing of an edge of the cloth with an edge of a body, ends included. The ends of
+/// the cloth's edge move straight from `before` to `now`. `first` is where the edges are when they
+/// cross, `end` where they are at the end; normals point to the side from which the cloth comes.
 struct Crossing {
   LinesApart first, end;
   double share = 0;  ///< of the path, at the first crossing
 };
-/// The volume spanned by the two edges is a polynomial of second degree in the share of the path.
+/// With an edge that does not move. Solves for the share of the path at which the volume spanned by
+/// the two edges is 0: a polynomial of second degree.
 inline std::optional<Crossing> first_crossing(const Corners& before, const Corners& now,
                                               const FixedEdge& edge) {
   const auto at = [&](double share, std::size_t c) {
@@ -98,7 +99,7 @@ inline std::optional<Crossing> first_crossing(const Corners& before, const Corne
   }
   return {};
 }
-/// First crossing with a body's edge whose ends move straight, too.
+/// With an edge of a body whose ends move straight, too.
 inline std::optional<Crossing> first_crossing(const MovingEdge& cloth, const MovingEdge& body) {
   for (const auto& [share, rises] : passes(cloth, body)) {
     if (share == 0) return {};

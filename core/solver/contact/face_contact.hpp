@@ -465,11 +465,11 @@ class FaceContactPass final : public Pass<Real> {
   Collider collider_;
   double thickness_;
   bool continuous_;
-  std::vector<Triangle> faces_;
-  Pass<Real>* solver_;         ///< null: no solver with a target
-  TouchingPieces* pieces_;     ///< null unless the solver includes pieces in its solve
-  std::vector<Held> held_;     ///< [pieces]; empty without a solver
-  std::vector<Corners> safe_;  ///< [pieces] m, for edges; see remember_sides()
+  std::vector<Triangle> faces_;  ///< and edges: is_edge()
+  Pass<Real>* solver_;           ///< null: no solver with a target
+  TouchingPieces* pieces_;       ///< null unless the solver includes pieces in its solve
+  std::vector<Held> held_;       ///< [pieces]; empty without a solver
+  std::vector<Corners> safe_;    ///< [pieces] m, for edges; see remember_sides()
   /// At the end of the step, enlarged by the thickness unless it is a body.
   Shape shape_;
   Vec3 center_ = Vec3::Zero();

@@ -111,7 +111,9 @@ void add_options(CLI::App& app, Options& options) {
       ->excludes(all);
   app.add_option("--from", options.from, "Where to start (dt: 1e-3 s)")->excludes(all);
   app.add_option("--to", options.to, "Where to stop (dt: 0.5 s)")->excludes(all);
-  app.add_option("--tolerance", options.tolerance, "Relative width of the bracket (default: 0.01)")
+  app.add_option(
+         "--tolerance", options.tolerance,
+         "Relative width of the bracket (default: " + number_text(SearchRange{}.tolerance) + ")")
       ->check(CLI::Range(1e-9, 0.5))
       ->excludes(all);
   add_jobs(app, options.jobs);

@@ -63,7 +63,7 @@ int write_scene(const Options& o) {
 TAUT_VERB(external) = {
     .name = "external",
     .group = VerbGroup::one_case,
-    .summary = "Probes and scores solvers from outside: programs that speak taut-solver/1 to /4",
+    .summary = "Probes and scores solvers from outside: programs that speak taut-solver",
     .example =
         "taut external probe 'python3 mine.py'\n  taut case hang \"external:cmd='python3 "
         "mine.py',iterations=8\""};

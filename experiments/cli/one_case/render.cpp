@@ -116,7 +116,7 @@ int run(Options options) {
 
 void add_options(CLI::App& app, Options& o) {
   add_scene(app, o.what.scene)->required();
-  add_solvers(app, o.what.solvers, "A solver to draw, at most nine");
+  add_solvers(app, o.what.solvers, "A solver to draw, at most " + std::to_string(kMostPanels));
   app.add_option("--at", o.at, "A moment to draw [s]; repeat it for each (default: the end)")
       ->allow_extra_args(false);
   app.add_flag("--sheet", o.sheet, "One picture, a row for each moment");

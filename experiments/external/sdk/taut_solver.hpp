@@ -197,12 +197,12 @@ inline std::string json_text(const std::string& text) {
 }
 
 template <class Solver, class = void>
-struct KnowsSecond : std::false_type {};
+struct StatesProtocol : std::false_type {};
 template <class Solver>
-struct KnowsSecond<Solver, std::void_t<decltype(Solver::kProtocol)>> : std::true_type {};
+struct StatesProtocol<Solver, std::void_t<decltype(Solver::kProtocol)>> : std::true_type {};
 template <class Solver>
 std::string protocol_of() {
-  if constexpr (KnowsSecond<Solver>::value)
+  if constexpr (StatesProtocol<Solver>::value)
     return Solver::kProtocol;
   else
     return "taut-solver/1";

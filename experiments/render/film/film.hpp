@@ -29,9 +29,9 @@ struct FilmResult {
 };
 
 /// Makes videos and posters, two scenes at a time. A film is made once and kept in `folder` under a
-/// key of all that it depends on. A film that cannot be drawn is missing: all of them, if there is
-/// no renderer. Calls `made` with the place of each that was not kept, and why it is missing, or
-/// "": from any thread, but one at a time.
+/// key of all that it depends on. The result lacks a film that cannot be drawn; without a renderer
+/// it lacks all. Calls `made` for each film that was not kept before, with its index and with the
+/// reason if it is missing, else "". The calls come from any thread, one at a time.
 std::vector<std::optional<FilmResult>> make_films(
     const std::vector<Film>&, const std::filesystem::path& folder,
     const std::function<void(std::size_t film, const std::string& why)>& made);

@@ -18,9 +18,10 @@ struct Point {
   const Record* record = nullptr;
   /// Under "setting": the accuracy parameters, "16 × 2" for substeps x sweeps.
   std::string name = {};
-  std::size_t parts = 0;  ///< of the name: the work, and each other parameter
+  std::size_t parts =
+      0;  ///< how many words `name` has: one for the work, one for each other parameter
 
-  /// It has a value that may be compared; everything else is drawn as a glyph.
+  /// Whether it has a value that may be compared. If not, a glyph says what happened.
   bool measured() const;
 };
 
@@ -82,8 +83,9 @@ Chart make_chart(std::string kind, const Records&, const std::string& x, const s
 /// Adds the line below which y says nothing (ValueSpec::floor), if y has one.
 void add_floor(Chart&);
 
-/// Which curves lie within a hundredth of an earlier one at every point, a sentence each: one would
-/// hide the other; zeros stand side by side on the axis. None of more than a dozen curves.
+/// A sentence for each curve that lies within a hundredth of an earlier one at every point, since
+/// one hides the other. Zeros are not compared: they stand side by side on the axis. No sentences
+/// for a chart of more than a dozen curves.
 std::vector<std::string> coincident_curves(const Chart&);
 
 /// Whether the point has no value to be drawn: it failed. What a solver cannot run is no failure.
@@ -95,8 +97,8 @@ double theory_factor(const Chart&);
 /// What the theory line is called: "theory of relaxation: 1/sweeps".
 std::string theory_text(const Chart&);
 
-/// The Pareto front: of the measured points that count those that no other beats in both x and y,
-/// by ascending x.
+/// The Pareto front, by ascending x: the measured points that count and that no other of them beats
+/// in both x and y.
 std::vector<Point> pareto_front(const Chart&);
 
 /// How cases of one solver end over two settings.

@@ -32,7 +32,7 @@ ComparedSolver choose(const std::string& solver, const std::vector<const Record*
   return chosen;
 }
 
-/// Distance from 1 × 16, which is close to every comparison in the literature.
+/// Distance, in logarithms, from 1 × 16: the work that published comparisons come nearest to.
 double distance(const Work& work) {
   return std::abs(std::log(std::max(1, work.sweeps) / 16.0)) + std::log(std::max(1, work.substeps));
 }

@@ -16,10 +16,11 @@ inline constexpr const char* kFailureMap = "failure_map";
 /// verdict of this list that applies:
 ///
 ///     its status   where the case did not complete: exploded, extreme, cannot
-///     strains      RMS stretch above 0.5 %
-///     freezes      it goes less than half of its way, way_gone (experiments/timing/way.hpp)
-///     late         less than nine tenths
-///     gains energy energy.peak is above 2 % of m g L: of cloth that hardly strains, motion
+///     strains      RMS stretch above kStrained (failure_map.cpp)
+///     freezes      it goes less than kLeastMotion of its way, way_gone
+///     (experiments/timing/way.hpp) late         less than kLate gains energy energy.peak is above
+///     kGained, in m g L; since the cloth hardly strains, this
+///                  energy is motion
 ///     right        none of these
 ///
 /// Its note has the numbers behind it. The table has no rows if no two cases of a scene differ only

@@ -44,8 +44,8 @@ struct Frontier {
     bracketed,    ///< between `stable` and `unstable`
     all_stable,   ///< stable up to the end of the range
     none_stable,  ///< unstable from its start
-    /// The solver cannot run the scene (and that is not a symptom), time or memory was always
-    /// lacking, or the search was interrupted.
+    /// No outcome is known: the solver refuses the scene and no judge calls that a symptom, every
+    /// run lacked time or memory, or the search was interrupted.
     not_answered,
   };
   Kind kind = Kind::not_answered;

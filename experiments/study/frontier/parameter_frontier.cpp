@@ -7,7 +7,6 @@
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/case/trajectory.hpp"
-#include "experiments/study/frontier/parameter_frontier.hpp"
 
 namespace taut {
 
