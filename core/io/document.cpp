@@ -232,7 +232,7 @@ std::string describe(const Value& value) {
 
 Diagnostic Document::diagnostic(const SourceLocation& place, const std::string& message) const {
   if (place.setting < 0) return {file, place.line, place.column, message};
-  const std::string& text = settings[static_cast<std::size_t>(place.setting)].text();
+  const std::string& text = settings[static_cast<std::size_t>(place.setting)].written();
   return {text, 0, place.column, message};
 }
 
@@ -249,11 +249,11 @@ Document parse_document(const std::string& file, const std::string& text,
     const SceneSetting& setting = settings[static_cast<std::size_t>(i)];
     try {
       std::vector<std::string> problems;
-      assign(document.root, parse_bounded(setting.text()), i, problems);
+      assign(document.root, parse_bounded(setting.written()), i, problems);
       for (const std::string& problem : problems)
         found.push_back(document.diagnostic({1, 1, i}, problem));
     } catch (const toml::parse_error& error) {
-      found.push_back(syntax_error(error, document, setting.text(), i));
+      found.push_back(syntax_error(error, document, setting.written(), i));
       if (found.back().message.starts_with("Error while parsing"))  // the library's words
         found.back().message += as_written(setting);
     }

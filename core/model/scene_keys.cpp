@@ -52,7 +52,7 @@ SceneKey other(std::string_view path, std::string_view type, std::string_view un
 const SceneKey kKeys[] = {
     other("cloth.grid", "two whole numbers", "1", "1 to 2^24 vertices, 2 at least",
           "needed for a grid", "[32, 32]", "vertices along u and v; `[1, n]` is a chain"),
-    other("cloth.mesh", "string", "", "", "needed for a mesh", "\"disc.obj\"",
+    other("cloth.mesh", "file", "", "", "needed for a mesh", "\"disc.obj\"",
           "OBJ file, relative to the scene; excludes `grid`"),
     other("cloth.size", "two numbers", "m", "> 0 where there are two vertices", "needed for a grid",
           "[1.0, 1.0]", "sides along u and v"),
@@ -164,11 +164,11 @@ const SceneKey kKeys[] = {
         .need(),
     number("collider.radius", &Capsule::radius, "m", Range::positive(kFar), "0.3", "capsule")
         .need(),
-    other("collider.file", "string", "", "", "needed for a mesh", "\"box.obj\"",
+    other("collider.file", "file", "", "", "needed for a mesh", "\"box.obj\"",
           "mesh: OBJ file, relative to the scene; vertices that coincide are one"),
     other("collider.scale", "number", "1", Range{1e-6, 1e6}, "1", "0.01",
           "mesh: metres per unit of its file"),
-    other(kFramesKey, "string", "", "", "none: it is rigid", "\"walker.npy\"",
+    other(kFramesKey, "file", "", "", "none: it is rigid", "\"walker.npy\"",
           "mesh: NumPy array [frames, vertices, 3], relative to the scene, in the file's unit and "
           "frame: where the file's vertices are; the first frame is at t = 0, between two they go "
           "straight, after the last they rest; velocity, spin and path move the whole")

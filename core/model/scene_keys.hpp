@@ -73,9 +73,10 @@ struct SceneKey {
                    double FileKeys::*, Vec3 FileKeys::*, bool FileKeys::*, Lumping FileKeys::*,
                    FileKeys::Inside FileKeys::*>;
 
-  std::string_view path;       ///< "forces.damping"; "summary" is at the top of the file
-  Member member = {};          ///< its initialiser is the default
-  std::string_view type = {};  ///< "direction": a vector that is normalised
+  std::string_view path;  ///< "forces.damping"; "summary" is at the top of the file
+  Member member = {};     ///< its initialiser is the default
+  /// "direction": a vector that is normalised. "file": the name of one, relative to the scene.
+  std::string_view type = {};
   std::string_view unit = {};
   Range range = {};                ///< of a number or of each component
   std::string_view choices = {};   ///< "relative|literal": the enumeration, in its order

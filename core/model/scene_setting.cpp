@@ -5,13 +5,15 @@
 
 namespace taut {
 
-SceneSetting::SceneSetting(std::string text) : text_(std::move(text)) {
-  const std::size_t equals = text_.find('=');
-  key_ = text_.substr(0, equals);
+SceneSetting::SceneSetting(std::string text) : written_(std::move(text)), text_(written_) {
+  const std::size_t equals = written_.find('=');
+  key_ = written_.substr(0, equals);
   std::erase_if(key_, [](char c) { return c == ' ' || c == '\t' || c == '"' || c == '\''; });
-  if (equals == text_.npos) return;
-  const std::size_t first = text_.find_first_not_of(" \t", equals + 1);
-  if (first != text_.npos) value_ = text_.substr(first, text_.find_last_not_of(" \t") + 1 - first);
+  if (equals == written_.npos) return;
+  const std::size_t first = written_.find_first_not_of(" \t", equals + 1);
+  if (first != written_.npos)
+    value_ = written_.substr(first, written_.find_last_not_of(" \t") + 1 - first);
+  text_ = key_ + "=" + value_;
 }
 
 bool is_of_scene(std::string_view name) { return name == "fabric" || name.find('.') != name.npos; }

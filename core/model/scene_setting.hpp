@@ -17,15 +17,18 @@ class SceneSetting {
   explicit SceneSetting(const std::string& key, const std::string& value)
       : SceneSetting(key + "=" + value) {}
 
-  const std::string& text() const { return text_; }    ///< as it was written
-  const std::string& key() const { return key_; }      ///< without blanks and quotes
-  const std::string& value() const { return value_; }  ///< without blanks around it
+  const std::string& written() const { return written_; }  ///< as the user typed it
+  const std::string& text() const { return text_; }        ///< "key=value"
+  const std::string& key() const { return key_; }          ///< without blanks and quotes
+  const std::string& value() const { return value_; }      ///< without blanks around it
   bool is_of_time() const { return key_.starts_with("time."); }
 
-  auto operator<=>(const SceneSetting&) const = default;  ///< by text
+  /// Two that differ in blanks alone are equal.
+  bool operator==(const SceneSetting& other) const { return text_ == other.text_; }
+  auto operator<=>(const SceneSetting& other) const { return text_ <=> other.text_; }
 
  private:
-  std::string text_, key_, value_;
+  std::string written_, text_, key_, value_;
 };
 
 /// Whether a setting of this name is a scene's, and no parameter of a solver: it has a dot, or it

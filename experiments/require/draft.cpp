@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/io/fabrics.hpp"
+#include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/system/data.hpp"
@@ -107,9 +108,9 @@ CaseSpec Draft::write(const fs::path& folder, const std::string& name,
   const std::string solver = choice.canonical();
   if (!scene_changed_ && comment.empty()) return {spec_.scene, spec_.settings, solver};
   Value root = without_empty(scene_.root);
-  if (const Value* mesh = find("cloth", "mesh"); mesh && mesh->is_string()) {
-    const fs::path there = fs::absolute(file_.parent_path() / mesh->string);
-    slot(slot(root, "cloth"), "mesh").string = fs::proximate(there, fs::absolute(folder)).string();
+  for (Value* value : file_names(root)) {
+    const fs::path there = fs::absolute(file_.parent_path() / value->string);
+    value->string = fs::proximate(there, fs::absolute(folder)).string();
   }
   make_folder(folder);
   const fs::path file = folder / (name + ".toml");

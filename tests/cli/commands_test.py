@@ -673,7 +673,7 @@ searched = "mine-searched.toml"
 
     def test_export_is_one_tidy_table(self):
         study = self.study(solvers=["jakobsen:iterations=2", "xpbd"],
-                           rest='axes.time.dt = ["1/64", "1/32"]\n')
+                           rest='set = ["forces.damping =  0.5 "]\naxes.time.dt = ["1/64", "1/32"]\n')
         self.assertRegex(self.taut("export", study, expect=2).err, r"taut run \S*study\.toml makes them")
         self.taut("run", study)
         self.assertEqual(self.taut("export", study, "-o", "x.csv").out, "x.csv\n")
@@ -681,7 +681,7 @@ searched = "mine-searched.toml"
         rows = list(csv.DictReader(text.splitlines()))
         self.assertEqual([(r["solver"], r["time.dt"]) for r in rows],
                          [(s, dt) for dt in ["1/64", "1/32"] for s in ["jakobsen", "xpbd"]])
-        self.assertEqual(rows[0]["iterations"], "2")
+        self.assertEqual((rows[0]["iterations"], rows[0]["forces.damping"]), ("2", "0.5"))
         by_key = {r["key"]: r for r in self.records()}
         for row in rows:
             record = by_key[row["key"]]

@@ -6,12 +6,14 @@
 namespace taut::scene_setting_test {
 namespace {
 
-TEST(SceneSetting, HasKeyAndValueAndTheTextAsWritten) {
+TEST(SceneSetting, HasOneTextHoweverItIsWritten) {
   const SceneSetting plain("cloth.grid=[4, 4]"), spaced(" time . dt\t= \"1/64\" ");
   EXPECT_EQ(plain.key() + "|" + plain.value(), "cloth.grid|[4, 4]");
   EXPECT_EQ(plain, SceneSetting("cloth.grid", "[4, 4]"));
   EXPECT_EQ(spaced.key() + "|" + spaced.value(), "time.dt|\"1/64\"");
-  EXPECT_EQ(spaced.text(), " time . dt\t= \"1/64\" ");
+  EXPECT_EQ(spaced.text(), "time.dt=\"1/64\"");
+  EXPECT_EQ(spaced.written(), " time . dt\t= \"1/64\" ");
+  EXPECT_EQ(spaced, SceneSetting("time.dt", "\"1/64\""));
   EXPECT_TRUE(spaced.is_of_time() && !plain.is_of_time());
   EXPECT_EQ(SceneSetting("a.\"b\"='c=d'").key(), "a.b");
   EXPECT_EQ(SceneSetting("a.\"b\"='c=d'").value(), "'c=d'");

@@ -5,13 +5,16 @@
 #include <cmath>
 
 #include "core/io/fabrics.hpp"
+#include "core/io/scene_io.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/answer/answer.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/require/draft.hpp"
 #include "experiments/require/effects.hpp"
 #include "experiments/require/perturbation.hpp"
+#include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut::reductions_test {
@@ -191,6 +194,16 @@ TEST(Drafts, FindTheirMeshFromWhereverTheyAreWritten) {
   EXPECT_NE(read_text(written.scene).find("'../../scenes/meshes/m.obj'"), std::string::npos)
       << read_text(written.scene);
   EXPECT_EQ(make_case(written).scene->mesh.size(), 3);
+}
+
+// A scene that was written without one of its files is another scene, or none.
+TEST(Drafts, AreTheirSceneWhereverTheyAreWritten) {
+  const Scratch scratch;
+  for (const std::string& scene : shipped("scenes")) {
+    const CaseSpec full{scene, {}, "jakobsen"};
+    const CaseSpec written = Draft(full).write(scratch.path() / "else/where", scene, "# \n");
+    EXPECT_EQ(digest(load_scene(written.scene)), digest(*make_case(full).scene)) << scene;
+  }
 }
 
 TEST(Perturbed, StartsDifferByOneOfFourFreeVertices) {

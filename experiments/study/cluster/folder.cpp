@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/io/document.hpp"
+#include "core/io/scene_io.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
@@ -56,21 +57,21 @@ int shards_for(Plan& plan, const std::vector<Case>& cases, double hours) {
   return fewest;
 }
 
-void copy_mesh(const fs::path& scene, const SceneSettings& settings, const fs::path& into) {
-  const Document document = read_document(scene, settings);
-  const Value* cloth = document.root.find("cloth");
-  const Value* mesh = cloth && cloth->is_table() ? cloth->find("mesh") : nullptr;
-  if (!mesh || !mesh->is_string()) return;
-  const fs::path name(mesh->string);
-  if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
-    throw InputError({document.diagnostic(
-        mesh->place, "a mesh that goes to other machines lies in the scene's folder or below")});
-  make_folder((into / name).parent_path());
-  write_file(into / name, read_text(scene.parent_path() / name, kMostMeshBytes));
+/// Copies the files that a scene names: meshes and frames.
+void copy_named_files(const fs::path& scene, const SceneSettings& settings, const fs::path& into) {
+  Document document = read_document(scene, settings);
+  for (const Value* value : file_names(document.root)) {
+    const fs::path name(value->string);
+    if (name.is_absolute() || std::ranges::find(name, "..") != name.end())
+      throw InputError({document.diagnostic(
+          value->place, "a file that goes to other machines lies in the scene's folder or below")});
+    make_folder((into / name).parent_path());
+    write_file(into / name, read_text(scene.parent_path() / name, kMostMeshBytes));
+  }
 }
 
-/// Copies the user's own scene files and their meshes to where the folder's copy of the study finds
-/// them, so that the folder is complete in itself.
+/// Copies the user's own scene files and what they name to where the folder's copy of the study
+/// finds them, so that the folder is complete in itself.
 void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
   std::set<std::pair<std::string, SceneSettings>> seen;
   for (const Case& one : cases) {
@@ -82,7 +83,7 @@ void copy_scenes(const std::vector<Case>& cases, const fs::path& folder) {
                        ": a scene that goes to other machines lies in this folder or below");
     make_folder((folder / name).parent_path());
     write_file(folder / name, read_text(file));
-    copy_mesh(file, one.spec.settings, (folder / name).parent_path());
+    copy_named_files(file, one.spec.settings, (folder / name).parent_path());
   }
 }
 

@@ -7,6 +7,7 @@ import pathlib
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -58,9 +59,14 @@ class Cluster(CommandLine):
 class Submit(Cluster):
     def test_a_folder_is_whole_in_itself(self):
         (self.folder / "disc.toml").write_text('summary = "A"\n[cloth]\nmesh = "m/disc.obj"\narea_density = 0.1\n'
+                                               '[[collider]]\ntype = "mesh"\nfile = "m/body.obj"\nframes = "m/body.npy"\nfps = 30\n'
                                                '[time]\ndt = "1/64"\nduration = 0.1\n')
         (self.folder / "m").mkdir()
         (self.folder / "m/disc.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        (self.folder / "m/body.obj").write_text("v 0 0 9\nv 1 0 9\nv 0 1 9\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+        header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 4, 3), }".ljust(117) + b"\n"
+        places = 2 * (0, 0, 9, 1, 0, 9, 0, 1, 9, 0, 0, 10)
+        (self.folder / "m/body.npy").write_bytes(b"\x93NUMPY\x01\x00" + struct.pack(f"<H{len(header)}s24d", len(header), header, *places))
         study = self.study(scenes=["./small.toml", "./disc.toml", "hang"], rest='set = ["time.duration=0.1"]\n')
         self.submit("--shards", 2, study=study, on="slurm")
         digest = self.whole()
