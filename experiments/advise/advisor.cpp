@@ -164,7 +164,7 @@ class Advisor {
     const CaseSpec spec{wanted_.scene, wanted_.settings, least->setting};
     const Scratch scratch;
     for (const Effect& effect : effects_of(make_case(spec))) {
-      if (effect.reductions.size() != 1 || effect.reductions.front().change != "gone") continue;
+      if (effect.reductions.size() != 1 || !effect.reductions.front().removes) continue;
       Draft draft(spec);
       effect.reductions.front().apply(draft);
       const auto cost = quick_cost(

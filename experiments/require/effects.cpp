@@ -19,7 +19,7 @@ void add(Effects& effects, const std::string& name, std::vector<Reduction> reduc
   if (!reductions.empty()) effects.push_back({name, std::move(reductions)});
 }
 void gone(Effects& effects, const std::string& name, std::function<void(Draft&)> apply) {
-  add(effects, name, {{"gone", std::move(apply)}});
+  add(effects, name, {{"gone", std::move(apply), true}});
 }
 
 bool has_family(const Scene& scene, Family family) {

@@ -11,8 +11,9 @@ namespace taut {
 
 /// One reduction of a model: its description, and its change to a draft.
 struct Reduction {
-  std::string change;  ///< "gone", "5 -> 2"
+  std::string change;  ///< for people: "gone", "5 -> 2"
   std::function<void(Draft&)> apply;
+  bool removes = false;  ///< nothing of the effect is left
 };
 
 /// A part of a model that may not be needed, or a number that may be coarser.

@@ -164,8 +164,8 @@ class Search {
 
   /// The full model with these reductions, or the reason why there is no such case.
   ModelTrial draft(const std::vector<const Reduction*>& reductions, const std::string& name,
-                   const std::string& change, const std::string& comment = "") {
-    ModelTrial trial{.change = change, .spec = {}, .why = "", .moved = {}, .cost = {}};
+                   const std::string& comment = "") {
+    ModelTrial trial;
     try {
       Draft draft(options_.full);
       for (const Reduction* reduction : reductions) reduction->apply(draft);
@@ -205,8 +205,9 @@ class Search {
         EffectTrial& effect = found_.effects[i];
         if (effect.allowed < level || level >= effects_[i].reductions.size()) continue;
         const Reduction& reduction = effects_[i].reductions[level];
-        effect.trials.push_back(
-            draft({&reduction}, slug(effect.name + " " + reduction.change), reduction.change));
+        effect.trials.push_back(draft({&reduction}, slug(effect.name + " " + reduction.change)));
+        effect.trials.back().change = reduction.change;
+        effect.trials.back().removes = reduction.removes;
         if (effect.trials.back().done) continue;
         specs.push_back(effect.trials.back().spec);
         asked.push_back(&effect.trials.back());
@@ -238,7 +239,7 @@ class Search {
 
   ModelTrial try_combined(const Choice& choice) {
     // Scenes are read once for each name, so every combination has its own.
-    ModelTrial trial = draft(reductions(choice), "smaller-" + std::to_string(++combinations_), "");
+    ModelTrial trial = draft(reductions(choice), "smaller-" + std::to_string(++combinations_));
     if (!trial.done) judge(trial, observe({trial.spec}, kCombinedBy).front());
     return trial;
   }
@@ -257,7 +258,7 @@ class Search {
     if (wanted.empty() || found_.interrupted) return;
     std::ranges::stable_sort(wanted, {}, [&](const auto& one) {
       const ModelTrial& trial = found_.effects[one.first].trials[one.second];
-      return std::tuple(!moves_nothing(trial), trial.change != "gone", work(trial));
+      return std::tuple(!moves_nothing(trial), !trial.removes, work(trial));
     });
     ModelTrial best = try_combined(wanted);
     if (!best.within) wanted = one_by_one(wanted, best);
@@ -269,7 +270,7 @@ class Search {
       comment +=
           "#   " + effects_[effect].name + ": " + effects_[effect].reductions[level].change + "\n";
     }
-    best.spec = draft(reductions(wanted), "smallest", "", comment).spec;
+    best.spec = draft(reductions(wanted), "smallest", comment).spec;
     found_.smallest = std::move(best);
     found_.file = found_.smallest->spec.scene;
   }

@@ -16,9 +16,10 @@ namespace taut {
 
 /// What a smaller model does to the kept answers.
 struct ModelTrial {
-  std::string change;  ///< "gone", "5 -> 2"
-  CaseSpec spec;       ///< empty solver: it could not be made
-  std::string why;     ///< why it cannot be used: "exploded (energy) at step 3", ...; "" if it can
+  std::string change;    ///< for people: "gone", "5 -> 2"
+  bool removes = false;  ///< whether nothing of the effect is left
+  CaseSpec spec;         ///< empty solver: it could not be made
+  std::string why;  ///< why it cannot be used: "exploded (energy) at step 3", ...; "" if it can
   std::vector<double> moved;   ///< by answer; infinite if it cannot be used
   bool done = false;           ///< false if time was up first
   bool within = false;         ///< whether every answer stays within its tolerance or the noise

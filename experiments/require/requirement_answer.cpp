@@ -132,7 +132,7 @@ RequirementSummary summary_of(const Requirement& found) {
     list += (list.empty() ? "" : ", ") + effect.name;
     const ModelTrial& told =
         effect.chosen ? effect.trials[*effect.chosen] : effect.representative();
-    if (effect.chosen && told.change != "gone") list += " " + told.change;
+    if (effect.chosen && !told.removes) list += " " + told.change;
   }
   for (const std::string& what : found.not_done)
     drop += (drop.empty() ? "not done: " : "; not done: ") + what;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -94,6 +95,27 @@ TEST(Effects, EachLeavesWhatItSaysAndNothingElse) {
       EXPECT_LT(b.links.size(), a.links.size()) << effect.name;
     }
   }
+}
+
+// What removes an effect leaves nothing of it: the case without it no longer has that effect.
+TEST(Effects, OnlyWhatLeavesNothingRemovesOne) {
+  const Scratch scratch;
+  const Case full =
+      make_case({"crumple", {"wind={velocity=[1,0,0]}"}, "jakobsen:faces=on,precision=double"});
+  std::vector<std::string> removed;
+  for (const Effect& effect : effects_of(full)) {
+    for (const Reduction& reduction : effect.reductions) {
+      Draft draft(full.spec);
+      reduction.apply(draft);
+      const Case less = make_case(draft.write(scratch.path(), effect.name + reduction.change));
+      const std::vector<std::string> left = names(effects_of(less));
+      EXPECT_TRUE(!reduction.removes || std::ranges::count(left, effect.name) == 0) << effect.name;
+    }
+    if (effect.reductions.front().removes) removed.push_back(effect.name);
+  }
+  EXPECT_EQ(removed,
+            (std::vector<std::string>{"bend links", "shear links", "wind", "damping", "friction",
+                                      "plane", "self-collision", "thickness"}));
 }
 
 TEST(Effects, OneOfSeveralCollidersGoes) {
