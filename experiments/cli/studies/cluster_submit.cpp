@@ -22,10 +22,10 @@ struct Options {
 };
 
 /// The lines of the file `nodes`, from --sshlogin and --node-file; "" without either.
-std::string nodes_of(const Options& o) {
+std::string nodes_of(const Options& o, Scheduler on) {
   std::string nodes = o.node_file.empty() ? "" : read_text(o.node_file);
   for (const std::string& login : o.logins) nodes += login + '\n';
-  if (o.on == "slurm" && !nodes.empty())
+  if (on == Scheduler::slurm && !nodes.empty())
     throw InputError("--sshlogin and --node-file are for GNU parallel; Slurm knows its nodes");
   return nodes;
 }
@@ -49,8 +49,8 @@ void start(const fs::path& folder, Scheduler on) {
 
 int run(const Options& o) {
   const Study study = load_study(o.study, o.preset);
-  const std::string nodes = nodes_of(o);
-  const Scheduler on = o.on == "slurm" ? Scheduler::slurm : Scheduler::parallel;
+  const Scheduler on = scheduler_named(o.on).value();
+  const std::string nodes = nodes_of(o, on);
   const fs::path folder =
       o.folder.empty() ? results_folder() / "cluster" / study.name : fs::path(o.folder);
   if (fs::exists(folder))

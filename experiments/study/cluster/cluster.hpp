@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/answer/answer.hpp"
@@ -43,6 +45,9 @@ std::filesystem::path shard_folder(const std::filesystem::path& folder, int shar
 
 /// What starts the shards of a folder.
 enum class Scheduler { slurm, parallel };
+std::string_view to_string(Scheduler);
+/// The one that to_string() calls this; nothing for another name.
+std::optional<Scheduler> scheduler_named(std::string_view);
 
 /// Time limit of each shard under Slurm [minutes]: twice the estimate for the longest shard, plus
 /// the limit of a single case, so that every start finishes at least one case.
@@ -66,8 +71,8 @@ struct FolderRequest {
 };
 
 /// Writes a folder: the study, the user's own scene files and meshes where the copy of the study
-/// finds them, the plan, and job.sh. Leaves nothing behind if it throws: InputError as from plan(),
-/// or if a scene file lies outside the current folder.
+/// finds them, the plan, the name of the scheduler, and job.sh. Leaves nothing behind if it throws:
+/// InputError as from plan(), or if a scene file lies outside the current folder.
 Plan write_folder(const std::filesystem::path& folder, const FolderRequest&);
 
 /// Progress of a cluster folder: facts `cases`, `done`, `start` (the command that starts what is

@@ -8,6 +8,7 @@
 #include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/results/database.hpp"
@@ -28,6 +29,24 @@ constexpr std::size_t kProgramBytes = std::size_t{64} << 20, kElementBytes = 204
 
 /// Longest wall time of a case (isolate.hpp) [s].
 double longest_case(const Limits& limits) { return 5 * limits.seconds; }
+
+constexpr Names<Scheduler::parallel> kSchedulers{"slurm", "parallel"};
+
+/// File of a folder with the name of its scheduler.
+constexpr const char* kSchedulerFile = "scheduler";
+
+/// The scheduler that a folder was written for.
+Scheduler scheduler_of(const fs::path& folder) {
+  const fs::path file = folder / kSchedulerFile;
+  if (!fs::exists(file)) {  // of an earlier taut: only its script tells
+    const bool slurm = read_text(folder / "job.sh").find("\n#SBATCH") != std::string::npos;
+    return slurm ? Scheduler::slurm : Scheduler::parallel;
+  }
+  std::string name = read_text(file);
+  while (name.ends_with('\n')) name.pop_back();
+  if (const auto scheduler = scheduler_named(name)) return *scheduler;
+  throw InputError(file.string() + ": unknown scheduler '" + name + "'");
+}
 
 double longest_shard(const std::vector<Case>& cases, int shards) {
   std::vector<double> seconds(static_cast<std::size_t>(shards), 0);
@@ -100,12 +119,16 @@ std::string start_command(const std::vector<int>& shards, const fs::path& folder
   const auto list = [&](const char* separator) {
     return join(shards, separator, [](int shard) { return std::to_string(shard); });
   };
-  const bool slurm = read_text(folder / "job.sh").find("\n#SBATCH") != std::string::npos;
+  const bool slurm = scheduler_of(folder) == Scheduler::slurm;
   return "cd " + shell_word(folder.string()) + " && " +
          (slurm ? "sbatch --array=" + list(",") + " job.sh" : "./job.sh " + list(" "));
 }
 
 }  // namespace
+
+std::string_view to_string(Scheduler scheduler) { return kSchedulers[scheduler]; }
+
+std::optional<Scheduler> scheduler_named(std::string_view name) { return kSchedulers.find(name); }
 
 double estimated_seconds(double work) { return 0.1 + 1.5e-8 * work; }
 
@@ -139,6 +162,7 @@ Plan write_folder(const fs::path& folder, const FolderRequest& request) {
     write_durably(folder / (study.name + ".toml"), read_text(study.file));
     write_durably(folder / "README", readme(made, request.on));
     if (!request.nodes.empty()) write_durably(folder / "nodes", request.nodes);
+    write_durably(folder / kSchedulerFile, std::string(to_string(request.on)) + "\n");
     write_durably(folder / "job.sh", job_script(made, request.on));
     fs::permissions(folder / "job.sh", fs::perms::owner_exec | fs::perms::group_exec,
                     fs::perm_options::add);

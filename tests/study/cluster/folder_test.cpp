@@ -132,10 +132,36 @@ TEST_F(Folder, ItsStatusIsThatOfEveryShard) {
             "export ONLY=failed; cd " + folder.string() + " && ./job.sh 4");
   ASSERT_EQ(is.table("failed").rows.size(), 1u);
   EXPECT_EQ(is.table("failed").rows[0][1].text(), "case 4");
+  // A folder of an earlier taut, without the file `scheduler`.
   write_file(folder / "job.sh", "#!/bin/bash\n#SBATCH\n");
   EXPECT_TRUE(status_of(folder).fact("start").text().ends_with("sbatch --array=2,3 job.sh"));
   EXPECT_EQ(refused([&] { status_of(root_.path()); }),
             root_.path().string() + ": not a folder of `taut cluster submit`");
+}
+
+// What starts a folder's shards is what it was written for, whatever its script has become.
+TEST_F(Folder, RemembersItsScheduler) {
+  Study study;
+  study.name = "s";
+  study.scenes = {"hang"};
+  study.solvers = {"jakobsen:iterations=2"};
+  study.file = root_.path() / "s.toml";
+  write_file(study.file, "");
+  for (const Scheduler on : {Scheduler::slurm, Scheduler::parallel}) {
+    const fs::path folder = root_.path() / to_string(on);
+    write_folder(folder, {.study = study, .limits = {60, 0}, .shards = 1, .on = on});
+    const std::string start = "cd " + folder.string() + " && " +
+                              (on == Scheduler::slurm ? "sbatch --array=1 job.sh" : "./job.sh 1");
+    for (const char* script : {"#!/bin/bash\n", "#!/bin/bash\n#SBATCH\n"}) {
+      write_file(folder / "job.sh", script);
+      EXPECT_EQ(status_of(folder).fact("start").text(), start) << script;
+    }
+    EXPECT_EQ(scheduler_named(to_string(on)), on);
+  }
+  EXPECT_FALSE(scheduler_named("pbs"));
+  write_file(root_.path() / "slurm/scheduler", "pbs\n");
+  EXPECT_EQ(refused([&] { status_of(root_.path() / "slurm"); }),
+            (root_.path() / "slurm/scheduler").string() + ": unknown scheduler 'pbs'");
 }
 
 TEST_F(Folder, AMergeTakesResultsBeforeFailures) {
