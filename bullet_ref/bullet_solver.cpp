@@ -207,7 +207,7 @@ void require_cells(const btAlignedObjectArray<btSoftBody*>& bodies) {
     const auto& nodes = bodies[b]->m_nodes;
     for (int i = 0; i < nodes.size(); ++i)
       if (!near(nodes[i].m_x) || !near(nodes[i].m_q))
-        throw SolverFailure(Status::Kind::exploded, "box");
+        throw SolverFailure(Status::Kind::exploded, Reason::box);
   }
 }
 

@@ -73,9 +73,13 @@ class Solver {
 /// Failure of a solver, of most only if they compute in a process of their own. `status` is the
 /// case's; `log` is the end of the process's standard error.
 struct SolverFailure : std::runtime_error {
-  SolverFailure(Status::Kind status_, const std::string& reason, std::string log_ = "")
-      : std::runtime_error(reason), status(status_), log(std::move(log_)) {}
+  SolverFailure(Status::Kind status_, StatusReason reason_, std::string log_ = "")
+      : std::runtime_error(reason_.text()),
+        status(status_),
+        reason(std::move(reason_)),
+        log(std::move(log_)) {}
   Status::Kind status;
+  StatusReason reason;  ///< what() is its text
   std::string log;
 };
 

@@ -1,9 +1,40 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace taut {
+
+/// Why taut itself ends a run, or marks one that it ran to the end (DivergenceDetector).
+enum class Reason { nonfinite, energy, box, stretch, stretch_and_unsettled, unsettled };
+/// The text that is stored: "energy", "moves after five settling times".
+std::string_view to_string(Reason);
+
+/// A run that is `unsettled` lasted at least so many settling times.
+inline constexpr int kSettlingTimes = 5;
+
+/// Why a status is not ok: a Reason, or words of a solver or of the system, which decide nothing.
+class StatusReason {
+ public:
+  StatusReason() = default;
+  StatusReason(Reason own) : own_(own), text_(to_string(own)) {}
+  StatusReason(std::string words) : text_(std::move(words)) {}
+  StatusReason(const char* words) : text_(words) {}
+  /// What a stored record calls by this text: a Reason if one has that text. Only what reads stored
+  /// records needs it.
+  static StatusReason stored(const std::string& text);
+
+  const std::string& text() const { return text_; }
+  bool empty() const { return text_.empty(); }
+  /// Not so for words that merely read the same.
+  bool operator==(Reason own) const { return own_ == own; }
+
+ private:
+  std::optional<Reason> own_;
+  std::string text_;
+};
 
 /// How a case ended. A numerical failure is a result, never an exception and never a gap.
 struct Status {
@@ -11,7 +42,7 @@ struct Status {
     // results, kept
     ok,           ///< ran to the end
     exploded,     ///< non-finite, or kinetic energy above ten times the available potential drop
-    unsettled,    ///< ran to the end, still moving after five theoretical settling times
+    unsettled,    ///< ran to the end, still moving after kSettlingTimes theoretical settling times
     extreme,      ///< ran to the end, but stretched as no mean should include
     unsupported,  ///< the solver says that it would misread the scene
     // failures, kept and re-runnable
@@ -24,9 +55,9 @@ struct Status {
     interrupted
   };
   Kind kind = Kind::ok;
-  std::string reason;  ///< "nonfinite", "energy", "box", "SIGSEGV", what is not supported, ...
-  int step = -1;       ///< where it happened; -1: not known or not applicable
-  int vertex = -1;     ///< the first vertex concerned; -1: not known or not applicable
+  StatusReason reason;  ///< Reason::energy, "SIGSEGV", what is not supported, ...
+  int step = -1;        ///< where it happened; -1: not known or not applicable
+  int vertex = -1;      ///< the first vertex concerned; -1: not known or not applicable
 
   bool is_result() const { return kind <= Kind::unsupported; }
 };

@@ -21,7 +21,7 @@ namespace {
 
 RowStatus row_status(const Status& status) {
   const bool with_reason = status.kind != Status::Kind::unsupported;
-  return {std::string(to_string(status.kind)), with_reason ? status.reason : ""};
+  return {std::string(to_string(status.kind)), with_reason ? status.reason.text() : ""};
 }
 
 std::string digits(double value, int count) { return formatted("%.*g", count, value); }

@@ -270,8 +270,7 @@ DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<Pas
 }
 
 bool DivergenceDetector::explode(Reason reason, int step, std::size_t vertex) {
-  status_ = {Status::Kind::exploded, std::string(to_string(reason)), step,
-             static_cast<int>(vertex)};
+  status_ = {Status::Kind::exploded, reason, step, static_cast<int>(vertex)};
   return false;
 }
 
@@ -280,7 +279,7 @@ void DivergenceDetector::judge_stretch(int step, const State& state) {
     const double most = (1 + legitimate_strain_) * link.rest;
     if ((state.x[to_index(link.b)] - state.x[to_index(link.a)]).squaredNorm() > square(most) &&
         strain_in_plane(scene_, link, state.x) > 0) {
-      status_ = {Status::Kind::extreme, std::string(to_string(Reason::stretch)), step, link.a};
+      status_ = {Status::Kind::extreme, Reason::stretch, step, link.a};
       return;
     }
   }
@@ -323,14 +322,13 @@ bool DivergenceDetector::observe(int step, double t, const State& state) {
 }
 
 void DivergenceDetector::finish() {
-  if (!settling_ || duration_ < 5 * *settling_) return;
+  if (!settling_ || duration_ < kSettlingTimes * *settling_) return;
   const double decayed = peak_ * std::exp(-(duration_ - *settling_) / *settling_);
   if (late_ <= std::max(slow_, decayed)) return;
   if (status_.kind == Status::Kind::extreme)
-    status_.reason = to_string(Reason::stretch_and_unsettled);
+    status_.reason = Reason::stretch_and_unsettled;
   else
-    status_ = {Status::Kind::unsettled, std::string(to_string(Reason::unsettled)), -1,
-               late_vertex_};
+    status_ = {Status::Kind::unsettled, Reason::unsettled, -1, late_vertex_};
 }
 
 }  // namespace taut

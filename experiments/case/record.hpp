@@ -1,9 +1,7 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/model/scene_setting.hpp"
@@ -11,12 +9,6 @@
 #include "core/model/status.hpp"
 
 namespace taut {
-
-/// Why DivergenceDetector ends or marks a run. A Status has the text, which is stored.
-enum class Reason { nonfinite, energy, box, stretch, stretch_and_unsettled, unsettled };
-std::string_view to_string(Reason);
-/// The one of this status; nothing: its text is not of DivergenceDetector.
-std::optional<Reason> reason_of(const Status&);
 
 /// What is to be run: names and settings, no content. Solver in canonical form
 /// (SolverChoice::canonical()).

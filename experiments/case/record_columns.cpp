@@ -61,7 +61,9 @@ const RecordColumn kColumns[] = {
 
 template <class Struct, class Value>
 std::string_view type_of(Value Struct::*) {
-  if (std::is_same_v<Value, std::string> || std::is_same_v<Value, Status::Kind>) return "text";
+  if (std::is_same_v<Value, std::string> || std::is_same_v<Value, Status::Kind> ||
+      std::is_same_v<Value, StatusReason>)
+    return "text";
   if (std::is_same_v<Value, double>) return "number";
   if (std::is_integral_v<Value>) return "whole number";
   return "JSON";

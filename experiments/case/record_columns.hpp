@@ -30,7 +30,7 @@ struct RecordColumn {
                    std::vector<std::string> Record::*, Texts Record::*, Numbers Record::*,
                    std::vector<PassCost> Record::*, ResolvedSettings Record::*,
                    std::string CaseSpec::*, SceneSettings CaseSpec::*, Status::Kind Status::*,
-                   std::string Status::*, int Status::*>;
+                   StatusReason Status::*, int Status::*>;
 
   std::string_view json;    ///< its key; "status.kind": "kind" in the object "status"
   std::string_view column;  ///< in the table `cases`; "": the field has its own table

@@ -58,9 +58,15 @@ void to_json(Json& json, const ResolvedSetting& s) {
 
 void to_json(Json& json, const Status::Kind& kind) { json = std::string(to_string(kind)); }
 
+void to_json(Json& json, const StatusReason& reason) { json = reason.text(); }
+
 void read_into(const JsonReader& j, Status::Kind& kind) {
   if (!is_status(j.text())) j.fail("unknown status '" + j.text() + "'");
   kind = status_kind(j.text());
+}
+
+void read_into(const JsonReader& j, StatusReason& reason) {
+  reason = StatusReason::stored(j.text());
 }
 
 void read_into(const JsonReader& j, std::vector<PassCost>& all) {
@@ -105,7 +111,7 @@ bool failed(const Status& status) {
 
 std::string describe(const Status& status) {
   std::string text(to_string(status.kind));
-  if (!status.reason.empty()) text += " (" + printable(status.reason) + ")";
+  if (!status.reason.empty()) text += " (" + printable(status.reason.text()) + ")";
   if (status.step >= 0) text += " at step " + std::to_string(status.step);
   if (status.vertex >= 0) text += ", vertex " + std::to_string(status.vertex);
   return text;

@@ -114,9 +114,9 @@ namespace {
 void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions& options,
                CaseRun& run, std::unique_ptr<Solver>& solver, int& step) {
   Record& record = run.record;
-  record.status.reason = join(choice.entry->unsupported(scene, choice.params), "; ");
-  if (!record.status.reason.empty()) {
-    record.status.kind = Status::Kind::unsupported;
+  const std::string cannot = join(choice.entry->unsupported(scene, choice.params), "; ");
+  if (!cannot.empty()) {
+    record.status = {Status::Kind::unsupported, cannot};
     return;
   }
   solver = choice.entry->make(scene, choice.params);
@@ -182,7 +182,7 @@ CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOption
     run_steps(scene, choice, options, run, solver, step);
     if (solver) run.record.log = solver->log();
   } catch (const SolverFailure& failure) {
-    run.record.status = {failure.status, failure.what(), step - 1, -1};
+    run.record.status = {failure.status, failure.reason, step - 1, -1};
     run.record.log = failure.log;
   }
   return run;

@@ -77,7 +77,7 @@ void print_files(const std::vector<std::string>& files, bool json) {
 
 Answer answer_of(const Record& record, std::string kind) {
   Answer answer{std::move(kind), record.id};
-  answer.add({"status"}, cell_of(record.status.kind).with(record.status.reason));
+  answer.add({"status"}, cell_of(record.status.kind).with(record.status.reason.text()));
   if (record.status.step >= 0) answer.add({"step"}, record.status.step);
   if (record.status.vertex >= 0) answer.add({"vertex"}, record.status.vertex);
   answer.add({"steps"}, record.steps);

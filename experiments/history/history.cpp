@@ -58,7 +58,7 @@ void read_rows(Database& database, History& history) {
     std::shared_ptr<const HistoryPoint>& point = known[one.text(4)];
     if (!point) {
       HistoryPoint fresh{one.text(2), one.text(5), false, {}};
-      Status status{status_kind(fresh.status), one.text(6)};
+      const Status status{status_kind(fresh.status), StatusReason::stored(one.text(6))};
       fresh.completed = completed(status);
       fresh.status = describe(status);
       if (fresh.completed) fresh.values = values_of(database, one.integer(3), names);

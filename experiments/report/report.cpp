@@ -301,7 +301,7 @@ class Builder {
       Json& count = one["statuses"][r->solver][std::string(to_string(r->status.kind))];
       count = count.is_null() ? 1 : count.get<int>() + 1;
       if (r->status.kind == Status::Kind::unsupported)
-        refusals.insert({r->solver, r->status.reason});
+        refusals.insert({r->solver, r->status.reason.text()});
     }
     one["facts"] = facts_of(refs_, name);
     for (const auto& [solver, reason] : refusals)

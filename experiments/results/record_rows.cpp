@@ -30,6 +30,7 @@ Database::Value kept(int number) {
   return std::int64_t{number};
 }
 Database::Value kept(Status::Kind kind) { return std::string(to_string(kind)); }
+Database::Value kept(const StatusReason& reason) { return reason.text(); }
 template <class Value>
 Database::Value kept(const Value& value) {
   return to_text(Json(value));
@@ -46,6 +47,9 @@ void read(const Database::Rows& row, int column, std::size_t& count) {
 }
 void read(const Database::Rows& row, int column, Status::Kind& kind) {
   kind = status_kind(row.text(column));
+}
+void read(const Database::Rows& row, int column, StatusReason& reason) {
+  reason = StatusReason::stored(row.text(column));
 }
 template <class Value>
 void read(const Database::Rows& row, int column, Value& value) {

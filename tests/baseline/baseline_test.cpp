@@ -46,7 +46,7 @@ Comparison after(const Change& change) {
 TEST(Baseline, ARowKeepsParametersThatAreNoDefaults) {
   Record record;
   record.spec.solver = parse_solver("jakobsen:iterations=7").canonical();
-  record.status = {Status::Kind::exploded, "energy", 12, 3};
+  record.status = {Status::Kind::exploded, Reason::energy, 12, 3};
   const BaselineRow r = baseline_row(record, "content");
   EXPECT_EQ(r.spec.solver, "jakobsen:iterations=7");
   EXPECT_EQ(r.status, (RowStatus{"exploded", "energy"}));

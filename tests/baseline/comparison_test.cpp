@@ -196,7 +196,7 @@ TEST(Reproduced, AreFrontiersByTheirOwnVerb) {
 TEST(Reproduced, AStatusHasItsReasonUnlessItRefuses) {
   Record record;
   record.spec.solver = "jakobsen";
-  record.status = {Status::Kind::exploded, "box", 3, 4};
+  record.status = {Status::Kind::exploded, Reason::box, 3, 4};
   EXPECT_EQ(baseline_row(record, "c").status, (RowStatus{"exploded", "box"}));
   record.status = {Status::Kind::unsupported, "no contact", -1, -1};
   EXPECT_EQ(baseline_row(record, "c").status, RowStatus{"unsupported"});

@@ -62,7 +62,7 @@ TEST(BulletDeformable, AVertexBeyondDistanceFieldsEndsTheCase) {
   const Status status =
       run_case(scene, parse_solver("bullet-deformable:stiffness=1000,substeps=23")).record.status;
   EXPECT_EQ(status.kind, Status::Kind::exploded);
-  EXPECT_EQ(status.reason, "box");
+  EXPECT_EQ(status.reason, Reason::box);
   Scene ball = load_scene(TAUT_SOURCE_DIR "/experiments/scenes/ball.toml", {"cloth.grid=[4, 4]"});
   ball.start.x.back() = Vec3(1e12, 0, 0);
   for (const char* text : {"bullet", "bullet-deformable"}) {

@@ -158,6 +158,7 @@ bool too_far(const std::string& solver, const Vec3& at, const Vec3& velocity = V
     made->step(0, scene.dt);
   } catch (const SolverFailure& failure) {
     EXPECT_EQ(failure.status, Status::Kind::exploded);
+    EXPECT_EQ(failure.reason, Reason::box);
     EXPECT_STREQ(failure.what(), "box");
     return true;
   }

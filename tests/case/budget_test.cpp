@@ -227,9 +227,9 @@ TEST(Verdict, ASolverThatStoresAnotherClothIsInError) {
     (positions ? state.x : state.v).pop_back();
     EXPECT_FALSE(verdict.observe(7, 0.1, state));
     EXPECT_EQ(verdict.status().kind, Status::Kind::error);
-    EXPECT_EQ(verdict.status().reason, positions
-                                           ? "stored 4 positions and 5 velocities of 5 vertices"
-                                           : "stored 5 positions and 4 velocities of 5 vertices");
+    EXPECT_EQ(verdict.status().reason.text(),
+              positions ? "stored 4 positions and 5 velocities of 5 vertices"
+                        : "stored 5 positions and 4 velocities of 5 vertices");
     EXPECT_EQ(verdict.status().step, 7);
     EXPECT_EQ(verdict.status().vertex, -1);
   }

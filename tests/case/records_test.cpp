@@ -105,10 +105,14 @@ TEST(StateDigest, OfAStateKnowsEveryBit) {
 TEST(Status, SaysWhichReasonOfTheDetectorItHas) {
   for (const Reason one : {Reason::nonfinite, Reason::energy, Reason::box, Reason::stretch,
                            Reason::stretch_and_unsettled, Reason::unsettled})
-    EXPECT_EQ(reason_of({Status::Kind::extreme, std::string(to_string(one))}), one);
+    EXPECT_EQ(StatusReason::stored(std::string(to_string(one))), one);
   EXPECT_EQ(to_string(Reason::stretch_and_unsettled), "stretch, moves after five settling times")
       << "as it is stored";
-  EXPECT_FALSE(reason_of({Status::Kind::crash, "SIGSEGV"}).has_value());
+  EXPECT_EQ(to_string(Reason::unsettled), "moves after five settling times");
+  EXPECT_EQ(kSettlingTimes, 5);
+  EXPECT_EQ(StatusReason::stored("SIGSEGV").text(), "SIGSEGV");
+  EXPECT_FALSE(StatusReason("energy") == Reason::energy) << "a solver's words decide nothing";
+  EXPECT_EQ(StatusReason(Reason::energy).text(), "energy");
 }
 
 TEST(Status, HasANameAndIsAResultOrAFailure) {
@@ -155,7 +159,7 @@ Record small_record() {
   r.steps = 6;
   r.vertices = 4;
   r.links = 5;
-  r.status = {Status::Kind::exploded, "energy", 17, 3};
+  r.status = {Status::Kind::exploded, Reason::energy, 17, 3};
   r.values = {{"a", 0.5}, {"b", std::nan("")}};
   r.projections = 60;
   r.step_cost = {{"links", 7, 8, 9, true}, {"wind", 1, 2, 3, false}};
@@ -192,6 +196,7 @@ TEST(RecordLine, IsThisOneLine) {
   EXPECT_EQ(to_json(small_record()), text);
   const Record r = record_from_json(text, "file");
   EXPECT_EQ(to_json(r), text);
+  EXPECT_EQ(r.status.reason, Reason::energy);
   EXPECT_EQ(r.status.vertex, 3);
   EXPECT_EQ(r.steps, 6);
   EXPECT_EQ(r.vertices, 4);

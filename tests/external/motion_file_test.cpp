@@ -160,8 +160,8 @@ TEST_F(MotionFiles, WhatIsNotFiniteExplodesWhereItStands) {
       });
       const Params params("positions", kPositions.params, solver_text(file).substr(10));
       const CaseRun run = run_case(scene, {&kPositions, params});
-      EXPECT_EQ(run.record.status.kind, Status::Kind::exploded) << run.record.status.reason;
-      EXPECT_EQ(run.record.status.reason, "nonfinite");
+      EXPECT_EQ(run.record.status.kind, Status::Kind::exploded) << run.record.status.reason.text();
+      EXPECT_EQ(run.record.status.reason, Reason::nonfinite);
       EXPECT_EQ(run.record.status.step, 2);
       EXPECT_EQ(run.record.status.vertex, static_cast<int>(vertex));
     }

@@ -69,7 +69,7 @@ TEST_F(Histories, ABuildWithoutAResultIsAGap) {
 
 TEST_F(Histories, ACaseThatFailsStepsInItsStatusAlone) {
   build("one", 0.02);
-  build("two", 0.5, {Status::Kind::exploded, "energy", 3});
+  build("two", 0.5, {Status::Kind::exploded, Reason::energy, 3});
   const History found = history();
   ASSERT_EQ(found.steps.size(), 1U);
   EXPECT_EQ(found.steps[0].value, "status");

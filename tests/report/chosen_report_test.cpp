@@ -97,7 +97,7 @@ TEST(Chosen, ASceneHasItsFactsItsStatusesAndWhoRefusesIt) {
 TEST(Chosen, AChartHasItsPointsItsTicksItsFitAndItsTheory) {
   ReportInput input = chosen();
   Record& failed = input.studies[0].records[3];  // Bullet, 8 sweeps
-  failed.status = {Status::Kind::exploded, "energy", 3, 2};
+  failed.status = {Status::Kind::exploded, Reason::energy, 3, 2};
   const Json model = model_of(input);
   const Json& chart = by_id(model["charts"], "hang-convergence");
   EXPECT_EQ(chart["kind"], "convergence");

@@ -64,7 +64,7 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
   Record failed =
       // drawn as a mark at its number of sweeps
       synthetic::record("hang", "jakobsen", 512, 1.0 / 64);
-  failed.status = {Status::Kind::exploded, "energy", 3, 0};
+  failed.status = {Status::Kind::exploded, Reason::energy, 3, 0};
   failed.values.clear();
   study.records.push_back(failed);
   const auto of_file = [](const Chart& chart) {

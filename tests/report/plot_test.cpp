@@ -170,7 +170,7 @@ TEST_F(Plots, AScriptDrawsEveryRowAndFailuresAbove) {
   std::vector<Record> all{made("j1", "jakobsen", 1, 0.08), made("j4", "jakobsen", 4, 0.02),
                           made("j16", "jakobsen", 16, 0),  made("b1", "bullet", 1, 0.3),
                           made("b4", "bullet", 4, 0.1),    made("b,16", "bullet", 16, 0.05)};
-  synthetic::fail(all[4], Status::Kind::exploded, "energy");
+  synthetic::fail(all[4], Status::Kind::exploded, Reason::energy);
   const PlotFiles plot = draw({.kind = "convergence", .title = "Two", .file = "one"}, all, {}, -1);
   EXPECT_EQ(read_text(plot.csv),
             "curve,solver,label,x,y,status,reason,failed,setting,case,scene\n"
@@ -302,7 +302,7 @@ TEST_F(Plots, AMapHasTicksColoursAndGlyphsInEachPanel) {
       for (const int sweeps : {4, 1, 16})
         all.push_back(synthetic::record("hang", solver, sweeps, dt));
   for (std::size_t i = 0; i < all.size(); ++i) all[i].id = "c" + std::to_string(i);
-  synthetic::fail(all[1], Status::Kind::exploded, "energy");
+  synthetic::fail(all[1], Status::Kind::exploded, Reason::energy);
   for (Record& r : all) r.values.erase("stretch.rms");
   all[4].values["stretch.rms"] = 0.005;
   all[3].values["stretch.rms"] = 0.2;

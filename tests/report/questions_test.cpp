@@ -43,7 +43,7 @@ TEST(PageAnswers, HaveAValueOrAReasonAndMarkNobody) {
   stretch("ball", "jakobsen", 0.0100);
   stretch("ball", "bullet", 0.0104);
   stretch("box", "jakobsen", 0.02);
-  stretch("box", "bullet", 1e-9).status = {Status::Kind::exploded, "energy", 3, 1};
+  stretch("box", "bullet", 1e-9).status = {Status::Kind::exploded, Reason::energy, 3, 1};
   stretch("drape", "jakobsen", 1e-12);
   stretch("drape", "bullet", 1e-5);
   stretch("swing", "jakobsen", 0.03);
@@ -291,7 +291,7 @@ TEST(PageAnswers, CountFailuresOfWhatAllSolversRanAlone) {
   Reported made;
   const auto add = [&](const char* solver, int sweeps, bool fails) {
     Record r = synthetic::record("hang", solver, sweeps, 1.0 / 64);
-    if (fails) synthetic::fail(r, Status::Kind::exploded, "energy");
+    if (fails) synthetic::fail(r, Status::Kind::exploded, Reason::energy);
     made.input.studies.front().records.push_back(r);
   };
   add("jakobsen", 1, true);
@@ -509,7 +509,7 @@ TEST(FailureMap, SaysTheFirstThatHoldsAndTheNumbersBehindIt) {
   made.add("1e3", "xpbd", 0.91, 0.004, 0.03);
   made.add("1e6", "xpbd", 0.1, 0.006, 0.01);
   made.add("1e3", "bullet", none, 0.004, 0.01);
-  made.add("1e6", "bullet", 1, 0.5, 1).status = {Status::Kind::extreme, "stretch", 3, 1};
+  made.add("1e6", "bullet", 1, 0.5, 1).status = {Status::Kind::extreme, Reason::stretch, 3, 1};
   made.add("1e6", "pd", 1, 0, 0).status = {Status::Kind::unsupported, "no balls", -1, -1};
   const Table table = failure_map(made.records, {}, nullptr);
   ASSERT_EQ(table.columns.size(), 3u);

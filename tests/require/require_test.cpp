@@ -177,7 +177,7 @@ TEST(Answers, ALostValueIsMeasuredOnTheMotion) {
                                     [](const Vec3& x) { return Vec3(x.x(), -0.25, x.z()); });
   const KeptQuantity depth{"penetration.max", 0.001};
   EXPECT_NEAR(distance(depth, full, without), 0.25, 1e-12);
-  without.record.status = {Status::Kind::exploded, "energy", 3, 0};
+  without.record.status = {Status::Kind::exploded, Reason::energy, 3, 0};
   EXPECT_EQ(distance(depth, full, without), std::numeric_limits<double>::infinity());
 }
 

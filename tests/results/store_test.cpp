@@ -41,7 +41,7 @@ Record some_record() {
   r.steps = 600;
   r.vertices = 400;
   r.links = 760;
-  r.status = {Status::Kind::exploded, "energy", 17, 3};
+  r.status = {Status::Kind::exploded, Reason::energy, 17, 3};
   r.values = {{"a", 0.1 + 0.2},
               {"b", std::numeric_limits<double>::quiet_NaN()},
               {"c", std::numeric_limits<double>::denorm_min()},
@@ -115,6 +115,7 @@ TEST_F(StoreTest, ACaseIsThereAfterItsCommit) {
   ASSERT_TRUE(store_.find(r.key));
   const Record back = *Store(root_).find(r.key);
   EXPECT_EQ(to_json(back), to_json(r));
+  EXPECT_EQ(back.status.reason, Reason::energy);
   EXPECT_TRUE(std::signbit(back.values.at("e"))) << "a zero keeps its sign";
   EXPECT_EQ(back.values.at("c"), std::numeric_limits<double>::denorm_min());
   EXPECT_EQ(store_.keys(), std::vector<std::string>{r.key});
@@ -133,6 +134,8 @@ void fill(Value& value, int n) {
     value = static_cast<Value>(n);
   else if constexpr (std::is_same_v<Value, Status::Kind>)
     value = Status::Kind::extreme;
+  else if constexpr (std::is_same_v<Value, StatusReason>)
+    value = text;
   else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
     value = {text};
   else if constexpr (std::is_same_v<Value, RecordColumn::Texts>)

@@ -81,7 +81,7 @@ TEST_F(Isolated, EveryEndHasItsStatus) {
   for (const End& end : ends) {
     const Record record = record_of(end.script, {.bytes = (300 << 20) + 9});
     EXPECT_EQ(record.status.kind, end.kind) << end.script;
-    EXPECT_EQ(record.status.reason, end.reason);
+    EXPECT_EQ(record.status.reason.text(), end.reason);
     EXPECT_EQ(record.status.step, end.step) << end.script;
     EXPECT_EQ(record.status.vertex, -1);
     EXPECT_EQ(record.key, one_.key);
@@ -99,7 +99,7 @@ TEST_F(Isolated, WhatIsEndedFromOutsideHasNoRecord) {
   }
   EXPECT_THROW(record_of("kill -STOP $$; sleep 9", {.seconds = 0.05}), EndedFromOutside);
   fs::remove_all(folder_);
-  EXPECT_EQ(record_of("sleep 9", {.seconds = 0.05}).status.reason, "wall time");
+  EXPECT_EQ(record_of("sleep 9", {.seconds = 0.05}).status.reason.text(), "wall time");
 }
 
 // A process starts as a copy of the one that starts it, and the system counts what that one held.
@@ -128,10 +128,10 @@ TEST_F(Isolated, OnlyItsOwnRecordIsTaken) {
                none = record_of("exit 0\n").status,
                cut = record_of("head -c 99 $folder/its >$5/case.json\n").status;
   EXPECT_EQ(other.kind, Kind::error);
-  EXPECT_EQ(other.reason, "case.json: the record belongs to another case: " + mine.key);
+  EXPECT_EQ(other.reason.text(), "case.json: the record belongs to another case: " + mine.key);
   EXPECT_EQ(none.kind, Kind::error);
   EXPECT_EQ(cut.kind, Kind::error);
-  EXPECT_NE(cut.reason.find("case.json"), std::string::npos);
+  EXPECT_NE(cut.reason.text().find("case.json"), std::string::npos);
 }
 
 TEST_F(Isolated, WhatStaysOfItIsWhatSaysSomething) {
@@ -155,7 +155,7 @@ TEST_F(Isolated, WallTimeIsFiveTimesTheCpuTimeThatItMayTake) {
   const auto start = SteadyClock::now();
   const Status status = record_of("exec sleep 1000\n", {.seconds = 0.06}).status;
   EXPECT_EQ(status.kind, Kind::timeout);
-  EXPECT_EQ(status.reason, "wall time");
+  EXPECT_EQ(status.reason.text(), "wall time");
   EXPECT_GE(seconds_since(start), 0.3);
   EXPECT_LT(seconds_since(start), 2.5);
   scripted_.write("exec sleep 1000\n");
@@ -163,7 +163,7 @@ TEST_F(Isolated, WallTimeIsFiveTimesTheCpuTimeThatItMayTake) {
   EXPECT_FALSE(polled.poll());
   std::optional<Record> record;
   while (!record) record = polled.poll();
-  EXPECT_EQ(record->status.reason, "wall time");
+  EXPECT_EQ(record->status.reason.text(), "wall time");
 }
 
 TEST_F(Isolated, WhatIsNoPropertyOfTheCaseIsNoRecord) {

@@ -32,7 +32,7 @@ inline Record record(const std::string& scene, const std::string& solver, int sw
   return r;
 }
 
-inline void fail(Record& r, Status::Kind kind, const std::string& reason, int step = 12) {
+inline void fail(Record& r, Status::Kind kind, const StatusReason& reason, int step = 12) {
   r.status = {kind, reason, step, 7};
   r.values.clear();
 }
@@ -47,7 +47,7 @@ inline std::vector<Record> iterations(const std::string& scene) {
       r.values["stretch.rms"] = (solver == "bullet" ? 0.3 : 0.1) / std::pow(k, 0.9);
       r.values["stretch.max"] = 4 * r.values["stretch.rms"];
       r.values["penetration.max"] = k >= 64 ? 0.0 : 0.004 / k;
-      if (solver == "bullet" && k == 128) fail(r, Status::Kind::exploded, "nonfinite");
+      if (solver == "bullet" && k == 128) fail(r, Status::Kind::exploded, Reason::nonfinite);
       all.push_back(r);
     }
   return all;
@@ -64,7 +64,7 @@ inline std::vector<Record> time_steps(const std::string& scene) {
         r.values["penetration.max"] = 9.81 * dt * dt;
         const double load = dt * (solver == "bullet" ? 2 : 1) / std::sqrt(k);
         if (load > 0.04) r.status = {Status::Kind::unsettled, "speed", -1, -1};
-        if (load > 0.07) fail(r, Status::Kind::exploded, "energy");
+        if (load > 0.07) fail(r, Status::Kind::exploded, Reason::energy);
         if (solver == "bullet" && k == 64 && dt < 0.0015) fail(r, Status::Kind::timeout, "60 s");
         if (solver == "bullet" && k == 1 && dt < 0.0015) fail(r, Status::Kind::crash, "SIGSEGV");
         all.push_back(r);

@@ -49,7 +49,7 @@ TEST(BenchedCases, AreCandidatesByErrorOrFailure) {
   SceneBench bench{"sheet", {1, 1, 1}, {timed("a", {1, 3}), timed("b", {1, 1}), timed("c", {})}};
   bench.limits.emplace();
   bench.cases[0].record.values["e"] = -0.25;
-  bench.cases[1].record.status = {Status::Kind::exploded, "energy", 12, 3};
+  bench.cases[1].record.status = {Status::Kind::exploded, Reason::energy, 12, 3};
   bench.cases[2].timing.failure = "no clock";
   const auto all = bench.candidates("e");
   EXPECT_EQ(all[0].error, 0.25);

@@ -45,7 +45,7 @@ PlannedFilm of_studied(const report::ComparedSolvers& compared, const report::Qu
     const Record* one = quoted.cases[i];
     if (!one || request.solvers.size() == std::size_t{kMostPanels}) continue;
     if (one->status.kind == Status::Kind::unsupported) {
-      planned.media.refused.emplace_back(one->solver, one->status.reason);
+      planned.media.refused.emplace_back(one->solver, one->status.reason.text());
       continue;
     }
     request.scene = one->spec.scene;

@@ -40,11 +40,12 @@ RecordedRun finished_run(IsolatedCase& process) {
   const Case& one = process.of();
   const Status status = process.wait().status;
   if (status.kind == Status::Kind::unsupported)
-    throw InputError(one.choice.brief() + " cannot run " + one.scene->name + ": " + status.reason);
+    throw InputError(one.choice.brief() + " cannot run " + one.scene->name + ": " +
+                     status.reason.text());
   const fs::path motion = process.folder() / kFramesFile;
   if (!fs::exists(motion))
     throw InputError(one.choice.brief() + " left no motion of " + one.scene->name + ": " +
-                     std::string(to_string(status.kind)) + ", " + status.reason);
+                     std::string(to_string(status.kind)) + ", " + status.reason.text());
   RecordedRun run = shown_run(one, frames_in(read_text(motion), one.scene->mesh.size()));
   if (run.stop && status.kind != Status::Kind::ok) run.stop->why = to_string(status.kind);
   return run;

@@ -104,7 +104,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
            {"links", r.links},
            {"projections", r.projections},
            {"status", to_string(r.status.kind)}};
-  add_if(one, "reason", r.status.reason);
+  add_if(one, "reason", r.status.reason.text());
   if (r.status.step >= 0) one["step"] = r.status.step;
   if (r.status.vertex >= 0) one["vertex"] = r.status.vertex;
   one["values"] = Json::object();

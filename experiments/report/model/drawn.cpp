@@ -233,7 +233,7 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
             {"row", cell.row},
             {"status", to_string(status.kind)},
             {"case", refs.key(*cell.record)}};
-    add_if(at, "reason", status.reason);
+    add_if(at, "reason", status.reason.text());
     if (const double error = cell.record->value(kErrorMetric);
         completed(status) && std::isfinite(error))
       at["value"] = rounded(error, 3);

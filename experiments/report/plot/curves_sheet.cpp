@@ -60,7 +60,7 @@ std::string csv_rows(std::size_t id, const Curve& curve) {
     const bool none = failed(p);
     rows += std::to_string(id) + "," + csv_field(curve.solver) + "," + csv_field(curve.label) +
             "," + exact(p.x) + "," + (none ? "" : exact(p.y)) + "," +
-            std::string(to_string(r.status.kind)) + "," + csv_field(r.status.reason) + "," +
+            std::string(to_string(r.status.kind)) + "," + csv_field(r.status.reason.text()) + "," +
             (none ? "yes" : "no") + "," + csv_field(work_of(r).text()) + "," + csv_field(r.id) +
             "," + csv_field(r.scene) + "\n";
   }

@@ -62,8 +62,8 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
                    "," + exact(map.columns[cell.column]) + "," + exact(map.rows[cell.row]) + "," +
                    std::to_string(cell.column) + "," + std::to_string(cell.row) + "," +
                    std::string(to_string(cell.record->status.kind)) + "," +
-                   csv_field(cell.record->status.reason) + "," + csv_field(cell.record->id) + "," +
-                   exact(error_of(*cell.record)) + "\n";
+                   csv_field(cell.record->status.reason.text()) + "," + csv_field(cell.record->id) +
+                   "," + exact(error_of(*cell.record)) + "\n";
     sheet.panels.push_back(
         {map.label, cell_ticks("x", map.x, map.columns) + cell_ticks("y", map.y, map.rows), ""});
     for (const Status::Kind kind : kinds) {

@@ -66,7 +66,7 @@ Cell cell_of(const Record& r, CaseList* list) {
   Cell cell = completed(r.status)
                   ? Cell(verdict(r)).with(numbers(r))
                   : Cell::lacking(refused ? Cell::State::refused : Cell::State::none,
-                                  refused ? "cannot: " + r.status.reason
+                                  refused ? "cannot: " + r.status.reason.text()
                                           : std::string(to_string(r.status.kind)));
   if (list) cell.key = list->key(r);
   return cell;

@@ -103,7 +103,7 @@ Cell why_none(const Record* r) {
   if (!r) return Cell::lacking(Cell::State::not_run, "not run");
   if (completed(r->status)) return Cell::lacking(Cell::State::none, "no value");
   if (r->status.kind == Status::Kind::unsupported)
-    return Cell::lacking(Cell::State::refused, "cannot: " + r->status.reason);
+    return Cell::lacking(Cell::State::refused, "cannot: " + r->status.reason.text());
   return Cell::lacking(Cell::State::none, std::string(to_string(r->status.kind)));
 }
 

@@ -31,7 +31,7 @@ struct Probed : Outcome {
   bool stable() const {
     return symptom.empty() &&
            (status.kind == Status::Kind::ok ||
-            (status.kind == Status::Kind::extreme && reason_of(status) == Reason::stretch));
+            (status.kind == Status::Kind::extreme && status.reason == Reason::stretch));
   }
   /// Whether the outcome is known. A crash is; lack of time or memory and a broken protocol are
   /// not.

@@ -116,7 +116,7 @@ Answer answer_of(const FrontierQuestion& question, const BothFrontiers& both,
     const Probed& probe = found.probes[i];
     Cell id(result.records[i].id);
     id.key = result.records[i].key;
-    probes.rows.push_back({probe.value, cell_of(probe.status.kind).with(probe.status.reason),
+    probes.rows.push_back({probe.value, cell_of(probe.status.kind).with(probe.status.reason.text()),
                            probe.status.step >= 0 ? Cell(probe.status.step) : Cell(), id});
   }
   probes.detail = true;

@@ -65,7 +65,7 @@ std::optional<ParameterFrontier> search(const FrontierSetting& setting, const st
   if (!record) return {};
   if (!ran(*record)) {
     found.lacks = record->status.reason.empty() ? std::string(to_string(record->status.kind))
-                                                : record->status.reason;
+                                                : record->status.reason.text();
     return found;
   }
   const JudgedRun start = judged_run(first, *record, store);

@@ -75,7 +75,7 @@ std::vector<std::string> symptoms(const JudgedRun& seen, const JudgedRun* start)
   const Status& status = seen.record.status;
   const Scene& scene = *seen.one.scene;
   if (status.kind == Status::Kind::exploded)
-    return {reason_of(status) == Reason::nonfinite ? "NaN" : "explodes"};
+    return {status.reason == Reason::nonfinite ? "NaN" : "explodes"};
   if (status.kind == Status::Kind::crash) return {"crashes"};
   if (status.kind == Status::Kind::unsupported) return {"refuses"};
   std::vector<std::string> found;

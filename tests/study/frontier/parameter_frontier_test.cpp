@@ -47,11 +47,12 @@ TEST(Symptoms, EachIsSeenInItsOwnMetricAndNowhereElse) {
   EXPECT_EQ(of({{"energy.mean", -0.048}}), Names{});
   EXPECT_EQ(of({{"stretch.max", 2}, {"energy.mean", -1}}),
             (Names{"overstretches", "loses energy"}));
-  EXPECT_EQ(of({}, {Status::Kind::exploded, "nonfinite"}), Names{"NaN"});
-  EXPECT_EQ(of({}, {Status::Kind::exploded, "energy"}), Names{"explodes"});
+  EXPECT_EQ(of({}, {Status::Kind::exploded, Reason::nonfinite}), Names{"NaN"});
+  EXPECT_EQ(of({}, {Status::Kind::exploded, Reason::energy}), Names{"explodes"});
+  EXPECT_EQ(of({}, {Status::Kind::exploded, "nonfinite"}), Names{"explodes"}) << "a solver's words";
   EXPECT_EQ(of({}, {Status::Kind::crash, "SIGSEGV"}), Names{"crashes"});
   EXPECT_EQ(of({}, {Status::Kind::unsupported, "no"}), Names{"refuses"});
-  EXPECT_EQ(of({}, {Status::Kind::extreme, "stretch"}), Names{"overstretches"});
+  EXPECT_EQ(of({}, {Status::Kind::extreme, Reason::stretch}), Names{"overstretches"});
   EXPECT_EQ(of({}, {Status::Kind::unsettled, ""}), Names{"jitters"});
 }
 

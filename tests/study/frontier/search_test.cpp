@@ -153,12 +153,13 @@ TEST(Frontier, IsSoughtInEvenSteps) {
 
 // Values without a result are skipped, and a bracket may end at one.
 TEST(Frontier, KnowsWhatIsAnAnswer) {
-  const auto probed = [](Kind kind, const std::string& reason, const std::string& symptom = "") {
+  const auto probed = [](Kind kind, const StatusReason& reason, const std::string& symptom = "") {
     return Probed{{{kind, reason, -1, -1}, symptom}, 1};
   };
   EXPECT_TRUE(probed(Kind::ok, "").stable());
-  EXPECT_TRUE(probed(Kind::extreme, "stretch").stable());
-  EXPECT_FALSE(probed(Kind::extreme, "else").stable());
+  EXPECT_TRUE(probed(Kind::extreme, Reason::stretch).stable());
+  EXPECT_FALSE(probed(Kind::extreme, Reason::stretch_and_unsettled).stable());
+  EXPECT_FALSE(probed(Kind::extreme, "stretch").stable()) << "words of a solver";
   EXPECT_FALSE(probed(Kind::ok, "", "tunnels").stable());
   for (const Kind kind : {Kind::exploded, Kind::unsettled, Kind::crash}) {
     EXPECT_FALSE(probed(kind, "").stable());
