@@ -17,6 +17,7 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/history/history_answer.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/results/store_error.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -139,8 +140,10 @@ class Walker {
       if (campaign.interrupted) throw Interrupted();
     } catch (const EndedFromOutside&) {
       throw;
+    } catch (const StoreError&) {
+      throw;
     } catch (const InputError& error) {
-      if (of_all(error)) throw;
+      if (of_study(error)) throw;
       return error.what();
     }
     any_ran_ = true;
@@ -151,12 +154,12 @@ class Walker {
     const std::string why = asked_.silence(*parse_solver(solver).entry);
     return why.empty() ? "" : "its solver does not answer: " + why;
   }
-  /// Whether an error is not the commit's fault: it concerns the results file, or a study that no
-  /// commit has run so far.
-  bool of_all(const InputError& error) const {
-    const std::string said = error.what();
-    return said.find(store_.file().string()) != said.npos ||
-           (!any_ran_ && said.find(file_.string()) != said.npos);
+  /// Whether an error is not the commit's fault: it lies in the study, or the study is gone, and no
+  /// commit has run it so far.
+  bool of_study(const InputError& error) const {
+    const auto lies_there = [&](const Diagnostic& d) { return d.file == file_.string(); };
+    return !any_ran_ &&
+           (!fs::is_regular_file(file_) || std::ranges::any_of(error.diagnostics(), lies_there));
   }
 
   /// Runs the study with the commit's own taut, into the same results folder.

@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/model/input_error.hpp"
 #include "experiments/answer/number.hpp"
+#include "experiments/results/store_error.hpp"
 
 namespace taut {
 
@@ -17,7 +17,7 @@ namespace {
 
 [[noreturn]] void fail_with(const fs::path& file, int code, int system, const std::string& text) {
   const auto cannot = [&](const std::string& what, const std::string& why) {
-    throw InputError(file.string() + ": cannot " + what + ": " + why);
+    throw StoreError(file, "cannot " + what + ": " + why);
   };
   if (code == SQLITE_FULL) cannot("write", std::strerror(system > 0 ? system : ENOSPC));
   if (code == SQLITE_READONLY) {
@@ -28,14 +28,14 @@ namespace {
     cannot("write", refused ? std::strerror(errno) : text);
   }
   if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
-    throw InputError(file.string() + ": another process has it locked for more than " +
-                     std::to_string(Database::kPatience / 1000) + " s");
+    throw StoreError(file, "another process has it locked for more than " +
+                               std::to_string(Database::kPatience / 1000) + " s");
   if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB)
-    throw InputError(file.string() + ": damaged: " + text +
-                     "; what writes results there sets it aside and begins anew");
+    throw StoreError(
+        file, "damaged: " + text + "; what writes results there sets it aside and begins anew");
   if (code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
     cannot(code == SQLITE_IOERR ? "write" : "open", system > 0 ? std::strerror(system) : text);
-  throw InputError(file.string() + ": " + text);
+  throw StoreError(file, text);
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ namespace {
 Database::Database(fs::path file, Access access) : file_(std::move(file)) {
   std::error_code none;
   if (fs::exists(file_, none) && !fs::is_regular_file(file_, none))
-    throw InputError(file_.string() + ": is not a regular file");  // opening a pipe would block
+    throw StoreError(file_, "is not a regular file");  // opening a pipe would block
   errno = 0;
   try {
     db_ = std::make_unique<SQLite::Database>(fs::absolute(file_),

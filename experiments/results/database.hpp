@@ -14,7 +14,7 @@
 
 namespace taut {
 
-/// An SQLite file. Every failure is an InputError that names the file and the reason: no space,
+/// An SQLite file. Every failure is a StoreError that names the file and the reason: no space,
 /// read-only, locked for longer than kPatience, damaged.
 class Database {
  public:

@@ -13,6 +13,7 @@
 #include "experiments/results/database.hpp"
 #include "experiments/results/record_rows.hpp"
 #include "experiments/results/schema.hpp"
+#include "experiments/results/store_error.hpp"
 #include "experiments/results/writer_mark.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
@@ -73,9 +74,9 @@ bool unusable(const fs::path& file) {
 
 void require_version(const fs::path& file, std::int64_t version) {
   if (version != kSchemaVersion)
-    throw InputError(file.string() + ": of another taut (version " + std::to_string(version) +
-                     "; this one reads " + std::to_string(kSchemaVersion) +
-                     "); name another results folder");
+    throw StoreError(file, "of another taut (version " + std::to_string(version) +
+                               "; this one reads " + std::to_string(kSchemaVersion) +
+                               "); name another results folder");
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ Database* Store::reading() const {
   if (version == 0) return nullptr;  // another process is creating it
   require_version(file(), version);
   if (const std::string wrong = wrong_part(*database); !wrong.empty())
-    throw InputError(file().string() + ": " + wrong);
+    throw StoreError(file(), wrong);
   state_->database = std::move(database);
   return state_->database.get();
 }
@@ -145,8 +146,7 @@ void Store::prepare() {
     const fs::path aside = file().string() + ".damaged-" + unique_suffix();
     std::error_code error;
     fs::rename(file(), aside, error);
-    if (error)
-      throw InputError(file().string() + ": damaged, and cannot be set aside: " + error.message());
+    if (error) throw StoreError(file(), "damaged, and cannot be set aside: " + error.message());
     fs::remove(file().string() + "-journal", none);  // belongs to the damaged file
     notice_(file().string() + ": damaged, set aside as " + aside.string() + "; begun anew");
   }
@@ -228,7 +228,7 @@ Trajectory Store::motion(const std::string& key) const {
       "(case_id) WHERE key = ?",
       key);
   const auto fail = [&](const std::string& why) {
-    throw InputError(file().string() + ": motion of " + key + ": " + why);
+    throw StoreError(file(), "motion of " + key + ": " + why);
   };
   if (!row.next()) fail("it is not stored");
   if (sha256(row.text(0)) != row.text(4)) fail("it does not match its digest");
@@ -381,14 +381,14 @@ std::vector<Answer> Store::answers(const std::string& kind, std::string_view pro
   std::vector<Answer> all;
   Database* database = reading();
   if (!database) return all;
-  const std::string place = file().string() + ": answer of " + kind;
+  const std::string what = "answer of " + kind;
   Database::Rows row = database->rows(
       "SELECT answer, digest FROM answers WHERE kind = ? AND program = ? ORDER BY subject", kind,
       std::string(program));
   while (row.next()) {
     if (sha256(row.text(0)) != row.text(1))
-      throw InputError(place + ": it does not match its digest");
-    all.push_back(answer_from_json(row.text(0), place));
+      throw StoreError(file(), what + ": it does not match its digest");
+    all.push_back(answer_from_json(row.text(0), file().string() + ": " + what));
   }
   return all;
 }

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/io/text_file.hpp"
-#include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
+#include "experiments/results/store_error.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut {
@@ -43,11 +43,12 @@ WriterMark::WriterMark(const fs::path& file) {
   if (fs::exists(mark)) {
     const std::string theirs = read_text(mark), host = theirs.substr(0, theirs.find(' '));
     if (host != host_name())
-      throw InputError(file.string() + ": host " + printable(host) +
-                       " writes it too, and between hosts the locks of " + file_system +
-                       " are not reliable: name another folder with --out and unite them with "
-                       "`taut cluster merge`; if that process is gone, remove " +
-                       mark.string());
+      throw StoreError(
+          file, "host " + printable(host) + " writes it too, and between hosts the locks of " +
+                    file_system +
+                    " are not reliable: name another folder with --out and unite them with "
+                    "`taut cluster merge`; if that process is gone, remove " +
+                    mark.string());
     const int process = std::atoi(theirs.c_str() + std::min(theirs.size(), host.size()));
     if (process > 0 && (kill(process, 0) == 0 || errno != ESRCH))
       return;  // within a host, locks are reliable

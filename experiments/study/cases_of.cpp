@@ -66,9 +66,9 @@ void require_few(const Study& study) {
   const double all =
       static_cast<double>(study.scenes.size()) * count(scene_axes(study)) * of_solvers;
   if (all > kMostCases)
-    throw InputError(study.file.string() + ": " +
-                     std::to_string(static_cast<long long>(std::min(all, 1e18))) +
-                     " cases; at most " + std::to_string(kMostCases) + " in a study");
+    throw InputError({{study.file.string(), 0, 0,
+                       std::to_string(static_cast<long long>(std::min(all, 1e18))) +
+                           " cases; at most " + std::to_string(kMostCases) + " in a study"}});
 }
 
 bool excluded(const Study& study, const Settings& settings) {

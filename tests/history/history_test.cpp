@@ -2,10 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <functional>
+
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "experiments/external/external.hpp"
 #include "experiments/history/history_answer.hpp"
+#include "experiments/history/walk.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/results/store_error.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/process.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut {
@@ -112,6 +120,69 @@ TEST(Builds, ANameMayHaveATime) {
   EXPECT_EQ(build_named("a").made.size(), std::string("2026-05-04T10:11:12Z").size());
   for (const char* wrong : {"", "@2026-01-01", "a b", "a,b", "a@now", "a@2026-1-1", "it's"})
     EXPECT_THROW(build_named(wrong), InputError) << wrong;
+}
+
+/// Walks over two commits of a solver.
+class Walks : public testing::Test {
+ protected:
+  void SetUp() override {
+    external::enable();
+    make_folder(repository_);
+    for (const char* file : {"toy.py", "taut_solver.py"})
+      write_file(repository_ / file,
+                 read_text(TAUT_SOURCE_DIR "/experiments/external/sdk/" + std::string(file)));
+    write_file(study_,
+               "question = \"?\"\nscenes = [\"chain\"]\nsolvers = [\"jakobsen\"]\n"
+               "set = [\"time.duration=0.1\"]\n");
+    const std::string script =
+        "git init -q -b main && git add -A && for k in 1 2; do "
+        "git -c user.name=a -c user.email=a@x commit -q --allow-empty -m \"change $k\" || exit; "
+        "done";
+    ASSERT_TRUE(Process({"sh", "-c", script}, {.folder = repository_}).wait(20)->good());
+  }
+  void TearDown() override { set_solver_source({}); }
+  /// Reasons of the commits' gaps, if this happens instead of running their cases.
+  std::vector<std::string> gaps(const std::function<void(const Store&)>& happens) {
+    Walk asked;
+    asked.study = study_.string();
+    asked.repository = repository_.string();
+    asked.range = "HEAD~1..HEAD";
+    asked.solver = "python3 toy.py";
+    asked.silence = [](const SolverEntry&) { return std::string(); };
+    asked.say = [](const std::string&) {};
+    asked.run = [&](const auto&, Store& into, const auto&, const auto&) {
+      happens(into);
+      return CampaignProgress{};
+    };
+    Store store(scratch_.path() / ("out" + std::to_string(++stores_)));
+    std::vector<std::string> all;
+    for (const Build& build : walk(asked, store).builds) all.push_back(build.gap);
+    return all;
+  }
+  const Scratch scratch_;
+  const std::filesystem::path repository_ = scratch_.path() / "repo";
+  const std::filesystem::path study_ = scratch_.path() / "study.toml";
+  int stores_ = 0;
+};
+
+TEST_F(Walks, EndAtWhatConcernsEveryCommitWhateverTheWords) {
+  const std::string words = "mine.py: dislikes ", full = "cannot write: No space left on device";
+  EXPECT_EQ(gaps([](const Store&) {}), (std::vector<std::string>{"", ""}));
+  EXPECT_EQ(
+      gaps([&](const Store& store) { throw InputError(words + store.file().string()); }),
+      std::vector<std::string>(2, words + (scratch_.path() / "out2" / "results.db").string()));
+  EXPECT_EQ(gaps([&](const Store&) { throw InputError(words + study_.string()); }),
+            std::vector<std::string>(2, words + study_.string()));
+  EXPECT_THROW(gaps([&](const Store&) { throw StoreError("results", full); }), StoreError);
+  EXPECT_THROW(gaps([&](const Store&) {
+                 throw InputError({{study_.string(), 3, 1, "no such solver"}});
+               }),
+               InputError);
+  EXPECT_THROW(gaps([&](const Store&) {
+                 std::filesystem::remove(study_);
+                 throw InputError("no such file");
+               }),
+               InputError);
 }
 
 }  // namespace

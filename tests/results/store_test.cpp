@@ -18,6 +18,7 @@
 #include "experiments/case/record_columns.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/results/schema.hpp"
+#include "experiments/results/store_error.hpp"
 #include "experiments/system/files.hpp"
 #include "tests/support/damaged_results.hpp"
 
@@ -246,7 +247,7 @@ TEST_F(StoreTest, AResultWithItsMotionReplacesOneWithout) {
   EXPECT_TRUE(store_.has_frames(r.key));
   change(store_, "UPDATE frames SET motion = x'00'");
   EXPECT_FALSE(store_.has_frames(r.key)) << "it does not match its digest";
-  EXPECT_THROW(store_.motion(r.key), InputError);
+  EXPECT_THROW(store_.motion(r.key), StoreError);
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_NE(said_[0].find("damaged motion of " + r.key), std::string::npos) << said_[0];
   EXPECT_EQ(store_.commit(r, {.motion = "a motion"}), Store::Commit::stored);
@@ -327,7 +328,7 @@ TEST_F(StoreTest, ADamagedFileIsRefusedOrSetAside) {
 
 TEST_F(StoreTest, WhereNoFileCanBeMadeIsSaidBeforeACaseRuns) {
   fs::create_directory_symlink("/proc/self", root_);  // exists, but is writable for no one
-  EXPECT_THROW(store_.prepare(), InputError);
+  EXPECT_THROW(store_.prepare(), StoreError);
   fs::remove(root_);
 }
 
