@@ -116,6 +116,7 @@ void add_record(CLI::App& app, bool& record) {
 }
 
 void add_limits(CLI::App& app, Limits& limits) {
+  static_assert(kWallPerCpu == 5, "the help says five times");
   app.add_option("--timeout", limits.seconds,
                  "CPU time limit of a case [s] (default: 120); wall time: five times that")
       ->check(above_zero_seconds());

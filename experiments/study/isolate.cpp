@@ -84,7 +84,7 @@ int Heartbeat::last(const fs::path& path) {
 IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limits, int frames)
     : case_(one),
       folder_(std::move(folder)),
-      deadline_(in_seconds(5 * limits.seconds)),
+      deadline_(in_seconds(limits.wall_seconds())),
       bytes_(limits.bytes),
       process_(command(case_, folder_, frames),
                {.errors_file = folder_ / "stderr.txt",

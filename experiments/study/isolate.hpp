@@ -12,8 +12,10 @@ namespace taut {
 
 /// Resources that one case may use.
 struct Limits {
-  double seconds = 120;  ///< CPU time; wall time may be five times as long, for busy machines
+  double seconds = 120;                      ///< CPU time
   std::size_t bytes = std::size_t{2} << 30;  ///< private memory
+
+  double wall_seconds() const { return kWallPerCpu * seconds; }
 };
 
 /// Exit code of a case that ran out of memory.

@@ -15,6 +15,10 @@
 
 namespace taut {
 
+/// Wall seconds that a process may take for each second of CPU time that it may use: a busy machine
+/// has others to run.
+inline constexpr double kWallPerCpu = 5;
+
 /// Limits on a process; 0: the same as this process.
 struct ProcessLimits {
   double cpu_seconds = 0;      ///< SIGXCPU at the limit, SIGKILL a second later

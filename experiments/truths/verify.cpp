@@ -33,7 +33,7 @@ std::vector<Finding> findings_of(const TruthEntry& truth, const VerifyRequest& r
   Process process(words, {.output = ProcessOptions::Stream::piped,
                           .errors_file = scratch.path() / "errors",
                           .limits = kLimits});
-  const std::string out = process.read_all(5 * kLimits.cpu_seconds);
+  const std::string out = process.read_all(kWallPerCpu * kLimits.cpu_seconds);
   const std::optional<ProcessEnd> end = process.wait(1);
   const std::string said = last_line(std::ifstream(scratch.path() / "errors"));
   if (end && end->exit_code == kBadInput) throw InputError(said);

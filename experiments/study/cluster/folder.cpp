@@ -27,9 +27,6 @@ namespace {
 // Estimate of memory. Measured: a case of a few hundred vertices takes 15 MB.
 constexpr std::size_t kProgramBytes = std::size_t{64} << 20, kElementBytes = 2048;
 
-/// Longest wall time of a case (isolate.hpp) [s].
-double longest_case(const Limits& limits) { return 5 * limits.seconds; }
-
 constexpr Names<Scheduler::parallel> kSchedulers{"slurm", "parallel"};
 
 /// File of a folder with the name of its scheduler.
@@ -58,9 +55,9 @@ double longest_shard(const std::vector<Case>& cases, int shards) {
 
 /// The smallest number of shards that each end within `hours`.
 int shards_for(Plan& plan, const std::vector<Case>& cases, double hours) {
-  if (!(3600 * hours - longest_case(plan.limits) - 60 > 0))
+  if (!(3600 * hours - plan.limits.wall_seconds() - 60 > 0))
     throw InputError("--hours " + shortest(hours) + ": a single case may take " +
-                     shortest(std::ceil(longest_case(plan.limits) / 60)) +
+                     shortest(std::ceil(plan.limits.wall_seconds() / 60)) +
                      " minutes (--timeout makes that less)");
   const int most = std::min(kMostShards, static_cast<int>(cases.size()));
   const auto fits = [&](int shards) {

@@ -66,7 +66,7 @@ std::string filled(std::string_view text, const std::map<std::string_view, std::
 }  // namespace
 
 int shard_minutes(const Plan& plan) {
-  return static_cast<int>(std::ceil((2 * plan.longest + 5 * plan.limits.seconds) / 60 + 1));
+  return static_cast<int>(std::ceil((2 * plan.longest + plan.limits.wall_seconds()) / 60 + 1));
 }
 
 std::string job_script(const Plan& plan, Scheduler on) {
