@@ -16,6 +16,7 @@
 #include "experiments/results/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/own_words.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut {
@@ -86,7 +87,7 @@ CLI::Option* add_settings(CLI::App& app, SceneSettings& settings) {
       "fabrics)");
   return app
       .add_option_function<std::vector<std::string>>(
-          "--set",
+          own_words::kSet,
           // In addition to what --fabric has set.
           [&settings](const std::vector<std::string>& all) {
             settings.insert(settings.end(), all.begin(), all.end());
@@ -179,7 +180,8 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
 }
 
 void add_format(CLI::App& app, Format& format, const char* details) {
-  auto* json = app.add_flag("--json", format.json, "Print it as JSON: numbers in SI, every table");
+  auto* json =
+      app.add_flag(own_words::kJson, format.json, "Print it as JSON: numbers in SI, every table");
   auto* csv = app.add_flag("--csv", format.csv,
                            "Print the first table as CSV; --csv=NAME another one, --csv=facts what "
                            "stands above the tables");

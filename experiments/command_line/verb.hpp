@@ -16,6 +16,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
 #include "experiments/system/json.hpp"
+#include "experiments/system/own_words.hpp"
 #include "experiments/system/signals.hpp"
 
 namespace taut {
@@ -24,9 +25,9 @@ namespace taut {
 enum ExitCode : int {
   kPass = 0,
   kRegression = 1,  ///< a regression, a status change, a broken truth, or a failed external program
-  kUsage = 2,       ///< bad usage or input; nothing was run or written
-  kIncomplete = 3,  ///< some cases are missing
-  kNothing = 4,     ///< nothing was compared: a check never passes without a comparison
+  kUsage = own_words::kBadInputExit,  ///< bad usage or input; nothing was run or written
+  kIncomplete = 3,                    ///< some cases are missing
+  kNothing = 4,      ///< nothing was compared: a check never passes without a comparison
   kEnvironment = 5,  ///< environment mismatch under --strict-env
   kConflict = 6,     ///< the same key with another result: a determinism alarm
   kInterrupted = kInterruptedExit

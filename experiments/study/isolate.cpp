@@ -20,6 +20,7 @@
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/own_words.hpp"
 
 namespace taut {
 
@@ -35,11 +36,11 @@ constexpr std::size_t kFileBytes = std::size_t{256} << 20;
 std::vector<std::string> command(const Case& one, const fs::path& folder, int frames) {
   const auto program_of = one.choice.entry->program;
   const std::string program(program_of ? program_of(one.choice.params) : "");
-  std::vector<std::string> words{sibling_program(program), "case",   one.spec.scene,
-                                 one.spec.solver,          "--into", fs::absolute(folder)};
+  std::vector<std::string> words{sibling_program(program), own_words::kCase, one.spec.scene,
+                                 one.spec.solver,          own_words::kInto, fs::absolute(folder)};
   for (const SceneSetting& setting : one.spec.settings)
-    words.insert(words.end(), {"--set", setting.text()});
-  if (frames > 0) words.insert(words.end(), {"--frames", std::to_string(frames)});
+    words.insert(words.end(), {own_words::kSet, setting.text()});
+  if (frames > 0) words.insert(words.end(), {own_words::kFrames, std::to_string(frames)});
   return words;
 }
 

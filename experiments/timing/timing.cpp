@@ -18,6 +18,7 @@
 
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/own_words.hpp"
 #include "experiments/system/run_all.hpp"
 #include "experiments/timing/interleave.hpp"
 
@@ -54,10 +55,10 @@ constexpr std::string_view kRefusal = "! ";
 
 std::vector<std::string> worker_command(const CaseSpec& spec,
                                         const std::filesystem::path& program) {
-  std::vector<std::string> words{program.empty() ? program_of(spec) : program, "bench", "--worker",
-                                 spec.scene, spec.solver};
+  std::vector<std::string> words{program.empty() ? program_of(spec) : program, own_words::kBench,
+                                 own_words::kWorker, spec.scene, spec.solver};
   for (const SceneSetting& setting : spec.settings)
-    words.insert(words.end(), {"--set", setting.text()});
+    words.insert(words.end(), {own_words::kSet, setting.text()});
   return words;
 }
 

@@ -10,6 +10,7 @@
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/own_words.hpp"
 #include "experiments/system/process.hpp"
 #include "experiments/system/run_all.hpp"
 #include "experiments/truths/assertions/assertions.hpp"
@@ -18,8 +19,6 @@ namespace taut {
 
 namespace {
 
-/// Exit code of a verb with bad input (command_line/verb.hpp).
-constexpr int kBadInput = 2;
 /// Limits of one truth, which normally takes a second or two.
 constexpr ProcessLimits kLimits{.cpu_seconds = 600, .memory = std::size_t{4} << 30};
 
@@ -27,16 +26,17 @@ constexpr ProcessLimits kLimits{.cpu_seconds = 600, .memory = std::size_t{4} << 
 /// Throws InputError if a shipped scene is missing.
 std::vector<Finding> findings_of(const TruthEntry& truth, const VerifyRequest& request) {
   const Scratch scratch;
-  std::vector<std::string> words{sibling_program(""), "verify", std::string(truth.name), "--here",
-                                 "--json"};
-  for (const std::string& solver : request.solvers) words.insert(words.end(), {"--solver", solver});
+  std::vector<std::string> words{sibling_program(""), own_words::kVerify, std::string(truth.name),
+                                 own_words::kHere, own_words::kJson};
+  for (const std::string& solver : request.solvers)
+    words.insert(words.end(), {own_words::kSolver, solver});
   Process process(words, {.output = ProcessOptions::Stream::piped,
                           .errors_file = scratch.path() / "errors",
                           .limits = kLimits});
   const std::string out = process.read_all(kWallPerCpu * kLimits.cpu_seconds);
   const std::optional<ProcessEnd> end = process.wait(1);
   const std::string said = last_line(std::ifstream(scratch.path() / "errors"));
-  if (end && end->exit_code == kBadInput) throw InputError(said);
+  if (end && end->exit_code == own_words::kBadInputExit) throw InputError(said);
   if (end && out.ends_with("}\n")) {
     const Answer answer = answer_from_json(out, std::string(truth.name));
     const Verification found = verification_in(answer);

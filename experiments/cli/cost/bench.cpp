@@ -122,7 +122,8 @@ void add_options(CLI::App& app, Options& o) {
       ->excludes("--solver");
   app.add_option("--keep-build", o.keep_build, "Keep this program under a name, for --against");
   add_format(app, o.format, "Print every case and every sample, too");
-  app.add_flag("--worker", o.worker, "Serve samples of one case over stdin and stdout (internal)")
+  app.add_flag(own_words::kWorker, o.worker,
+               "Serve samples of one case over stdin and stdout (internal)")
       ->group("");
 }
 
@@ -130,7 +131,7 @@ void add_options(CLI::App& app, Options& o) {
 }  // namespace taut::verb::bench
 
 TAUT_VERB(bench) = {
-    .name = "bench",
+    .name = own_words::kBench,
     .group = VerbGroup::cost,
     .summary = "Measures cost: CPU time of Solver::step alone, with intervals",
     .example =

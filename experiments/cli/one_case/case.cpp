@@ -101,15 +101,15 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--series", options.series, "Write values over time (CSV)");
   app.add_flag("--verbose", options.verbose,
                "Say on stderr how far it is and what the solver made of its settings");
-  app.add_option("--into", options.into, "Used by taut run")->group("");
-  app.add_option("--frames", options.frames, "Used with --into")->group("");
+  app.add_option(own_words::kInto, options.into, "Used by taut run")->group("");
+  app.add_option(own_words::kFrames, options.frames, "Used with --into")->group("");
 }
 
 }  // namespace
 }  // namespace taut::verb::one_case
 
 TAUT_VERB(case) = {
-    .name = "case",
+    .name = own_words::kCase,
     .group = VerbGroup::one_case,
     .summary = "Runs one case in this process; a numerical failure is a result (exit 0)",
     .example =

@@ -98,7 +98,7 @@ void add_options(CLI::App& app, Options& options) {
   for (const TruthEntry* truth : truths()) names.emplace_back(truth->name);
   app.add_option("TRUTH", options.names, "Names of truths (default: all)")
       ->check(known("truth", std::move(names)));
-  app.add_option("--solver", options.solvers,
+  app.add_option(own_words::kSolver, options.solvers,
                  "Only what holds for these solvers (\"reference\": for the references)");
   app.add_option("--section", options.section, "Only one section of the truths")
       ->check(CLI::Range(1, 10));
@@ -115,7 +115,7 @@ void add_options(CLI::App& app, Options& options) {
                "With --assertions: keep their verdicts as the baseline");
   add_format(app, options.format, "Every number, with sources and times");
   app.add_flag("--list", options.list, "Only name the truths");
-  app.add_flag("--here", options.here, "Check in this process (internal)")->group("");
+  app.add_flag(own_words::kHere, options.here, "Check in this process (internal)")->group("");
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ void add_options(CLI::App& app, Options& options) {
 }  // namespace taut::verb::verify
 
 TAUT_VERB(verify) = {
-    .name = "verify",
+    .name = own_words::kVerify,
     .group = VerbGroup::trust,
     .summary = "Holds solvers and metrics to closed forms and published numbers",
     .example =
