@@ -51,6 +51,9 @@ Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene>, SolverChoice);
 /// One case on its own.
 inline Case make_case(const CaseSpec& spec) { return CaseMaker().make(spec); }
 
+/// Gives a record of this case all its names: spec, key, id, setting and the scene's name.
+void name_it(Record&, const Case&);
+
 /// run_case of its scene and solver; the record carries the case's spec, key and id.
 CaseRun run_case(const Case&, const RunOptions& = {});
 

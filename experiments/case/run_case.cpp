@@ -165,14 +165,15 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   record.digest = digest(run.last);
 }
 
+}  // namespace
+
 void name_it(Record& record, const Case& one) {
   record.spec = one.spec;
   record.key = one.key;
   record.id = one.id;
   record.setting = one.setting;
+  record.scene = one.scene->name;
 }
-
-}  // namespace
 
 CaseRun run_case(const Scene& scene, const SolverChoice& choice, const RunOptions& options) {
   CaseRun run{describe(scene, choice), {}, {}};

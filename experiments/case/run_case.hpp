@@ -18,6 +18,9 @@ struct Series {
   std::vector<std::vector<double>> rows;
 };
 
+/// Rows of the values over time that results and files of a case have: RunOptions::series_rows.
+inline constexpr int kSeriesRows = 120;
+
 struct RunOptions {
   int series_rows = 0;  ///< about this many rows, evenly spaced, first and last included; 0: none
   int every = 0;        ///< a row each so many steps instead, first and last included; 0: as above

@@ -190,12 +190,7 @@ void Store::say_damaged(const std::string& what, const std::string& why) const {
 
 std::optional<Record> Store::find(const Case& one) const {
   std::optional<Record> record = find(one.key);
-  if (record) {
-    record->spec = one.spec;
-    record->id = one.id;
-    record->setting = one.setting;
-    record->scene = one.scene->name;
-  }
+  if (record) name_it(*record, one);
   return record;
 }
 
@@ -301,7 +296,7 @@ Store::Commit Store::commit(const Record& record, const CaseFiles& files) {
 Store::Commit Store::commit(const fs::path& staged, const Record& record) {
   const Commit done =
       commit(record, {text_if_there(staged / kSeriesFile), text_if_there(staged / kFramesFile),
-                      end_of(staged / "stderr.txt", kMostErrors)});
+                      end_of(staged / kErrorsFile, kMostErrors)});
   std::error_code ignored;
   fs::remove_all(staged, ignored);
   return done;

@@ -21,8 +21,10 @@ class Database;
 struct CaseFiles {
   std::string series;  ///< kSeriesFile: values over time, in the form of to_json(Series)
   std::string motion;  ///< kFramesFile
-  std::string errors;  ///< the end of stderr.txt
+  std::string errors;  ///< the end of kErrorsFile
 };
+inline constexpr const char* kRecordFile = "case.json";
+inline constexpr const char* kErrorsFile = "stderr.txt";
 inline constexpr const char* kSeriesFile = "series.json";
 /// Frames (experiments/case/trajectory.hpp) of about kFrames + 1 moments, including the first and
 /// the last.

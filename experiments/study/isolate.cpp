@@ -28,7 +28,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kSeriesRows = 120;
 /// Largest file of a case beside its motion [bytes], so that a case that prints endlessly does not
 /// fill the disk.
 constexpr std::size_t kFileBytes = std::size_t{256} << 20;
@@ -55,7 +54,8 @@ std::size_t motion_bytes(const Scene& scene, int frames) {
 Record record_in(const fs::path& file, const Case& one) {
   Record record = record_from_json(read_text(file), file.filename());
   if (record.key != one.key)
-    throw InputError("case.json: the record belongs to another case: " + record.key);
+    throw InputError(std::string(kRecordFile) +
+                     ": the record belongs to another case: " + record.key);
   return record;
 }
 
@@ -88,7 +88,7 @@ IsolatedCase::IsolatedCase(const Case& one, fs::path folder, const Limits& limit
       deadline_(in_seconds(limits.wall_seconds())),
       bytes_(limits.bytes),
       process_(command(case_, folder_, frames),
-               {.errors_file = folder_ / "stderr.txt",
+               {.errors_file = folder_ / kErrorsFile,
                 .limits = {.cpu_seconds = limits.seconds,
                            .memory = limits.bytes,
                            .file_bytes = kFileBytes + motion_bytes(*case_.scene, frames)}}) {}
@@ -101,9 +101,9 @@ std::optional<Record> IsolatedCase::poll() {
 Record IsolatedCase::wait() {
   Record record = record_of(process_.wait(std::max(0.0, seconds_until(deadline_))));
   std::error_code ignored;
-  fs::remove(folder_ / "heartbeat", ignored);
-  if (fs::file_size(folder_ / "stderr.txt", ignored) == 0)
-    fs::remove(folder_ / "stderr.txt", ignored);
+  fs::remove(folder_ / kHeartbeatFile, ignored);
+  if (fs::file_size(folder_ / kErrorsFile, ignored) == 0)
+    fs::remove(folder_ / kErrorsFile, ignored);
   if (!record.status.is_result()) fs::remove(folder_ / kSeriesFile, ignored);
   return record;
 }
@@ -114,8 +114,8 @@ void IsolatedCase::fail_from_outside(const std::string& how) const {
 
 Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   using Kind = Status::Kind;
-  const int beat = Heartbeat::last(folder_ / "heartbeat"), step = std::max(beat, -1);
-  const std::string said = printable(last_line(std::ifstream(folder_ / "stderr.txt")));
+  const int beat = Heartbeat::last(folder_ / kHeartbeatFile), step = std::max(beat, -1);
+  const std::string said = printable(last_line(std::ifstream(folder_ / kErrorsFile)));
   const auto failed = [&](Kind kind, const std::string& reason) {
     return unfinished(case_, {kind, reason, step, -1});
   };
@@ -135,7 +135,7 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   switch (end->exit_code) {
     case 0:
       try {
-        return record_in(folder_ / "case.json", case_);
+        return record_in(folder_ / kRecordFile, case_);
       } catch (const InputError& error) {
         return failed(Kind::error, error.what());
       }
@@ -159,7 +159,7 @@ int run_into(const Case& one, const fs::path& folder, int frames) try {
     }
   };
   std::optional<Heartbeat> heartbeat;
-  if (!write([&] { heartbeat.emplace(folder / "heartbeat"); })) return kCannotWrite;
+  if (!write([&] { heartbeat.emplace(folder / kHeartbeatFile); })) return kCannotWrite;
   const fs::path motion = folder / kFramesFile;
   if (frames > 0 && !write([&] { write_file(motion, ""); })) return kCannotWrite;
   const int steps = one.scene->steps, stride = std::max(1, steps / std::max(1, frames));
@@ -170,7 +170,7 @@ int run_into(const Case& one, const fs::path& folder, int frames) try {
                                      }});
   const bool written = write([&] {
     write_file(folder / kSeriesFile, to_json(run.series));
-    write_file(folder / "case.json", to_json(run.record, 1) + "\n");
+    write_file(folder / kRecordFile, to_json(run.record, 1) + "\n");
   });
   if (!written) heartbeat->beat(Heartbeat::kCannotWrite);
   return written ? 0 : kCannotWrite;

@@ -27,6 +27,9 @@ inline constexpr int kCannotWrite = 74;
 /// Exit code of a case whose solver's own program was ended from outside.
 inline constexpr int kEndedFromOutside = 78;
 
+/// File of a case's Heartbeat, in its folder while it runs.
+inline constexpr const char* kHeartbeatFile = "heartbeat";
+
 /// The step that a case has reached. It is kept in a mapped file of 4 bytes that outlives the case,
 /// so that reporting costs one store to memory.
 class Heartbeat {
@@ -74,8 +77,8 @@ class IsolatedCase {
   Process process_;
 };
 
-/// The child's side: runs the case in this process and writes case.json, series.json, its heartbeat
-/// and about `frames` moments of its motion into `folder`. Returns the exit code.
+/// The child's side: runs the case in this process and writes kRecordFile, kSeriesFile, its
+/// heartbeat and about `frames` moments of its motion into `folder`. Returns the exit code.
 int run_into(const Case&, const std::filesystem::path& folder, int frames = 0);
 
 }  // namespace taut

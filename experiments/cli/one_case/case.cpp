@@ -70,13 +70,14 @@ int run(const Options& options) try {
   std::unique_ptr<PositionWriter> motion;  // created with the first state, which may not exist
   SlowRun slow(one.scene->steps);
   const CaseRun result = run_case(
-      one, {.series_rows = options.series.empty() ? 0 : 120, .watch = [&](const Snapshot& m) {
-              if (!options.trajectory.empty() && !motion)
-                motion = create_positions(options.trajectory, one.scene->mesh);
-              if (motion) motion->append(m.t, m.state.x);
-              slow.at(m.step);
-              if (options.verbose) tell(m, one.scene->steps);
-            }});
+      one,
+      {.series_rows = options.series.empty() ? 0 : kSeriesRows, .watch = [&](const Snapshot& m) {
+         if (!options.trajectory.empty() && !motion)
+           motion = create_positions(options.trajectory, one.scene->mesh);
+         if (motion) motion->append(m.t, m.state.x);
+         slow.at(m.step);
+         if (options.verbose) tell(m, one.scene->steps);
+       }});
   write_files(result, options);
   if (options.json)
     std::cout << to_json(result.record, 2) << '\n';

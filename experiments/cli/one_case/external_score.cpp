@@ -34,7 +34,7 @@ int run(const Options& o) {
   const Case one = CaseMaker().make({o.scene, settings, solver});
   for (const std::string& why : one.choice.entry->unsupported(*one.scene, one.choice.params))
     throw InputError(why);
-  const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : 120});
+  const CaseRun scored = run_case(one, {.series_rows = o.series.empty() ? 0 : kSeriesRows});
   if (!o.series.empty()) write_durably(o.series, to_csv(scored.series));
   Answer answer = answer_of(scored.record, "external score");
   Table read{"read", "what was made of the file", {{"what"}, {"how", "found"}}};
