@@ -45,8 +45,9 @@ struct Slice {
   Records records;
   double value = 0;
 };
-/// A time step of 1/64 s, 16 sweeps.
-inline double preferred(const std::string& setting) { return setting == "dt" ? 1.0 / 64 : 16; }
+inline double preferred(const std::string& setting) {
+  return setting == "dt" ? kQuotedStep : kQuotedWork.sweeps;
+}
 Slice hold(const Records&, const std::string& setting, double preferred);
 inline Slice hold(const Records& records, const std::string& setting) {
   return hold(records, setting, preferred(setting));

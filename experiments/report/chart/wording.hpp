@@ -103,6 +103,11 @@ struct Work {
 };
 Work work_of(const Record&);
 
+/// The time step [s] and the work at which solvers are quoted if the cases leave a choice:
+/// published comparisons come nearest to this work.
+inline constexpr double kQuotedStep = 1.0 / 64;
+inline constexpr Work kQuotedWork{.substeps = 1, .sweeps = 16};
+
 /// "1 × 16, order=mesh": the work, and whatever differs from the defaults.
 std::string brief_settings(const SolverChoice&);
 /// The same of a record; for a solver that this program lacks, with all of its parameters.

@@ -56,15 +56,17 @@ std::vector<std::string> limits_of(const ReportInput& input, const CaseList& ref
   std::vector<std::string> absent;
   for (const SolverEntry* entry : solvers())
     if (!shown.contains(std::string(entry->name))) absent.push_back(solver_title(entry->name));
-  if (!absent.empty())
-    points.push_back(
-        "Solvers that were not run here: " + joined(absent) + "." +
-        (shown.contains("implicit")
-             ? ""
-             : " Each iteration of implicit Euler factors the whole system anew, so that no number "
-               "of them is the work of 16 sweeps. Projective Dynamics and VBD approach its "
-               "converged step (Inside one step), and taut run elastic compares it where links are "
-               "elastic."));
+  if (!absent.empty()) {
+    std::string& text =
+        points.emplace_back("Solvers that were not run here: " + joined(absent) + ".");
+    if (!shown.contains("implicit"))
+      text +=
+          " Each iteration of implicit Euler factors the whole system anew, so that no number "
+          "of them is the work of " +
+          std::to_string(kQuotedWork.sweeps) +
+          " sweeps. Projective Dynamics and VBD approach its converged step (Inside one "
+          "step), and taut run elastic compares it where links are elastic.";
+  }
   points.emplace_back(
       "Real cloth: errors are distances from constraints, a reference or a closed form, not from a "
       "measured fabric.");

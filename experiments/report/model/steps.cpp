@@ -4,6 +4,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/report/chart/one_step.hpp"
+#include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
 
@@ -11,7 +12,7 @@ namespace taut::report {
 
 namespace {
 
-constexpr int kLooked = 16;  ///< iterations, as in the comparison at equal work
+constexpr int kLooked = kQuotedWork.sweeps;  ///< iterations, as in the comparison at equal work
 
 /// Distance after this many iterations [m]; NaN if not measured.
 double distance_after(const StepSolver& solver, int iterations) {

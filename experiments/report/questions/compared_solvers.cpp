@@ -32,13 +32,16 @@ ComparedSolver choose(const std::string& solver, const std::vector<const Record*
   return chosen;
 }
 
-/// Distance, in logarithms, from 1 × 16: the work that published comparisons come nearest to.
+/// Distance, in logarithms, from kQuotedWork.
 double distance(const Work& work) {
-  return std::abs(std::log(std::max(1, work.sweeps) / 16.0)) + std::log(std::max(1, work.substeps));
+  const auto apart = [](int a, int b) {
+    return std::abs(std::log(std::max(1, a) / static_cast<double>(b)));
+  };
+  return apart(work.sweeps, kQuotedWork.sweeps) + apart(work.substeps, kQuotedWork.substeps);
 }
 
 /// The work that a solver ran most often among those that `admits` accepts; in a tie the one
-/// nearest to 1 × 16.
+/// nearest to kQuotedWork.
 template <class Admits>
 Work commonest_work(const ComparedSolver& solver, Admits admits) {
   std::map<Work, int> counts;
@@ -51,8 +54,8 @@ Work commonest_work(const ComparedSolver& solver, Admits admits) {
 }
 
 /// Chooses the work at which each compared solver is quoted: of the works that all solvers with
-/// sweeps ran, the one nearest to 1 × 16. If no work is common, each solver has its own, with the
-/// same number of sweeps if possible.
+/// sweeps ran, the one nearest to kQuotedWork. If no work is common, each solver has its own, with
+/// the same number of sweeps if possible.
 void choose_work(std::vector<ComparedSolver>& compared) {
   std::map<Work, int> counts;
   std::map<int, int> sweep_counts;
@@ -74,7 +77,7 @@ void choose_work(std::vector<ComparedSolver>& compared) {
   const auto nearest =
       std::ranges::min_element(counts, {}, [](const auto& entry) { return distance(entry.first); });
   const auto same_sweeps = std::ranges::min_element(sweep_counts, {}, [](const auto& entry) {
-    return distance({1, entry.first});
+    return distance({kQuotedWork.substeps, entry.first});
   });
   for (ComparedSolver& solver : compared)
     solver.work = commonest_work(solver, [&](const Work& work) {
@@ -85,7 +88,7 @@ void choose_work(std::vector<ComparedSolver>& compared) {
 }
 
 /// The task that most solvers ran at their work; in a tie the one with the time step nearest to
-/// 1/64 s.
+/// kQuotedStep.
 QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& compared) {
   std::vector<QuotedScene> asked;
   for (std::size_t i = 0; i < compared.size(); ++i)
@@ -98,7 +101,8 @@ QuotedScene quote(const std::string& scene, const std::vector<ComparedSolver>& c
       if (!at->cases[i]) at->cases[i] = r;
     }
   const auto rank = [](const QuotedScene& q) {
-    return std::pair(std::ranges::count(q.cases, nullptr), std::abs(std::log(q.task.dt * 64)));
+    return std::pair(std::ranges::count(q.cases, nullptr),
+                     std::abs(std::log(q.task.dt / kQuotedStep)));
   };
   const auto best = std::ranges::min_element(asked, {}, rank);
   if (best == asked.end())
