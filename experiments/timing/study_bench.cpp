@@ -243,10 +243,10 @@ std::vector<Record> StudyBench::records() const {
     for (const BenchedCase& c : scene.cases) {
       records.push_back(c.record);
       if (!c.timing.failure.empty()) continue;
-      records.back().values["cpu.per_step"] = median(c.timing.samples);
-      records.back().values["cpu.per_second"] = c.cost().mid;
-      records.back().values["wall.per_step"] = median(c.timing.wall);
-      records.back().values["memory.peak"] = static_cast<double>(c.timing.peak_bytes);
+      records.back().values[kCpuPerStep] = median(c.timing.samples);
+      records.back().values[kCpuPerSecond] = c.cost().mid;
+      records.back().values[kWallPerStep] = median(c.timing.wall);
+      records.back().values[kPeakMemory] = static_cast<double>(c.timing.peak_bytes);
     }
   return records;
 }

@@ -62,6 +62,11 @@ constexpr Unit frame_cost(double fps) { return {"s/s", "ms a frame", 1e3 / fps};
 inline constexpr Unit kFrameCost = frame_cost(1 / kFrame);
 inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  ///< s per frame
 
+/// Names of costs, as those of metrics' values: CPU time of all threads per simulated second and
+/// per step, wall time per step, and the largest memory of the process.
+inline constexpr const char *kCpuPerSecond = "cpu.per_second", *kCpuPerStep = "cpu.per_step",
+                            *kWallPerStep = "wall.per_step", *kPeakMemory = "memory.peak";
+
 /// A case with measured physics and cost.
 struct BenchedCase {
   Record record;
@@ -113,8 +118,8 @@ struct StudyBench {
 
   /// An empty bench of this machine and this program.
   static StudyBench here(const std::string& study);
-  /// The records with costs as additional values: "cpu.per_second", "cpu.per_step", "wall.per_step"
-  /// [s], "memory.peak" [bytes].
+  /// The records with costs as additional values: kCpuPerSecond, kCpuPerStep, kWallPerStep [s] and
+  /// kPeakMemory [B].
   std::vector<Record> records() const;
 };
 

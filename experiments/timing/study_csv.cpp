@@ -15,6 +15,13 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
+/// Columns of costs, in the order of their table and of the file.
+const Cells& cost_columns() {
+  static const Cells kColumns{"cpu.host", kCpuPerSecond, kCpuPerSecond + std::string(".low"),
+                              kCpuPerSecond + std::string(".high"), kPeakMemory};
+  return kColumns;
+}
+
 /// A line of CSV. Numbers stay as they are; texts are made safe for spreadsheets.
 std::string line(const Cells& cells) {
   const auto field = [](const std::string& s) { return whole<double>(s) ? s : csv_field(s); };
@@ -55,8 +62,8 @@ StudyCsv::StudyCsv(const Study& study, const Store& store) : database_(*store.re
   database_.script(
       "CREATE TEMP TABLE asked (place INTEGER PRIMARY KEY, key, id, scene, solver, case_id, "
       "absent);"
-      "CREATE TEMP TABLE timed (key PRIMARY KEY, 'cpu.host', 'cpu.per_second', "
-      "'cpu.per_second.low', 'cpu.per_second.high', 'memory.peak')");
+      "CREATE TEMP TABLE timed (key PRIMARY KEY, " +
+      join(cost_columns(), ", ", quoted) + ")");
   each_case(study, [&](Case&& one) {
     const bool sound = store.find(one).has_value();
     database_.run(
@@ -111,9 +118,7 @@ std::string StudyCsv::wide() {
         "(SELECT value FROM numbers WHERE case_id = asked.case_id AND metric_id = " +
             metric.text(1) + ")");
   if (count(database_, "FROM timed") > 0)
-    for (const std::string name :
-         {"cpu.host", "cpu.per_second", "cpu.per_second.low", "cpu.per_second.high", "memory.peak"})
-      add(name, "timed.\"" + name + "\"");
+    for (const std::string& name : cost_columns()) add(name, "timed.\"" + name + "\"");
   add("case", "asked.id");
   add("key", "asked.key");
   return all(

@@ -409,7 +409,7 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 }
 
 Chart cost_chart(const SceneBench& scene, const Records& records) {
-  Chart chart = make_chart("cost", records, "cpu.per_second", kErrorMetric, "setting");
+  Chart chart = make_chart("cost", records, kCpuPerSecond, kErrorMetric, "setting");
   chart.id = slug(scene.scene) + "-cost";
   chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;

@@ -17,6 +17,7 @@
 #include "experiments/case/run_case.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/text.hpp"
+#include "experiments/timing/study_bench.hpp"
 
 namespace taut::report {
 
@@ -89,12 +90,12 @@ constexpr std::array kTitles{
     Titled{kSweeps, "sweeps per substep", kNumber,
            "passes over all links; most solvers call the parameter iterations"},
     Titled{"t", "simulated time", kTime},
-    Titled{"cpu.per_second", "CPU time per simulated second", kCost,
+    Titled{kCpuPerSecond, "CPU time per simulated second", kCost,
            "median of samples that alternate between the solvers, of all threads of the process"},
-    Titled{"cpu.per_step", "CPU time per step", kCost,
+    Titled{kCpuPerStep, "CPU time per step", kCost,
            "median of samples that alternate between the solvers, of all threads of the process"},
-    Titled{"wall.per_step", "wall time per step", kCost, "median of the same samples"},
-    Titled{"memory.peak", "peak memory of the process", {"bytes", "MB", 1e-6}},
+    Titled{kWallPerStep, "wall time per step", kCost, "median of the same samples"},
+    Titled{kPeakMemory, "peak memory of the process", kMegabytes},
     Titled{"step.distance", "distance from the exact step", kErrorLength,
            "root mean square over the vertices, after so many iterations of one step"},
     Titled{"step.gap",

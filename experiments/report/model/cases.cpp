@@ -119,8 +119,8 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
     const Interval second = timed->cost();
     const Interval step{second.low * r.dt, second.mid * r.dt, second.high * r.dt};
     const std::size_t n = timed->timing.samples.size();
-    one["cost"] = {{"cpu.per_second", json_interval(second, n)},
-                   {"cpu.per_step", json_interval(step, n)}};
+    one["cost"] = {{kCpuPerSecond, json_interval(second, n)},
+                   {kCpuPerStep, json_interval(step, n)}};
   }
   add_if(one, "overrides", r.spec.settings);
   one["command"] = reproduce(spec);

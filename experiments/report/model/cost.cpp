@@ -57,7 +57,7 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
   for (const SceneSetting& one : spec.settings) again += " --set '" + one.text() + "'";
   Table table{"cost-levels-" + slug(bench.scene),
               "CPU time of an error, per simulated second",
-              scene.columns(Column("level", q.title, q.unit, 1), quantity("cpu.per_second").unit),
+              scene.columns(Column("level", q.title, q.unit, 1), quantity(kCpuPerSecond).unit),
               {},
               "95\u00A0% interval and setting of the cheapest that was timed, " +
                   std::string(kWithoutExtras) + ". More accurate ones are searched by: " + again};
@@ -134,8 +134,8 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, 
   const StudyBench& study = *input.bench;
   const WinnerMap winners = winners_of(input, refs);
   Json cost{{"machine", study.machine}};
-  refs.use("cpu.per_second");
-  refs.use("cpu.per_step");
+  refs.use(kCpuPerSecond);
+  refs.use(kCpuPerStep);
   std::vector<SceneBench> shared;
   std::vector<Chart> charts;
   std::list<std::vector<Record>> kept;  // charts point into these

@@ -195,8 +195,8 @@ std::span<const PlotKind> plot_kinds() {
   static const std::array kKinds{
       PlotKind{"contact", kSweeps, value_with(Role::vertex_depth), kSweeps},
       PlotKind{"convergence", kSweeps, kErrorMetric, kSweeps},
-      PlotKind{"profile", "cpu.per_second", kErrorMetric, "setting"},  // Dolan and More
-      PlotKind{"scaling", "vertices", "cpu.per_step", "vertices"},
+      PlotKind{"profile", kCpuPerSecond, kErrorMetric, "setting"},  // Dolan and More
+      PlotKind{"scaling", "vertices", kCpuPerStep, "vertices"},
       PlotKind{"series", "t", kErrorMetric, "t"},
       PlotKind{"stability", "dt", kSweeps, "dt"},
       PlotKind{"work-precision", "projections", kErrorMetric, "setting"},

@@ -106,7 +106,7 @@ class Costs {
       shared_.emplace_back(with_shared_parameters(bench), kErrorMetric);
     }
     list.use(kErrorMetric);
-    list.use("cpu.per_second");
+    list.use(kCpuPerSecond);
   }
 
   void add_to(Answer& answer) {
@@ -146,7 +146,7 @@ class Costs {
                 std::string(to_string(q.window)) + "; least of the settings timed within " +
                     significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/" +
                     number_text(1 / kFrame) + "\u00A0s (" +
-                    quantity("cpu.per_second").text(budget / kFrame) + " per simulated second), " +
+                    quantity(kCpuPerSecond).text(budget / kFrame) + " per simulated second), " +
                     kWithoutExtras + orders()};
     for (const JudgedScene& scene : shared_) {
       std::vector<Cell> row{head_of(scene.bench)};
@@ -175,7 +175,7 @@ class Costs {
   void add_price(Answer& answer) {
     Table table{"price",
                 "CPU time of " + priced(),
-                columns_of(solvers_, quantity("cpu.per_second").unit),
+                columns_of(solvers_, quantity(kCpuPerSecond).unit),
                 {},
                 "per simulated second, 95\u00A0% interval; each at its cheapest setting timed, " +
                     std::string(kWithoutExtras) + orders()};
@@ -281,7 +281,7 @@ class Costs {
                     const std::string& on) {
     Cell cell(setting_label(scene.bench, at).text());
     cell.key = list_.key(scene.bench.cases[at].record);
-    return cell.with((bound ? "at most " : "") + quantity("cpu.per_second").text(cost) + on);
+    return cell.with((bound ? "at most " : "") + quantity(kCpuPerSecond).text(cost) + on);
   }
 
   /// A setting of a solver with the cases that reach the error, by scene.

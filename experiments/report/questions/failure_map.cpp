@@ -57,7 +57,7 @@ std::string numbers(const Record& r) {
     all.push_back(shown(kSignedShare, gone.share) + " of the way");
   add("stretch.rms", "strain ", "");
   add("energy.peak", "energy ", " m g L");
-  add("cpu.per_second", "", " a simulated second");
+  add(kCpuPerSecond, "", " a simulated second");
   return join(all, ", ");
 }
 
