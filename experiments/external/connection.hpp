@@ -14,12 +14,15 @@
 
 namespace taut::external {
 
+/// Time limit of each answer [s], unless the user gives one.
+inline constexpr double kAnswerSeconds = 30;
+
 /// A command that starts a program.
 struct Command {
   std::vector<std::string> words;
-  std::filesystem::path folder;  ///< working folder; empty: that of this program
-  double seconds = 30;           ///< time limit of each answer
-  std::string text() const;      ///< readable form for messages
+  std::filesystem::path folder;     ///< working folder; empty: that of this program
+  double seconds = kAnswerSeconds;  ///< time limit of each answer
+  std::string text() const;         ///< readable form for messages
 };
 
 /// Splits a command into words as a shell would (quotes, ~, $NAME), without running a shell and

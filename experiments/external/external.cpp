@@ -22,17 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr ParamSpec kLeading[] = {
-    {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
-    ParamSpec::real("timeout", "s", "30", 0.01, 86400,
-                    "Longest time in which the program may answer"),
-    {.name = "folder",
-     .kind = ParamSpec::Kind::text,
-     .help = "Folder in which the command runs; by default that of taut"},
-    {.name = "build",
-     .kind = ParamSpec::Kind::text,
-     .help = "Name of the state of its sources, in place of command, files and version"}};
-
 /// Entry for a solver text "external" that names no program.
 const SolverEntry kAny = {
     .name = "external",
@@ -61,7 +50,8 @@ Registered read_registered(const fs::path& file) {
   Registered solver;
   const std::string cmd = section.string("cmd").value_or("");
   section.need({"cmd"});
-  const double seconds = section.number("timeout", Range::positive(86400), 30);
+  const Range allowed{kTimeout.min, kTimeout.max};
+  const double seconds = section.number(std::string(kTimeout.name), allowed, kAnswerSeconds);
   if (const Value* files = section.find("files")) {
     if (!files->is_array()) section.report("files", "'files' must be a list of texts");
     for (const Value& item : files->items) {
@@ -228,7 +218,7 @@ const SolverEntry* find(std::string_view name, std::string_view params) {
   const std::set<std::string> named = named_by(called, params);
   if (!admitted().has(named)) return unstarted(called, params);
   if (is_registered(called))
-    return program(called, params, read_registered(file_of(called)), {kLeading[3]});
+    return program(called, params, read_registered(file_of(called)), {kBuildName});
   const std::vector<ParamItem> items = param_items(params);
   const auto has = [&](std::string_view key) {
     return std::ranges::find(items, key, &ParamItem::key) != items.end();
@@ -267,8 +257,8 @@ Command command_of(const std::string& text) {
   std::string ours;  // parameters of taut, not of the program
   std::string cmd;
   for (const ParamItem& item : param_items(std::string_view(text).substr(9)))
-    if (item.key == "timeout")
-      ours += "timeout=" + item.value;
+    if (item.key == kTimeout.name)
+      ours += item.key + '=' + item.value;
     else if (item.key == "cmd") {
       // An incomplete command is not run.
       if (!item.problem.empty()) throw InputError(item.problem);
@@ -276,7 +266,7 @@ Command command_of(const std::string& text) {
     }
   Command command = split_command(cmd, value_in(std::string_view(text).substr(9), "folder"));
   try {
-    command.seconds = Params("external", kLeading, ours).real("timeout");
+    command.seconds = Params(kAny.name, kLeading, ours).real(kTimeout.name);
   } catch (const InputError&) {  // reading all parameters reports this, with its column
   }
   return command;

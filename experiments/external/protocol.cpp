@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <type_traits>
 #include <variant>
 
@@ -109,16 +110,20 @@ std::string text_or(const JsonReader& j, const char* key, const std::string& fal
   return found ? found->text() : fallback;
 }
 
+/// "cmd, timeout, folder or build"
+std::string reserved_names() {
+  constexpr std::span<const ParamSpec> kAll(kLeading);
+  return join(kAll.first(kAll.size() - 1), ", ", &ParamSpec::name) + " or " +
+         std::string(kAll.back().name);
+}
+
 /// Reads the specification of a parameter from a program's answer. Its default has to lie in its
 /// own range.
 class SpecReader {
  public:
   SpecReader(Hello& hello, const std::string& name, const JsonReader& j) : hello_(hello), j_(j) {
-    constexpr std::string_view kOurs[] = {"cmd", "timeout", "folder", "build"};
-    if (!is_solver_name(name) || std::ranges::count(kOurs, name) > 0)
-      j.fail(
-          "is no name for a parameter (letters, digits, _ and -; not cmd, timeout, folder or "
-          "build)");
+    if (!is_solver_name(name) || std::ranges::count(kLeading, name, &ParamSpec::name) > 0)
+      j.fail("is no name for a parameter (letters, digits, _ and -; not " + reserved_names() + ")");
     spec_.name = keep(name);
     spec_.unit = keep(text_or(j, "unit"));
     spec_.help = keep(text_or(j, "doc"));

@@ -11,6 +11,23 @@
 
 namespace taut::external {
 
+/// Parameters that taut gives every external program, before those of the program, which may not
+/// have their names.
+inline constexpr ParamSpec kTimeout = ParamSpec::real(
+    "timeout", "s", "30", 0.01, 86400, "Longest time in which the program may answer");
+static_assert(kAnswerSeconds == 30 && kTimeout.default_value == "30");
+inline constexpr ParamSpec kBuildName{
+    .name = "build",
+    .kind = ParamSpec::Kind::text,
+    .help = "Name of the state of its sources, in place of command, files and version"};
+inline constexpr ParamSpec kLeading[] = {
+    {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
+    kTimeout,
+    {.name = "folder",
+     .kind = ParamSpec::Kind::text,
+     .help = "Folder in which the command runs; by default that of taut"},
+    kBuildName};
+
 /// A program's answer to "hello".
 struct Hello {
   std::string name, version, summary, source;

@@ -95,7 +95,7 @@ TEST(Hello, RefusesWhatNoParameterCanBe) {
     EXPECT_NE(refused_param({{"type", "choice"}, {"choices", {"x", choice}}, {"default", "x"}}), "")
         << choice;
   EXPECT_NE(refused_param({{"type", "choice"}, {"choices", {"x"}}, {"default", "y"}}), "");
-  for (const char* name : {"cmd", "timeout", "a b", "1a", ""})
+  for (const char* name : {"cmd", "timeout", "folder", "build", "a b", "1a", ""})
     EXPECT_NE(refused_param(integer(0, 0, 1), name), "") << name;
   Json other = hello_with("n", integer(0, 0, 1));
   other["protocol"] = "taut-solver/5";
