@@ -7,6 +7,7 @@
 #include "core/io/text_file.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/files.hpp"
 
 namespace taut {
@@ -24,11 +25,10 @@ void keep_frontiers(const Answer& answer, const fs::path& file) {
 
 std::optional<std::vector<Difference>> changes_of_frontiers(const Answer& now,
                                                             const fs::path& file) {
-  constexpr double kBracket = 0.02;  // the width of a bracket (kTolerance in settings.cpp)
   if (!fs::exists(file)) return {};
   const Answer before = answer_from_json(read_text(file), file.string());
   return differences(before.table("parameters"), now.table("parameters"), {"solver", "parameter"},
-                     {"lacks", "symptom", "at_start", "from", "to", "good", "bad"}, kBracket);
+                     {"lacks", "symptom", "at_start", "from", "to", "good", "bad"}, kBracketWidth);
 }
 
 FrontierCheck check_frontiers(const Answer& now, const std::string& solver, const fs::path& folder,

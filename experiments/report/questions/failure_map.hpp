@@ -15,13 +15,13 @@ inline constexpr const char* kFailureMap = "failure_map";
 /// Each solver with its settings has a row, each scene and stiffness a column. A cell is the first
 /// verdict of this list that applies:
 ///
-///     its status   where the case did not complete: exploded, extreme, cannot
-///     strains      RMS stretch above kStrained (failure_map.cpp)
-///     freezes      it goes less than kLeastMotion of its way, way_gone
-///     (experiments/timing/way.hpp) late         less than kLate gains energy energy.peak is above
-///     kGained, in m g L; since the cloth hardly strains, this
-///                  energy is motion
-///     right        none of these
+///     its status    where the case did not complete: exploded, extreme, cannot
+///     strains       RMS stretch above kStrained (failure_map.cpp)
+///     freezes       it goes less than kLeastMotion (experiments/metrics/metric.hpp) of its way
+///     late          it goes less than kLate of its way
+///     gains energy  energy.peak is above kGained, in m g L: energy of motion, since the cloth
+///                   hardly strains
+///     right         none of these
 ///
 /// Its note has the numbers behind it. The table has no rows if no two cases of a scene differ only
 /// in stiffness. Records that are among `timed` also show the cost of a simulated second

@@ -22,12 +22,15 @@ struct FrontierSetting {
   std::optional<Prediction> theory;  ///< known end of what is possible, in the setting's unit
 };
 
+/// Relative width of the brackets that frontier_settings() asks for.
+inline constexpr double kBracketWidth = 0.02;
+
 /// The settings of the standard scene under a solver: time step, sweeps, stiffness, mass ratio,
 /// resolution, speed of a collider, size (in both directions), distance from the origin, bending,
 /// wind. Each goes from an easy to an absurd value.
 ///
 /// The standard scene is `swing` (pinned along its top edge and released 45 degrees from rest) with
-/// 9 x 9 vertices, for 2 s in steps of 1/240 s. It is passive and mirror-symmetric.
+/// 9 x 9 vertices, for 2 s in steps of kStep (settings.cpp). It is passive and mirror-symmetric.
 ///
 /// Theories:
 ///   time step, stiffness, bending, mass ratio: linear_stability, for springs
@@ -50,18 +53,19 @@ struct JudgedRun {
 ///   crashes             the process crashed
 ///   refuses             the solver says that it would misread the scene
 ///   tunnels             a vertex ended on the other side of a collider (tunnelling.count)
-///   overstretches       a link is longer than twice its length (stretch.max > 1), or status
+///   overstretches       a link is stretched by more than kStretched (stretch.max), or status
 ///                       `extreme`
-///   freezes             the centre of mass moved less than a tenth as far as at the start
+///   freezes             the centre of mass moved less than kFrozen times as far as at the start
 ///                       of the range, scaled down with the cloth (drift.max)
-///   gains energy        a passive scene's mechanical energy rose by over 5 % of swing_energy()
-///                       (energy.peak)
-///   jitters             in the last second, a vertex accelerates by over 100 g and ten times
-///                       as much as at the start of the range (popping.max), or status
+///   gains energy        a passive scene's mechanical energy rose by over kGained of
+///                       swing_energy() (energy.peak)
+///   jitters             in the last second, a vertex accelerates by over kJitter and kMoreJitter
+///                       times as much as at the start of the range (popping.max), or status
 ///                       `unsettled`
-///   asymmetric          a mirror-symmetric scene ends over a tenth of its size from its mirror
+///   asymmetric          a mirror-symmetric scene ends over kMirrored of its size from its mirror
 ///                       image
-///   loses energy        a passive scene lost over half of swing_energy() (energy.mean)
+///   loses energy        a passive scene lost over kLost of swing_energy() (energy.mean)
+/// The constants are in symptom.cpp.
 /// `start` is the run at the start of the range; nullptr if this run is it.
 std::vector<std::string> symptoms(const JudgedRun&, const JudgedRun* start);
 

@@ -9,14 +9,14 @@ namespace taut {
 
 namespace {
 
-constexpr double kStep = 1.0 / 240;  ///< s
-constexpr double kDensity = 0.2;     ///< kg/m^2, density of the standard scene
-constexpr double kG = 9.81;          ///< m/s^2
-constexpr double kPlate = 0.02;      ///< m, thickness of the rising plate
-constexpr double kTolerance = 0.02;  ///< relative width of a bracket
+constexpr int kStepsPerSecond = 240;             ///< of the standard scene
+constexpr double kStep = 1.0 / kStepsPerSecond;  ///< s
+constexpr double kDensity = 0.2;  ///< kg/m^2, mass over area in experiments/scenes/swing.toml
+constexpr double kPlate = 0.02;   ///< m, thickness of the rising plate
 
 SceneSettings standard(const SceneSettings& more) {
-  return replaced({"cloth.grid=[9, 9]", "time.dt=\"1/240\"", "time.duration=2"}, more);
+  const std::string dt = "time.dt=\"1/" + std::to_string(kStepsPerSecond) + "\"";
+  return replaced({"cloth.grid=[9, 9]", dt, "time.duration=2"}, more);
 }
 
 /// Builds the settings for one solver.
@@ -61,7 +61,7 @@ class FrontierSettings {
                        const SceneSettings& more = {}) {
     FrontierSetting one{name, unit, {{"swing", standard(more), choice_.brief()}, of, {}}, "", {}};
     one.question.direction = direction;
-    one.question.range = {.from = from, .to = to, .tolerance = kTolerance};
+    one.question.range = {.from = from, .to = to, .tolerance = kBracketWidth};
     all_.push_back(std::move(one));
     return all_.back();
   }
@@ -99,8 +99,8 @@ class FrontierSettings {
         add("speed of a collider", "m/s", "collider.0.velocity.1", 0.1, 1000, Direction::up,
             {"cloth.pins=[]", "cloth.tilt=0", "cloth.v=[0, 0, 1]", "cloth.origin=[-0.5, 0.2, -0.5]",
              "cloth.thickness=0.01",
-             "collider=[{ type = \"box\", center = [0, 0, 0], half_extents = [0.8, 0.01, "
-             "0.8], velocity = [0, 0.1, 0] }]"});
+             "collider=[{ type = \"box\", center = [0, 0, 0], half_extents = [0.8, " +
+                 shortest(kPlate / 2) + ", 0.8], velocity = [0, 0.1, 0] }]"});
     if (parameter("contact") && choice_.params.is("contact", "discrete"))
       one.theory = {Frontier::Kind::bracketed, kPlate / substep(), 0,
                     "tests at step boundaries jump a plate beyond D/h"};
@@ -112,7 +112,8 @@ class FrontierSettings {
             Direction::up, {"cloth.origin=[1, 1, 1]"});
     if (!parameter("precision") || !choice_.params.is("precision", "float")) return;
     // The unit in the last place of a binary32 number x is 2^(floor(log2 x) - 23).
-    const double unit = 2 * kG * substep() * substep();
+    const double g = -Scene().gravity.y();  // m/s^2, which the standard scene keeps
+    const double unit = 2 * g * substep() * substep();
     one.theory = {Frontier::Kind::bracketed, std::exp2(std::floor(std::log2(unit)) + 1 + 23), 0,
                   "float: g h^2 is below half a unit in the last place"};
   }

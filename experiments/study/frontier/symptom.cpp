@@ -9,6 +9,7 @@ namespace taut {
 
 namespace {
 
+// Shares: of a link's length, of a way, of energy, of the size.
 constexpr double kStretched = 1, kFrozen = 0.1, kGained = 0.05, kLost = 0.5, kMirrored = 0.1;
 constexpr double kJitter = 981;     ///< m/s^2, 100 g
 constexpr double kMoreJitter = 10;  ///< factor relative to the start of the range
