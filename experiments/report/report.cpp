@@ -19,12 +19,19 @@
 #include "experiments/report/questions/links.hpp"
 #include "experiments/report/questions/questions.hpp"
 #include "experiments/report/questions/winners.hpp"
+#include "experiments/study/main_job.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut::report {
 
 namespace {
+
+/// The bench of the main job as words of `taut bench`: "trade --preset quick".
+std::string bench_of_main_job() {
+  const MainJob job = main_job();
+  return job.bench + " --preset " + job.preset;
+}
 
 Json json_of(const Colour& colour) { return {{"light", colour.light}, {"dark", colour.dark}}; }
 
@@ -381,8 +388,8 @@ class Builder {
     };
     if (!input_.bench)
       add("cost", "No cost was measured.",
-          "taut bench " + (input_.studies.size() == 1 ? input_.studies.front().name
-                                                      : std::string("trade --preset quick")));
+          "taut bench " +
+              (input_.studies.size() == 1 ? input_.studies.front().name : bench_of_main_job()));
     if (input_.media.empty())
       add("films", "No pictures were rendered.",
           "taut render " + compared_.scenes.front().task.scene + " --video");
