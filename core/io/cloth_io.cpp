@@ -369,10 +369,14 @@ void read_placed(Section& cloth, Scene& scene) {
   }
 }
 
-/// Reports keys that do not apply to this kind of cloth, so that the message can say why.
-void refuse(Section& cloth, const std::vector<std::string>& keys, const std::string& why) {
-  for (const std::string& key : keys)
-    if (cloth.find(key)) cloth.report(key, why);
+/// Reports keys that the other kind of cloth has, so that the message can say why.
+void refuse_other(Section& cloth, ClothKind kind) {
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.cloth || key.cloth == kind) continue;
+    if (const std::string name(key.name()); cloth.find(name))
+      cloth.report(name, "belongs to a " + std::string(to_string(*key.cloth)) + ", not to a " +
+                             std::string(to_string(kind)));
+  }
 }
 
 }  // namespace
@@ -380,10 +384,7 @@ void refuse(Section& cloth, const std::vector<std::string>& keys, const std::str
 bool read_cloth(Section& cloth, const std::filesystem::path& folder, const Fabric* fabric,
                 const FileKeys& said, Scene& scene) {
   const bool surface = cloth.find("mesh");
-  if (surface)
-    refuse(cloth, {"grid", "size", "u", "v", "span", "tilt"}, "belongs to a grid, not to a mesh");
-  else
-    refuse(cloth, {"scale", "rotation", "weld"}, "belongs to a mesh, not to a grid");
+  refuse_other(cloth, surface ? ClothKind::mesh : ClothKind::grid);
   const bool built = surface ? read_surface(cloth, folder, fabric, said, scene)
                              : read_sheet(cloth, fabric, said, scene);
   cloth.know();

@@ -50,21 +50,26 @@ SceneKey other(std::string_view path, std::string_view type, std::string_view un
 // Scenes are hashed in the order of the table: add a new key at the end of its section, with
 // came_later().
 const SceneKey kKeys[] = {
-    other("cloth.grid", "two whole numbers", "1", "1 to 2^24 vertices, 2 at least",
-          "needed for a grid", "[32, 32]", "vertices along u and v; `[1, n]` is a chain"),
+    other("cloth.grid", "two whole numbers", "1", "1 to 2^24 vertices, 2 at least", "", "[32, 32]",
+          "vertices along u and v; `[1, n]` is a chain")
+        .needed_for(ClothKind::grid),
     other("cloth.mesh", "file", "", "", "needed for a mesh", "\"disc.obj\"",
           "OBJ file, relative to the scene; excludes `grid`"),
-    other("cloth.size", "two numbers", "m", "> 0 where there are two vertices", "needed for a grid",
-          "[1.0, 1.0]", "sides along u and v"),
+    other("cloth.size", "two numbers", "m", "> 0 where there are two vertices", "", "[1.0, 1.0]",
+          "sides along u and v")
+        .needed_for(ClothKind::grid),
     vector("cloth.origin", &FileKeys::origin, "m", Range::within(kFar), "[-0.5, 1, 0]",
            "where vertex (0, 0), or a mesh's own origin, lies at rest"),
-    direction("cloth.u", &FileKeys::u, "[0, 0, 1]", "first side; grid"),
-    direction("cloth.v", &FileKeys::v, "[0, 0, -1]", "second side; grid")
-        .limited("not parallel to u"),
+    direction("cloth.u", &FileKeys::u, "[0, 0, 1]", "first side").only_of(ClothKind::grid),
+    direction("cloth.v", &FileKeys::v, "[0, 0, -1]", "second side")
+        .limited("not parallel to u")
+        .only_of(ClothKind::grid),
     number("cloth.scale", &FileKeys::scale, "1", Range{1e-6, 1e6}, "0.5",
-           "metres per unit of the OBJ file; mesh"),
+           "metres per unit of the OBJ file")
+        .only_of(ClothKind::mesh),
     other("cloth.rotation", "rotation", "degrees", "", "none", "{ axis = [1, 0, 0], angle = 90 }",
-          "turns the OBJ file about its own origin; mesh"),
+          "turns the OBJ file about its own origin")
+        .only_of(ClothKind::mesh),
     number("cloth.mass", &FileKeys::mass, "kg", Range{1e-9, 1e9}, "0.3",
            "of the whole cloth; excludes `area_density`")
         .otherwise("by area_density"),
@@ -75,11 +80,13 @@ const SceneKey kKeys[] = {
     number(
         "cloth.span", &FileKeys::span, "m", Range::positive(kFar), "0.9",
         "starts with left and right side this far apart, rows sagging square to u, to v's side, as "
-        "circular arcs that keep every structural length; grid")
+        "circular arcs that keep every structural length")
+        .only_of(ClothKind::grid)
         .limited("at most the width")
         .otherwise("the width"),
     number("cloth.tilt", &FileKeys::tilt, "degrees", Range::within(360), "30",
-           "starts turned about the side u through the origin, after `span`; grid"),
+           "starts turned about the side u through the origin, after `span`")
+        .only_of(ClothKind::grid),
     number("cloth.stretch", &FileKeys::stretch, "1", Range{1e-3, 1e3}, "0.5",
            "the start as a multiple of the shape about the first vertex, pins too, after `tilt`; "
            "rest lengths stay"),
@@ -103,7 +110,8 @@ const SceneKey kKeys[] = {
     other(
         "cloth.weld", "number", "m", Range::positive(kFar), "none", "1e-4",
         "joins vertices that are at most this far apart, each to the first that stays: seams that "
-        "a program split; what a scene numbers stays the file's; mesh"),
+        "a program split; what a scene numbers stays the file's")
+        .only_of(ClothKind::mesh),
     other("cloth.release", "number", "s", Range::positive(1e6), "never", "2.0",
           "pins let go at the first step boundary at or after this time, free with the velocity "
           "that they had; those of a `pin_motion` that has a `release` of its own at that. At or "
@@ -285,7 +293,16 @@ std::string SceneKey::allowed() const {
   return text + (text.empty() || limits.empty() ? "" : "; ") + std::string(limits);
 }
 
+std::string_view to_string(ClothKind kind) { return kind == ClothKind::grid ? "grid" : "mesh"; }
+
+std::string SceneKey::meaning() const {
+  std::string text(help);
+  if (cloth && !needed_there) text.append("; ").append(to_string(*cloth));
+  return text;
+}
+
 std::string SceneKey::default_text() const {
+  if (needed_there) return "needed for a " + std::string(to_string(*cloth));
   if (needed || !fallback.empty()) return std::string(needed ? "needed" : fallback);
   return std::visit(
       [&]<class Of>(Of of) -> std::string {

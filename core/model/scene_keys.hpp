@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,10 @@ struct Range {
   }
   std::string text() const;  ///< "greater than 0 and at most 10"
 };
+
+/// What cloth is made from: rows of vertices, or a file of triangles.
+enum class ClothKind { grid, mesh };
+std::string_view to_string(ClothKind);
 
 /// Single values of a file from which vertices, links and steps of a Scene are made.
 struct FileKeys {
@@ -86,6 +91,8 @@ struct SceneKey {
   std::string_view fallback = {};  ///< the default in words, if it is not a constant
   std::string_view effect = {};    ///< name of the effect that `taut require` removes
   bool needed = false;
+  std::optional<ClothKind> cloth = {};  ///< the only kind of cloth that has the key; empty: both
+  bool needed_there = false;            ///< cloth of that kind needs it
   /// Version of the scene file for external programs that introduced the key. A key of version 2
   /// or later was added after results were stored: the digest includes it only where it differs
   /// from its default, so that scenes without it keep their digests.
@@ -99,6 +106,10 @@ struct SceneKey {
   }
 
   SceneKey need() const { return with(&SceneKey::needed, true); }
+  SceneKey only_of(ClothKind kind) const { return with(&SceneKey::cloth, {kind}); }
+  SceneKey needed_for(ClothKind kind) const {
+    return only_of(kind).with(&SceneKey::needed_there, true);
+  }
   SceneKey came_later(int version) const { return with(&SceneKey::since, version); }
   SceneKey limited(std::string_view words) const { return with(&SceneKey::limits, words); }
   SceneKey otherwise(std::string_view words) const { return with(&SceneKey::fallback, words); }
@@ -110,6 +121,8 @@ struct SceneKey {
   std::string_view name() const { return path.substr(path.find('.') + 1); }
   /// Range and limits: "0 to 1e6".
   std::string allowed() const;
+  /// `help`, and the kind of cloth that has the key: "first side; grid".
+  std::string meaning() const;
   /// "0.5" as typed, or in words.
   std::string default_text() const;
 

@@ -111,8 +111,8 @@ void list_keys(Answer& all) {
                Column("example").in_detail(),
                {"help", "meaning"}}};
   for (const SceneKey& key : scene_keys())
-    table.rows.push_back(
-        {key.path, key.type, key.unit, key.allowed(), key.default_text(), key.example, key.help});
+    table.rows.push_back({key.path, key.type, key.unit, key.allowed(), key.default_text(),
+                          key.example, key.meaning()});
   all.add(std::move(table));
   Table studies{"study_keys", "keys of studies", {{"key"}, {"help", "meaning"}}};
   for (const StudyKey& key : study_keys()) studies.rows.push_back({key.name, key.help});
