@@ -32,6 +32,16 @@ const ReasonTexts& reason_texts() {
 
 std::string_view to_string(Status::Kind kind) { return kNames[kind]; }
 
+const std::string& stored_statuses() {
+  static const std::string kAll = [] {
+    std::string all(kNames[Status::Kind::ok]);
+    for (int kind = 1; kind < static_cast<int>(Status::Kind::interrupted); ++kind)
+      all.append(", ").append(kNames[static_cast<Status::Kind>(kind)]);
+    return all;
+  }();
+  return kAll;
+}
+
 bool is_status(std::string_view name) { return kNames.find(name).has_value(); }
 
 Status::Kind status_kind(std::string_view name) {

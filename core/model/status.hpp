@@ -64,6 +64,8 @@ struct Status {
 
 std::string_view to_string(Status::Kind);
 bool is_status(std::string_view);
+/// The names of all that are stored, in their order: "ok, exploded, ..., error".
+const std::string& stored_statuses();
 Status::Kind status_kind(std::string_view);  ///< throws InputError
 
 }  // namespace taut

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that the tables of keys and of a record in the documents equal `taut list keys` and `taut list record`.
+"""Checks that the documents name the keys, the fields of a record, the statuses and the newest protocol that taut has.
+
+The tables of keys and of a record equal `taut list keys` and `taut list record`.
 
 Usage: keys_test.py BUILD [--write]     --write: writes the tables anew"""
 
@@ -52,6 +54,32 @@ def replaced(text, heading, table):
     return before + mark + after[:found.start()] + table + after[found.end():]
 
 
+def wrong_statuses(statuses):
+    """The files whose list of statuses is another one."""
+    def found(file, pattern):
+        match = re.search(pattern, (ROOT / file).read_text())
+        return match.group(1) if match else ""
+    glossary = re.sub(r" \([^)]*\)", "", found("GLOSSARY.md", r"\n\| status \| how a case ended: (.*) \|\n")).split(", ")
+    model = re.findall(r'"(\w+)"', found("experiments/report/model/MODEL.md", r"\n\| `statuses` \|.*?: `id` \((.*?)\)"))
+    results = re.findall(r"'(\w+)'", found("experiments/python/runs.cpp", r'("\'ok\', .*)'))  # of these, the first
+    return [file for file, right in (("GLOSSARY.md", glossary == statuses),
+                                     ("experiments/report/model/MODEL.md", sorted(model) == sorted(statuses)),
+                                     ("experiments/python/runs.cpp", results and results == statuses[:len(results)])) if not right]
+
+
+def wrong_versions():
+    """The files that name another newest version of the protocol than the table of scene keys has."""
+    def largest(file, pattern):
+        return max(map(int, re.findall(pattern, (ROOT / file).read_text())), default=0)
+    newest = largest("core/model/scene_keys.cpp", r"came_later\((\d+)\)")
+    assert newest > 1, "keys that came later"
+    external = "experiments/external/"
+    return [file for file, pattern, version in (
+        (external + "README.md", r"taut-solver/(\d+)", newest), (external + "README.md", r"taut-scene/(\d+)", newest),
+        (external + "sdk/taut_solver.py", r"taut-solver/(\d+)", newest), (external + "sdk/taut_solver.hpp", r" /(\d+):", newest),
+        ("CONTRIBUTING.md", r"came_later\((\d+)\)", newest + 1)) if largest(file, pattern) != version]
+
+
 def main():
     program = pathlib.Path(sys.argv[1]) / "taut"
     answer, record = (json.loads(subprocess.run([program, "list", what, "--json"], check=True, capture_output=True).stdout)
@@ -67,7 +95,15 @@ def main():
         [f"`{row['key']}`", f"`{row['column']}`" if row["column"] else "", row["type"], row["help"]] for row in fields]))
     columns = ", ".join(["case_id", *(row["column"] for row in fields if row["column"]), "is_result", "result_digest", "errors"])
     results = re.sub(r"(?<=\n\| cases \| a record each \| ).*(?= \|\n)", columns, results)
+    statuses = next(row["help"] for row in fields if row["key"] == "status.kind")
+    results = re.sub(r"(?<=\n\| status \| \| ).*(?= \(\[words\])", statuses, results)
     wrong = 0
+    for file in wrong_statuses(statuses.split(", ")):
+        print(f"{file} has other statuses than `taut list record`")
+        wrong = 1
+    for file in wrong_versions():
+        print(f"{file} names another newest version of the protocol than came_later() in core/model/scene_keys.cpp")
+        wrong = 1
     for file, text in (SCENES, scenes), (STUDIES, studies), (VERBS, verbs), (RESULTS, results):
         if file.read_text() == text:
             continue

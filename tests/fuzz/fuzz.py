@@ -26,7 +26,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / 'cli'))
 import stored  # noqa: E402
 
 CODES = {0, 1, 2, 3, 4, 5, 6, 130}  # experiments/command_line/verb.hpp
-STATUSES = {'ok', 'exploded', 'unsettled', 'extreme', 'unsupported', 'timeout', 'oom', 'crash', 'protocol', 'error'}
+STATUSES = set()  # filled by main()
 LEGITIMATE = 30  # the largest legitimate_strain() of any scene: experiments/case/divergence.cpp
 SECONDS = 60  # s, limit of a command; more counts as a hang
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
@@ -271,13 +271,22 @@ def program(attempt):
     attempt.taut('external', 'probe', text, '--json')
 
 
+def listed(build, what, *names):
+    """The rows of these tables of `taut list`."""
+    tables = json.loads(subprocess.run([build / 'taut', 'list', what, '--json'], capture_output=True, check=True).stdout)['tables']
+    return [[dict(zip((column['name'] for column in tables[name]['columns']), row)) for row in tables[name]['rows']] for name in names]
+
+
+def listed_statuses(build):
+    """What a record may have as its status."""
+    (fields,) = listed(build, 'record', 'record')
+    return next(row['help'] for row in fields if row['key'] == 'status.kind').split(', ')
+
+
 def listed_solvers(build):
     """[{'name': 'bullet', 'params': [{'name': ..., 'default': ..., 'allowed': ...}]}]"""
-    tables = json.loads(subprocess.run([build / 'taut', 'list', 'solvers', '--json'], capture_output=True, check=True).stdout)['tables']
-
-    def rows(name):
-        return [dict(zip((column['name'] for column in tables[name]['columns']), row)) for row in tables[name]['rows']]
-    return [one | {'params': [p for p in rows('parameters') if p['solver'] == one['name']]} for one in rows('solvers')]
+    solvers, parameters = listed(build, 'solvers', 'solvers', 'parameters')
+    return [one | {'params': [p for p in parameters if p['solver'] == one['name']]} for one in solvers]
 
 
 KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record,
@@ -298,6 +307,7 @@ def main():
     kinds = [kind] if kind else list(KINDS)
     scratch = pathlib.Path(tempfile.mkdtemp(prefix='taut-fuzz.'))
     SOLVERS.extend(listed_solvers(build))
+    STATUSES.update(listed_statuses(build))
     print(f'seed {options.seed}', flush=True)
     end, findings, codes = time.monotonic() + options.seconds, 0, {each: {} for each in kinds}
     i = int(number) if number else 0
