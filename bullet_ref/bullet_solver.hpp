@@ -107,8 +107,10 @@ class BoundedWorld final : public World {
 
 inline constexpr ParamSpec kSubsteps = ParamSpec::integer(
     "substeps", "1", 1, 1e6, "each step is this many calls of stepSimulation(dt / substeps)");
-inline constexpr ParamSpec kPrecision = ParamSpec::choice(
-    "precision", "double", "float|double", "which build of Bullet; float runs in taut-f32");
+inline constexpr ParamSpec kPrecision =
+    ParamSpec::choice("precision", "double", "float|double",
+                      "which build of Bullet; float runs in taut-f32")
+        .as(ParamSpec::Role::precision);
 inline constexpr ParamSpec kMargin =
     ParamSpec::real("margin", "m", "0", 0, 1,
                     "collision margin on top of the scene's thickness (Bullet's default: 0.25)");

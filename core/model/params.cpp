@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "core/model/input_error.hpp"
+#include "core/model/names.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -199,6 +200,16 @@ std::string Params::text(bool only_changed, std::string_view but) const {
            quoted_if_needed(specs_[i], values_[i]);
   }
   return all;
+}
+
+std::string_view parameter_with(ParamSpec::Role role, std::span<const ParamSpec> specs) {
+  const auto found = std::ranges::find(specs, role, &ParamSpec::role);
+  return found == specs.end() ? "" : found->name;
+}
+
+std::string_view usual_name(ParamSpec::Role role) {
+  static constexpr Names<ParamSpec::Role::instructions> kUsual{"", "precision", "simd"};
+  return kUsual[role];
 }
 
 }  // namespace taut

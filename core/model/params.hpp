@@ -26,6 +26,13 @@ struct ParamSpec {
   std::optional<Family> family = {};    ///< of the links whose stiffness [N/m] it is
   bool is_compliance = false;           ///< [m/N] instead of a stiffness
   std::string_view rigid = {};          ///< choice with which all links are rigid; "": none
+  /// What a parameter means to those who know no solver's names.
+  enum class Role {
+    none,
+    precision,    ///< the scalar type: "float" or "double"
+    instructions  ///< the instruction set of the kernels, which changes no bits; "auto" chooses
+  };
+  Role role = Role::none;
 
   /// A copy that has another default where `where_` holds.
   constexpr ParamSpec but(std::string_view where_, std::string_view default_) const {
@@ -51,6 +58,12 @@ struct ParamSpec {
     same.rigid = choice_;
     return same;
   }
+  /// A copy with that role.
+  constexpr ParamSpec as(Role role_) const {
+    ParamSpec same = *this;
+    same.role = role_;
+    return same;
+  }
   /// The default for people: "1", "1; 3 with method=global".
   std::string defaults() const {
     std::string text(default_value);
@@ -71,6 +84,12 @@ struct ParamSpec {
     return {name, Kind::choice, "", default_value, 0, 0, choices, help};
   }
 };
+
+/// Name of the parameter with that role; "": there is none.
+std::string_view parameter_with(ParamSpec::Role, std::span<const ParamSpec>);
+/// Name that a parameter with that role has in a solver that declares no roles, such as a program
+/// from outside.
+std::string_view usual_name(ParamSpec::Role);
 
 /// An item "key=value" of a solver's text. A value in quotes ('a, b' or "a, b") may contain commas;
 /// a quote in it is written twice.

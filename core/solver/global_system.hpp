@@ -122,7 +122,8 @@ class GlobalSystem {
 
 inline constexpr ParamSpec kGlobalPrecision =
     ParamSpec::choice("precision", "double", "float|double",
-                      "scalar type of the simulation; the linear system is always in double");
+                      "scalar type of the simulation; the linear system is always in double")
+        .as(ParamSpec::Role::precision);
 
 template <class Real>
 std::vector<Vec3> positions(const Particles<Real>& p) {

@@ -135,10 +135,12 @@ inline constexpr ParamSpec kTethers = ParamSpec::choice(
     "tethers", "off", "off|on",
     "long-range attachments: no vertex is farther from a pin than it is along the cloth at rest");
 inline constexpr ParamSpec kPrecision =
-    ParamSpec::choice("precision", "float", "float|double", "scalar type of the simulation");
+    ParamSpec::choice("precision", "float", "float|double", "scalar type of the simulation")
+        .as(ParamSpec::Role::precision);
 inline constexpr ParamSpec kSimd =
     ParamSpec::choice("simd", "auto", "auto|scalar|sse2|avx2|avx512",
-                      "instruction set; every one computes the same bits");
+                      "instruction set; every one computes the same bits")
+        .as(ParamSpec::Role::instructions);
 inline constexpr ParamSpec kThreads = ParamSpec::integer(
     "threads", "1", 1, 64,
     "threads that share the sweeps of order=coloured; any number computes the same bits");

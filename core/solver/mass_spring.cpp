@@ -38,7 +38,8 @@ constexpr auto kParams = loop::with_common(
      loop::substeps("32", "each step is this many steps of dt / substeps"),
      ParamSpec::choice(
          "precision", "double", "float|double",
-         "scalar type of the simulation; in float, many substeps slow a fall by rounding"),
+         "scalar type of the simulation; in float, many substeps slow a fall by rounding")
+         .as(ParamSpec::Role::precision),
      kMaterial});
 
 template <class Real>

@@ -319,6 +319,7 @@ inline constexpr ParamSpec kAdaptiveStart =
 inline constexpr ParamSpec kVertexPrecision =
     ParamSpec::choice("precision", "double", "float|double",
                       "scalar type of the simulation; in float a sweep costs about 0.8 times as "
-                      "much, and the error falls no lower than rounding");
+                      "much, and the error falls no lower than rounding")
+        .as(ParamSpec::Role::precision);
 
 }  // namespace taut

@@ -137,6 +137,8 @@ class SpecReader {
       read_number(type == "integer");
     else
       j.at("type").fail("'" + type + "' is not one of integer, real, choice, text");
+    for (const auto role : {ParamSpec::Role::precision, ParamSpec::Role::instructions})
+      if (spec_.name == usual_name(role)) spec_.role = role;
     for (const Family family : kFamilies)
       if (spec_.name == to_string(family) && (spec_.unit == "N/m" || spec_.unit == "m/N")) {
         spec_.family = family;

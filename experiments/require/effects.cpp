@@ -136,7 +136,10 @@ std::vector<Effect> effects_of(const Case& one) {
     if (!effect.of_contact || !one.scene->colliders.empty()) add_parameter(one, effects, effect);
   add_parameter(one, effects, {"substeps", solver.accuracy.substeps});
   add_parameter(one, effects, {"sweeps", solver.accuracy.sweeps});
-  add_parameter(one, effects, {"precision", "precision", {"double", "float"}});
+  add_parameter(one, effects,
+                {"precision",
+                 parameter_with(ParamSpec::Role::precision, solver.params),
+                 {"double", "float"}});
   add_sizes(one, effects);
   return effects;
 }

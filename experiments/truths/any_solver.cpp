@@ -59,7 +59,8 @@ std::string converged(const std::string& solver) {
   if (solver.find(':') != solver.npos || !entry->implementation.empty()) return solver;
   std::string text = solver;
   for (const ParamSpec& spec : entry->params) {
-    if (spec.name == "precision") text = with(text, "precision=double");
+    if (spec.role == ParamSpec::Role::precision)
+      text = with(text, std::string(spec.name) + "=double");
     if (!spec.name.empty() && spec.name == entry->accuracy.sweeps)
       text = with(text, std::string(spec.name) + "=1000");
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,27 @@ TEST(AccuracyParameters, StiffnessesRiseAndHaveTheDefault) {
       EXPECT_TRUE(std::ranges::is_sorted(
           values, {}, [](std::string_view v) { return std::stod(std::string(v)); }));
     }
+}
+
+// A page names the arithmetic of a solver by these roles, whatever its parameters are called.
+TEST(ParameterRoles, BelongToEveryChoiceOfPrecisionAndOfInstructions) {
+  using Role = ParamSpec::Role;
+  std::size_t precisions = 0;
+  for (const SolverEntry* entry : solvers())
+    for (const ParamSpec& spec : entry->params) {
+      const bool chooses = spec.choices == "float|double",
+                 computes = spec.choices.starts_with("auto|scalar|");
+      precisions += chooses;
+      EXPECT_EQ(spec.role, chooses    ? Role::precision
+                           : computes ? Role::instructions
+                                      : Role::none)
+          << entry->name << " " << spec.name;
+    }
+  EXPECT_GE(precisions, 5u);
+  const std::span<const ParamSpec> jakobsen = parse_solver("jakobsen").entry->params;
+  EXPECT_EQ(parameter_with(Role::precision, jakobsen), "precision");
+  EXPECT_EQ(parameter_with(Role::instructions, jakobsen), "simd");
+  EXPECT_EQ(parameter_with(Role::precision, {}), "");
 }
 
 }  // namespace

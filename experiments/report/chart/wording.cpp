@@ -246,6 +246,11 @@ std::string link_order_parameter(const std::string& solver) {
   return entry ? std::string(entry->accuracy.link_order) : "";
 }
 
+std::string parameter_of(std::string_view solver, ParamSpec::Role role) {
+  const SolverEntry* entry = find_entry(solver);
+  return std::string(entry ? parameter_with(role, entry->params) : usual_name(role));
+}
+
 std::vector<std::string> stiffness_parameters(const std::string& solver) {
   const SolverEntry* entry = find_entry(solver);
   if (!entry) return {};

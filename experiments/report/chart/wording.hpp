@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/params.hpp"
 #include "experiments/answer/number.hpp"
 #include "experiments/case/record.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -88,6 +89,8 @@ std::vector<std::string> labelled_parameters(const std::string& solver);
 std::string link_order_parameter(const std::string& solver);
 /// The parameters that are the stiffness of its springs.
 std::vector<std::string> stiffness_parameters(const std::string& solver);
+/// Name of the parameter with that role; of a solver that this program lacks, its usual name.
+std::string parameter_of(std::string_view solver, ParamSpec::Role);
 /// The parameters that a search may vary, the labelled ones included: cases that differ in these
 /// alone are settings of one solver.
 std::vector<std::string> searched_parameters(const std::string& solver);

@@ -21,14 +21,15 @@ std::string Arithmetic::meaning() const {
 }
 
 Arithmetic arithmetic_of(const Record& r, const std::string& vectors) {
-  const auto param = [&](const char* name) {
-    const auto at = r.params.find(name);
+  const auto param = [&](ParamSpec::Role role) {
+    const auto at = r.params.find(parameter_of(r.solver, role));
     return at == r.params.end() ? std::string() : at->second;
   };
-  Arithmetic all{.precision = param("precision")};
+  Arithmetic all{.precision = param(ParamSpec::Role::precision)};
   if (all.precision.empty()) return {};  // its links have no vector kernels
-  const bool automatic = param("simd") == "auto";
-  all.instructions = automatic ? vectors : param("simd");
+  const std::string asked = param(ParamSpec::Role::instructions);
+  const bool automatic = asked == "auto";
+  all.instructions = automatic ? vectors : asked;
   if (all.instructions.empty()) {
     if (automatic) all.instructions = "vectors";
     return all;

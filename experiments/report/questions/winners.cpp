@@ -44,7 +44,7 @@ class SceneWinners {
   Contender contender(std::size_t at) {
     const Record& r = scene_.bench.cases[at].record;
     const std::string links = links_text(r);
-    std::vector<std::string> beside{"precision"};
+    std::vector<std::string> beside{parameter_of(r.solver, ParamSpec::Role::precision)};
     if (!links.empty())
       for (const std::string& name : stiffness_parameters(r.solver)) beside.push_back(name);
     return {r.solver,

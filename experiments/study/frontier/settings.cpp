@@ -110,7 +110,8 @@ class FrontierSettings {
     FrontierSetting& one =
         add("distance from the origin", "m", "cloth.origin.0|cloth.origin.1|cloth.origin.2", 1, 1e5,
             Direction::up, {"cloth.origin=[1, 1, 1]"});
-    if (!parameter("precision") || !choice_.params.is("precision", "float")) return;
+    const auto precision = parameter_with(ParamSpec::Role::precision, choice_.entry->params);
+    if (precision.empty() || !choice_.params.is(precision, "float")) return;
     // The unit in the last place of a binary32 number x is 2^(floor(log2 x) - 23).
     const double g = -Scene().gravity.y();  // m/s^2, which the standard scene keeps
     const double unit = 2 * g * substep() * substep();
