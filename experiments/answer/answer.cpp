@@ -122,7 +122,7 @@ const Cell& Table::at(const std::vector<Cell>& row, std::string_view column) con
 std::string text(const Cell& cell, const Column& column, bool with_unit) {
   if (cell.empty()) return cell.note.empty() ? "-" : cell.note;
   const std::string_view shown = with_unit ? std::string_view(column.shown) : std::string_view();
-  const Unit unit{column.unit, shown, column.scale};
+  const Unit unit{Unit::Kind::other, column.unit, shown, column.scale};
   std::string said = cell.text();
   if (const auto* yes = std::get_if<bool>(&cell.value)) said = *yes ? "yes" : "no";
   if (const auto* number = std::get_if<double>(&cell.value))

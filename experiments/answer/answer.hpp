@@ -87,7 +87,6 @@ struct Column {
   Column(std::string name, std::string heading = {}, const Unit& = kNumber, int digits = 3);
   Column in_detail() const;
   Column of_commands() const;
-  Unit as_unit() const { return {unit, shown, scale}; }
   bool operator==(const Column&) const = default;
 };
 

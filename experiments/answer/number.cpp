@@ -37,7 +37,8 @@ struct Rounded {
   bool needs_exponent() const { return exponent < -4 || exponent > 5; }
 };
 
-bool is_count(double value, const Unit& unit) {
+/// Whether the number gets all its digits: it is whole, and no unit stands behind it.
+bool is_whole(double value, const Unit& unit) {
   return unit.shown.empty() && value == std::round(value) && std::abs(value) < 1e15;
 }
 
@@ -55,7 +56,7 @@ std::string number_text(double value, int digits) {
 
 std::string number_text(double si, const Unit& unit, int digits) {
   const std::string number =
-      is_count(si, unit) ? formatted("%.0f", si) : number_text(si * unit.scale, digits);
+      is_whole(si, unit) ? formatted("%.0f", si) : number_text(si * unit.scale, digits);
   return unit.shown.empty() || !std::isfinite(si) ? number : number + " " + std::string(unit.shown);
 }
 
@@ -105,8 +106,8 @@ std::string significant(double value, int digits) {
 std::string exact(double value) { return std::isnan(value) ? "" : shortest(value); }
 
 std::string shown(const Unit& unit, double si, int digits) {
-  const bool counted = is_count(si, unit) && std::abs(si) < 1e7;
-  const std::string number = counted ? exact(si) : significant(si * unit.scale, digits);
+  const bool whole = is_whole(si, unit) && std::abs(si) < 1e7;
+  const std::string number = whole ? exact(si) : significant(si * unit.scale, digits);
   return unit.shown.empty() || !std::isfinite(si) ? number
                                                   : number + "\u00A0" + std::string(unit.shown);
 }

@@ -23,8 +23,9 @@ void to_json(Json& json, const Interval& i) {
 }
 
 /// Units that no metric has.
-inline constexpr Unit kMilliseconds{"s", "ms", 1e3}, kNanoseconds{"s", "ns", 1e9},
-    kBytes{"B", "B", 1, false}, kKilobytes{"B", "kB", 1e-3}, kMegabytes{"B", "MB", 1e-6};
+inline constexpr Unit kMilliseconds{Unit::Kind::time, "s", "ms", 1e3},
+    kNanoseconds{Unit::Kind::time, "s", "ns", 1e9}, kBytes{Unit::Kind::other, "B", "B", 1, false},
+    kKilobytes{Unit::Kind::other, "B", "kB", 1e-3}, kMegabytes{Unit::Kind::other, "B", "MB", 1e-6};
 
 /// Unit of a metric's value.
 inline Unit unit_of_value(std::string_view name) {

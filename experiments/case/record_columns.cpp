@@ -9,7 +9,7 @@ namespace taut {
 namespace {
 
 constexpr bool kResult = true, kMayLack = true;
-constexpr Unit kMilliseconds{"s", "ms", 1e3};
+constexpr Unit kMilliseconds{Unit::Kind::time, "s", "ms", 1e3};
 
 const RecordColumn kColumns[] = {
     {"key", "key", &Record::key, "SHA-256 of everything that decides the result"},

@@ -89,9 +89,9 @@ void list_fabrics(Answer& all) {
   Table table{"fabrics",
               "measured fabrics",
               {{"name"},
-               {"mass", "mass", {"kg/m^2", "g/m\u00B2", 1e3}},
-               {"warp", "bending, warp", {"N m", "\u00B5N m", 1e6}},
-               {"weft", "weft", {"N m", "\u00B5N m", 1e6}},
+               {"mass", "mass", {Unit::Kind::other, "kg/m^2", "g/m\u00B2", 1e3}},
+               {"warp", "bending, warp", {Unit::Kind::other, "N m", "\u00B5N m", 1e6}},
+               {"weft", "weft", {Unit::Kind::other, "N m", "\u00B5N m", 1e6}},
                {"drape", "drape coefficient", kShare},
                {"source"},
                {"licence"}}};

@@ -318,7 +318,7 @@ double error_of(const std::string& text, const Unit& of) {
   const std::string unit = text.substr(used);
   if (used == 0 || !(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
     throw InputError("--error " + text + ": expected a number above 0 such as 0.01 or 1%");
-  if (unit.empty() && of.shown == "%" && value >= 1)
+  if (unit.empty() && of.kind == Unit::Kind::share && value >= 1)
     throw InputError("--error " + text + ": " + text + "% or " + number_text(100 * value) +
                      "%? a share of 1 or more needs its sign");
   return unit == "%" ? value / 100 : value;

@@ -9,7 +9,7 @@ namespace {
 /// A level sheet that is held by its first two rows alone; its clamp is midway between them.
 class Cantilever final : public Metric {
  public:
-  static constexpr Unit kDegrees{"rad", "\u00B0", 180 / std::numbers::pi, false};
+  static constexpr Unit kDegrees{Unit::Kind::other, "rad", "\u00B0", 180 / std::numbers::pi, false};
   static constexpr double kMost = std::numbers::pi / 3;  ///< rad, limit of Peirce's formula
   static constexpr ValueSpec kValues[] = {
       {.name = "cantilever.angle",

@@ -23,22 +23,38 @@ struct Snapshot {
   const State& state;
 };
 
-/// The unit in which a value is stored, and how it is shown: `shown = scale * stored`.
+/// What a value is, the unit in which it is stored, and how it is shown: `shown = scale * stored`.
 struct Unit {
+  /// Decides what 100 % of a value is and how far it may move by default. Never read from the unit
+  /// that people see or from the axis of a chart.
+  enum class Kind {
+    other,   ///< a number, speed, force, ...: 100 % is the value itself
+    count,   ///< of events or things, so that each one matters
+    share,   ///< 1 is 100 %; also strains
+    length,  ///< of the size of the cloth
+    time,    ///< of the duration of the run
+  };
+  Kind kind;
   std::string_view si;     ///< "1" if dimensionless
   std::string_view shown;  ///< "%", "mm", ...
   double scale = 1;
   bool logarithmic = true;      ///< whether a logarithmic axis suits it
   bool less_is_better = false;  ///< for an error: a distance from what must hold
 };
-inline constexpr Unit kNumber{"1", ""}, kCount{"1", "", 1, false}, kShare{"1", "%", 100},
-    kSignedShare{"1", "%", 100, false}, kLength{"m", "mm", 1e3},
-    kSignedLength{"m", "mm", 1e3, false}, kTime{"s", "s", 1, false}, kSpeed{"m/s", "m/s"},
-    kAcceleration{"m/s^2", "m/s\u00B2"}, kForce{"N", "N", 1, false};
+inline constexpr Unit kNumber{Unit::Kind::other, "1", ""},
+    kCount{Unit::Kind::count, "1", "", 1, false}, kShare{Unit::Kind::share, "1", "%", 100},
+    kSignedShare{Unit::Kind::share, "1", "%", 100, false},
+    kLength{Unit::Kind::length, "m", "mm", 1e3},
+    kSignedLength{Unit::Kind::length, "m", "mm", 1e3, false},
+    kTime{Unit::Kind::time, "s", "s", 1, false}, kSpeed{Unit::Kind::other, "m/s", "m/s"},
+    kAcceleration{Unit::Kind::other, "m/s^2", "m/s\u00B2"},
+    kForce{Unit::Kind::other, "N", "N", 1, false};
 /// Units of errors, which are never below 0.
-inline constexpr Unit kErrorCount{"1", "", 1, false, true}, kErrorShare{"1", "%", 100, true, true},
-    kErrorLength{"m", "mm", 1e3, true, true}, kErrorSpeed{"m/s", "m/s", 1, true, true},
-    kErrorAcceleration{"m/s^2", "m/s\u00B2", 1, true, true};
+inline constexpr Unit kErrorCount{Unit::Kind::count, "1", "", 1, false, true},
+    kErrorShare{Unit::Kind::share, "1", "%", 100, true, true},
+    kErrorLength{Unit::Kind::length, "m", "mm", 1e3, true, true},
+    kErrorSpeed{Unit::Kind::other, "m/s", "m/s", 1, true, true},
+    kErrorAcceleration{Unit::Kind::other, "m/s^2", "m/s\u00B2", 1, true, true};
 
 /// The part of a run that a value describes.
 enum class Window { last_second, run, end, none };

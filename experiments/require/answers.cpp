@@ -21,10 +21,19 @@ double whole(const KeptQuantity& answer, const Observation& full) {
 }
 
 double default_tolerance(const KeptQuantity& answer, const Observation& full) {
-  const Unit unit = unit_of(answer);
-  if (is_count(unit)) return 0;
-  const double share = answer.is_shape() || unit.shown == "%" ? 0.01 : unit.si == "m" ? 0.001 : 0.1;
-  return share * whole(answer, full);
+  if (answer.is_shape()) return 0.01 * whole(answer, full);
+  switch (unit_of(answer).kind) {
+    case Unit::Kind::count:
+      return 0;
+    case Unit::Kind::share:
+      return 0.01 * whole(answer, full);
+    case Unit::Kind::length:
+      return 0.001 * whole(answer, full);
+    case Unit::Kind::time:
+    case Unit::Kind::other:
+      break;
+  }
+  return 0.1 * whole(answer, full);
 }
 
 /// Position at (u, v) in [0, 1]^2 of a sheet, interpolated bilinearly between the vertices of a

@@ -19,7 +19,7 @@ constexpr std::string_view kStep = "step.";
 constexpr const char* kDistance = "step.distance";
 
 constexpr double kGaps[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-constexpr Unit kForce{"N", "N"}, kStiffness{"N/m", "N/m"};
+constexpr Unit kForce{Unit::Kind::other, "N", "N"}, kStiffness{Unit::Kind::other, "N/m", "N/m"};
 
 /// Text that says what the exact step is, or why there is no such step.
 std::string exact_step(const Convergence& c) {

@@ -28,12 +28,12 @@ double number_of_kept(const std::string& asked, const Unit& known, double hundre
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   const std::string unit(end);
-  const bool shown = unit == known.shown && unit != "%";
+  const bool shown = unit == known.shown && known.kind != Unit::Kind::share;
   const bool share = unit == "%" && !std::isnan(hundred);
   if (end == text.c_str() || !std::isfinite(number) || number < 0 ||
       !(unit.empty() || share || shown)) {
     std::vector<std::string> units;
-    if (!known.shown.empty() && known.shown != "%")
+    if (!known.shown.empty() && known.kind != Unit::Kind::share)
       units.push_back("'" + std::string(known.shown) + "'");
     if (!std::isnan(hundred)) units.emplace_back("'%'");
     throw InputError("--keep " + asked + ": expected a number of at least 0 after ':'" +
@@ -43,14 +43,18 @@ double number_of_kept(const std::string& asked, const Unit& known, double hundre
 }
 
 double hundred_percent(const Unit& unit, const Scene& scene) {
-  return unit.si == "m"      ? extent(scene)
-         : unit.si == "s"    ? scene.duration()
-         : unit.shown == "%" ? 1
-                             : std::nan("");
-}
-
-bool is_count(const Unit& unit) {
-  return unit.si == kCount.si && unit.shown == kCount.shown && !unit.logarithmic;
+  switch (unit.kind) {
+    case Unit::Kind::length:
+      return extent(scene);
+    case Unit::Kind::time:
+      return scene.duration();
+    case Unit::Kind::share:
+      return 1;
+    case Unit::Kind::count:
+    case Unit::Kind::other:
+      break;
+  }
+  return std::nan("");
 }
 
 Limit parse_limit(const std::string& asked, const Scene& scene) {
@@ -69,7 +73,8 @@ std::vector<Limit> default_limits(const Scene& scene) {
     if (!metric->make(scene)) continue;
     for (const ValueSpec& value : metric->values) {
       const bool depth = value.role == Role::vertex_depth;
-      if (depth || value.role == Role::passages || (value.kept && is_count(value.unit)))
+      if (depth || value.role == Role::passages ||
+          (value.kept && value.unit.kind == Unit::Kind::count))
         all.push_back({std::string(value.name), depth ? kMostDepth * extent(scene) : 0});
       if (value.name == kMotionError) all.push_back({std::string(value.name), kMostMotionError});
       if (value.role == Role::error) all.push_back({std::string(value.name), kMostStretch});

@@ -48,9 +48,7 @@ std::string name_of_kept(const std::string& asked, const std::vector<std::string
 /// The number after the colon in SI units. `hundred` is the value of 100 %; if it is NaN, "%" is
 /// not allowed. Throws InputError unless the number is at least 0 and the unit is known.
 double number_of_kept(const std::string& asked, const Unit&, double hundred);
-/// Value of 100 % for this unit on a scene; NaN if it depends on the value.
+/// Value of 100 % for this kind of unit on a scene; NaN if it depends on the value.
 double hundred_percent(const Unit&, const Scene&);
-/// Whether values with this unit count things.
-bool is_count(const Unit&);
 
 }  // namespace taut

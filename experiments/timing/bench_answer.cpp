@@ -50,7 +50,7 @@ Table cases_of(const StudyBench& bench, const BenchReport& report) {
               {{"scene"},
                {"case"},
                {"solver"},
-               {"cost", "CPU time a simulated s", {"s/s", "ms", 1e3}},
+               {"cost", "CPU time a simulated s", {Unit::Kind::other, "s/s", "ms", 1e3}},
                {"cpu", "CPU time a step", kMilliseconds},
                {"wall", "wall time", kMilliseconds},
                {"peak_bytes", "process", kMegabytes},

@@ -190,7 +190,7 @@ Answer bench_beside(const std::filesystem::path& checkout, int rounds) {
                                     checked_out + ": an iteration on a net of " +
                                     std::to_string(beside::Net::kSide) + " x " +
                                     std::to_string(beside::Net::kSide)};
-  const Unit nanoseconds{"s", "ns", 1e9};
+  const Unit nanoseconds{Unit::Kind::time, "s", "ns", 1e9};
   Table table{"iterations",
               "an iteration for each vertex",
               {{"code"},

@@ -58,7 +58,9 @@ inline constexpr double kErrorLevels[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 inline constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time per such frame
 /// Unit in which people see CPU seconds per simulated second: ms per frame, at `fps` frames a
 /// second.
-constexpr Unit frame_cost(double fps) { return {"s/s", "ms a frame", 1e3 / fps}; }
+constexpr Unit frame_cost(double fps) {
+  return {Unit::Kind::other, "s/s", "ms a frame", 1e3 / fps};
+}
 inline constexpr Unit kFrameCost = frame_cost(1 / kFrame);
 inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  ///< s per frame
 

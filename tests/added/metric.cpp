@@ -8,7 +8,7 @@ class Sag final : public Metric {
  public:
   static constexpr ValueSpec kValues[] = {
       {.name = "sag.rms",
-       .unit = {"m", "cm", 1e2, true, true},
+       .unit = {Unit::Kind::length, "m", "cm", 1e2, true, true},
        .help = "way of the vertices from the start, RMS over vertices and the last second",
        .in_series = true,
        .role = Role::error,
@@ -16,7 +16,7 @@ class Sag final : public Metric {
        .shown_over_time = true,
        .kept = true},
       {.name = "sag.peak",
-       .unit = {"m", "cm", 1e2, true, true},
+       .unit = {Unit::Kind::length, "m", "cm", 1e2, true, true},
        .help = "largest way of a vertex from the start over the run",
        .window = Window::run,
        .role = Role::contact_error},

@@ -40,6 +40,20 @@ TEST(Metrics, HaveUniqueNamesAndUnits) {
   }
 }
 
+TEST(Metrics, HaveUnitsOfTheKindThatTheyMeasure) {
+  using Kind = Unit::Kind;
+  for (const MetricEntry* entry : metrics())
+    for (const ValueSpec& value : entry->values) {
+      const Unit& unit = value.unit;
+      EXPECT_EQ(unit.kind == Kind::length, unit.si == "m") << value.name;
+      EXPECT_EQ(unit.kind == Kind::time, unit.si == "s") << value.name;
+      EXPECT_EQ(unit.kind == Kind::share, unit.shown == "%") << value.name;
+      if (unit.kind == Kind::count)
+        EXPECT_TRUE(unit.si == "1" && unit.shown.empty() && unit.scale == 1) << value.name;
+      if (value.role == Role::passages) EXPECT_EQ(unit.kind, Kind::count) << value.name;
+    }
+}
+
 TEST(Metrics, AreAbsentWhereTheSceneLacksWhatTheyMeasure) {
   Scene scene = sheet(3);
   const Values plain = measure_at_rest(scene, scene.start);

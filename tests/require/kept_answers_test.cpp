@@ -60,6 +60,9 @@ TEST(KeptQuantities, HaveToleranceByTheirKind) {
   EXPECT_DOUBLE_EQ(tolerance("stretch.max:0.3"), 0.3);
   EXPECT_DOUBLE_EQ(tolerance("energy.mean"), 0.05);
   EXPECT_DOUBLE_EQ(tolerance("jitter.rms"), 0.02);
+  EXPECT_DOUBLE_EQ(tolerance("stretch.max"), 0.01) << "a point";
+  EXPECT_DOUBLE_EQ(tolerance("shape"), 0.01 * size);
+  EXPECT_EQ(tolerance("tunnelling.count"), 0);
   EXPECT_EQ(tolerance("tunnelling.count:2"), 2);
   EXPECT_EQ(tolerance("shape:0"), 0);
   const auto wrong = [&](const std::string& asked) -> std::string {

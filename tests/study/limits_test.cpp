@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/model/input_error.hpp"
 #include "experiments/case/case.hpp"
 
@@ -51,6 +53,22 @@ TEST(Limits, AreSharesOfTheSceneOrNumbersInUnits) {
             "--keep energy.mean:5%: expected a number of at least 0 after ':'")
       << "5 % of what the case has not yet";
   EXPECT_TRUE(wrong("penetration.peak:1s").ends_with(" after ':' and then 'mm', '%' or nothing"));
+}
+
+TEST(Limits, DependOnWhatAValueIsAndNotOnHowItIsShown) {
+  using Kind = Unit::Kind;
+  const Scene ball = scene_of("ball");
+  EXPECT_EQ(hundred_percent({Kind::length, "cm", "in"}, ball), extent(ball));
+  EXPECT_EQ(hundred_percent({Kind::time, "h", "min"}, ball), ball.duration());
+  for (const bool logarithmic : {true, false}) {
+    EXPECT_EQ(hundred_percent({Kind::share, "1", "per mille", 1e3, logarithmic}, ball), 1);
+    EXPECT_TRUE(std::isnan(hundred_percent({Kind::count, "1", "%", 100, logarithmic}, ball)));
+    EXPECT_TRUE(std::isnan(hundred_percent({Kind::other, "m", "%", 100, logarithmic}, ball)));
+  }
+  EXPECT_DOUBLE_EQ(number_of_kept("v:5%", {Kind::other, "V", "%", 100}, 8), 0.4)
+      << "5 % of what 100 % is";
+  EXPECT_THROW(number_of_kept("v:5 per mille", {Kind::share, "1", " per mille", 1e3}, 1),
+               InputError);
 }
 
 TEST(Limits, ThatACaseGoesBeyondAreNamed) {

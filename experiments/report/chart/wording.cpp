@@ -78,7 +78,7 @@ const SolverEntry* find_entry(std::string_view solver) {
 }
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr Unit kCost{"s", "ms", 1e3, true, true};
+constexpr Unit kCost{Unit::Kind::time, "s", "ms", 1e3, true, true};
 
 /// What is neither a record's field nor a metric's value: settings and costs.
 struct Titled {
@@ -100,11 +100,11 @@ constexpr std::array kTitles{
            "root mean square over the vertices, after so many iterations of one step"},
     Titled{"step.gap",
            "share of the gap that is left",
-           {"1", "", 1, true, true},
+           {Unit::Kind::other, "1", "", 1, true, true},
            "(G - G*) / (G_0 - G*) of springs; of rigid links the square of the distance over that "
            "of the prediction, weighted by mass"},
     Titled{"step.stretch", "RMS of length - rest length", kErrorLength},
-    Titled{"step.residual", "|gradient of G|", {"N", "N", 1, true, true}},
+    Titled{"step.residual", "|gradient of G|", {Unit::Kind::other, "N", "N", 1, true, true}},
     Titled{"cloth.weights.0.factor", "mass ratio", kNumber},
 };
 
@@ -172,7 +172,7 @@ std::optional<Quantity> parameter_quantity(std::string_view name, std::string_vi
     if (!solver.empty() && entry->name != solver) continue;
     for (const ParamSpec& spec : entry->params) {
       if (spec.name != own_parameter(entry->name, name)) continue;
-      const Unit unit = spec.unit.empty() ? kNumber : Unit{spec.unit, spec.unit};
+      const Unit unit = spec.unit.empty() ? kNumber : Unit{Unit::Kind::other, spec.unit, spec.unit};
       if (!found) found = {std::string(name), std::string(spec.name), unit, std::string(spec.help)};
       if (found->unit.si != unit.si) found->unit = kNumber;
       if (found->help != spec.help) found->help.clear();

@@ -12,7 +12,8 @@ Unit unit_of(const FrontierQuestion& question) {
   if (question.of == "dt") return kTime;
   const SolverChoice choice = parse_solver(question.base.solver);
   for (const ParamSpec& spec : choice.entry->params)
-    if (spec.name == question.of && !spec.unit.empty()) return {spec.unit, spec.unit};
+    if (spec.name == question.of && !spec.unit.empty())
+      return {Unit::Kind::other, spec.unit, spec.unit};
   return kNumber;
 }
 
