@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "experiments/case/record_io.hpp"
 #include "experiments/results/database.hpp"
@@ -14,7 +16,16 @@ namespace taut {
 
 namespace {
 
+using Kind = Changing::Kind;
+
 constexpr std::size_t kNone = std::string::npos;
+
+/// Names of what is no metric's value; of costs the same as in reports of `taut bench`.
+constexpr std::pair<Kind, std::string_view> kNamed[] = {
+    {Kind::status, "status"}, {Kind::cpu, "cpu.per_step"}, {Kind::wall, "wall.per_step"}};
+
+/// The cost that a stored ratio is of.
+Kind kind_of(const BuildRatio& ratio) { return ratio.clock == "cpu" ? Kind::cpu : Kind::wall; }
 
 MetricValues values_of(Database& database, std::int64_t case_id,
                        const std::map<std::int64_t, std::string>& names) {
@@ -57,11 +68,9 @@ void read_rows(Database& database, History& history) {
     row.solver = one.text(8);
     std::shared_ptr<const HistoryPoint>& point = known[one.text(4)];
     if (!point) {
-      HistoryPoint fresh{one.text(2), one.text(5), false, {}};
-      const Status status{status_kind(fresh.status), StatusReason::stored(one.text(6))};
-      fresh.completed = completed(status);
-      fresh.status = describe(status);
-      if (fresh.completed) fresh.values = values_of(database, one.integer(3), names);
+      HistoryPoint fresh{
+          one.text(2), {status_kind(one.text(5)), StatusReason::stored(one.text(6))}, {}};
+      if (completed(fresh.status)) fresh.values = values_of(database, one.integer(3), names);
       point = std::make_shared<const HistoryPoint>(std::move(fresh));
     }
     row.points[at->second] = point;
@@ -79,13 +88,18 @@ void add_value_steps(History& history, const Tolerances& tolerances) {
       ++history.compared;
       if (row.points[was] == row.points[now]) continue;
       const HistoryPoint &a = *row.points[was], &b = *row.points[now];
-      if (a.status != b.status)
-        history.steps.push_back({r, was, now, "status", 0, 0, a.status + " to " + b.status,
-                                 std::numeric_limits<double>::infinity()});
-      if (!a.completed || !b.completed) continue;
+      if (!ended_alike(a, b))
+        history.steps.push_back(
+            {r, was, now, {Kind::status}, 0, 0, std::numeric_limits<double>::infinity()});
+      if (!completed(a.status) || !completed(b.status)) continue;
       for (const ComparedValue& one : compare_values(a.values, b.values, tolerances))
         if (one.kind == ComparedValue::Kind::moved)
-          history.steps.push_back({r, was, now, one.value, one.before, one.now, "",
+          history.steps.push_back({r,
+                                   was,
+                                   now,
+                                   {Kind::value, one.value},
+                                   one.before,
+                                   one.now,
                                    relative_change(one.before, one.now)});
     }
   }
@@ -120,8 +134,7 @@ void add_cost_steps(History& history) {
     if (!are_neighbours(history.rows[row], before, now)) continue;
     ++history.compared;
     if (cost_step(history.ratios, one.id, one.before, one.now) == &one)
-      history.steps.push_back(
-          {row, before, now, one.clock + ".per_step", 1, one.ratio, "", one.ratio - 1});
+      history.steps.push_back({row, before, now, {kind_of(one)}, 1, one.ratio, one.ratio - 1});
   }
 }
 
@@ -135,12 +148,27 @@ void leave_out_unsound(const Store& store, History& history) {
   };
   std::erase_if(history.steps, [&](const HistoryStep& step) {
     const HistoryRow& row = history.rows[step.row];
-    return !step.of_time() &&
+    return !step.what.is_cost() &&
            (!is_sound(row.points[step.before]->key) || !is_sound(row.points[step.now]->key));
   });
 }
 
 }  // namespace
+
+bool ended_alike(const HistoryPoint& a, const HistoryPoint& b) {
+  return a.status.kind == b.status.kind && a.status.reason == b.status.reason;
+}
+
+std::string Changing::name() const {
+  const auto at = std::ranges::find(kNamed, kind, &std::pair<Kind, std::string_view>::first);
+  return at == std::end(kNamed) ? metric : std::string(at->second);
+}
+
+Changing changing(std::string_view name) {
+  for (const auto& [kind, text] : kNamed)
+    if (text == name) return {kind};
+  return {Kind::value, std::string(name)};
+}
 
 const BuildRatio* cost_step(const std::vector<BuildRatio>& all, const std::string& id,
                             const std::string& before, const std::string& now) {
@@ -149,7 +177,7 @@ const BuildRatio* cost_step(const std::vector<BuildRatio>& all, const std::strin
     if (one.id != id || one.before != before || one.now != now) continue;
     const bool differs = beyond_both({one.low, one.ratio, one.high},
                                      {one.control_low, one.control, one.control_high});
-    if (differs && (!found || one.clock == "cpu")) found = &one;
+    if (differs && (!found || kind_of(one) == Kind::cpu)) found = &one;
   }
   return found;
 }

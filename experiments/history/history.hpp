@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/model/status.hpp"
 #include "experiments/case/comparison.hpp"
 #include "experiments/results/builds.hpp"
 
@@ -14,11 +16,26 @@ class Store;
 
 /// Result of a build for a case. Builds whose results agree to the bit share one point.
 struct HistoryPoint {
-  std::string key;         ///< key of a stored case with this result
-  std::string status;      ///< "ok", "exploded (energy)"
-  bool completed = false;  ///< whether its values may be compared
-  MetricValues values;
+  std::string key;      ///< key of a stored case with this result
+  Status status;        ///< without step and vertex
+  MetricValues values;  ///< none unless it completed(), since others are not compared
 };
+/// Whether two results ended in the same way: status and reason.
+bool ended_alike(const HistoryPoint&, const HistoryPoint&);
+
+/// What may change between builds: how a case ends, a value, or the cost of a step.
+struct Changing {
+  enum class Kind { value, status, cpu, wall };
+  Kind kind = Kind::value;
+  std::string metric = {};  ///< name of the value, "stretch.rms"; "" for other kinds
+
+  bool is_cost() const { return kind == Kind::cpu || kind == Kind::wall; }
+  /// As tables and `--bisect` name it: "stretch.rms", "status", "cpu.per_step", "wall.per_step".
+  std::string name() const;
+  auto operator<=>(const Changing&) const = default;
+};
+/// Inverse of Changing::name(); every other name is taken for a value's.
+Changing changing(std::string_view name);
 
 /// A case of a study, across builds.
 struct HistoryRow {
@@ -34,11 +51,9 @@ struct HistoryStep {
   std::size_t row = 0;
   /// Indices of builds; builds between them have no result for the case.
   std::size_t before = 0, now = 0;
-  std::string value;       ///< "stretch.rms", "status", "cpu.per_step", "wall.per_step"
-  double was = 0, is = 0;  ///< SI; for a cost, 1 and the ratio
-  std::string text;        ///< for a status: "ok to exploded (energy)"
-  double relative = 0;     ///< relative_change()
-  bool of_time() const { return value.ends_with(".per_step"); }
+  Changing what;
+  double was = 0, is = 0;  ///< SI; for a cost, 1 and the ratio; 0 for a status
+  double relative = 0;     ///< relative_change(); infinite for a status
 };
 
 struct History {

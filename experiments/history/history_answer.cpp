@@ -9,11 +9,14 @@
 #include "core/model/text.hpp"
 #include "experiments/answer/number.hpp"
 #include "experiments/baseline/baseline.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
 
 namespace {
+
+using Kind = Changing::Kind;
 
 constexpr std::size_t kMostRows = 12;  ///< rows shown to people unless they ask for all
 
@@ -41,15 +44,17 @@ const BuildRatio* ratio_of(const History& history, const HistoryStep& step) {
 
 std::string what_happened(const History& history, const HistoryStep& step) {
   const std::string of = " of " + history.rows[step.row].id;
-  if (step.value == "status") return "the status" + of + " went from " + step.text;
-  if (const BuildRatio* ratio = step.of_time() ? ratio_of(history, step) : nullptr)
-    return std::string(ratio->clock == "cpu" ? "CPU time" : "wall time alone") + of +
+  if (step.what.kind == Kind::status)
+    return "the status" + of + " went from " + status_change(history, step);
+  if (const BuildRatio* ratio = step.what.is_cost() ? ratio_of(history, step) : nullptr)
+    return std::string(step.what.kind == Kind::cpu ? "CPU time" : "wall time alone") + of +
            (step.is > 1 ? " rose to " : " fell to ") +
            interval_text({ratio->low, ratio->ratio, ratio->high}) + " times what it was";
+  const std::string value = step.what.name();
   if (std::isnan(step.was) || std::isnan(step.is))
-    return step.value + of + (std::isnan(step.is) ? " lost its meaning" : " got a meaning");
-  return step.value + of + (step.is > step.was ? " rose from " : " fell from ") +
-         from_to(step.value, step.was, step.is);
+    return value + of + (std::isnan(step.is) ? " lost its meaning" : " got a meaning");
+  return value + of + (step.is > step.was ? " rose from " : " fell from ") +
+         from_to(value, step.was, step.is);
 }
 
 /// The build of a step. Builds just before it that have no result may be its cause as well.
@@ -83,8 +88,8 @@ Table table_of_steps(const History& history) {
     Cell sentence(one.sentence);
     if (row.points[step.now]) sentence.key = row.points[step.now]->key;
     table.rows.push_back({sentence, one.cases, step.relative, build.id, build.made, build.subject,
-                          history.builds[step.before].id, row.id, row.solver, step.value, step.was,
-                          step.is});
+                          history.builds[step.before].id, row.id, row.solver, step.what.name(),
+                          step.was, step.is});
   }
   table.most = kMostRows;
   return table;
@@ -131,14 +136,15 @@ Table table_of_rows(const History& history, const std::string& value) {
       if (!point) continue;
       ++builds;
       const auto at = point->values.find(value);
-      Cell cell = at != point->values.end() ? Cell(at->second)
-                                            : Cell::lacking(Cell::State::none, point->status);
+      Cell cell = at != point->values.end()
+                      ? Cell(at->second)
+                      : Cell::lacking(Cell::State::none, describe(point->status));
       cell.key = point->key;
       if (builds == 1) first = cell;
       last = cell;
     }
     const auto steps = std::ranges::count_if(history.steps, [&](const HistoryStep& step) {
-      return step.row == r && (step.value == value || step.value == "status");
+      return step.row == r && (step.what == changing(value) || step.what.kind == Kind::status);
     });
     table.rows.push_back({row.id, first, last, builds, steps});
   }
@@ -158,7 +164,7 @@ Table table_of_values(const History& history, const std::string& value) {
         const auto at = point->values.find(value);
         table.rows.push_back({history.builds[i].id, history.builds[i].made, row.id,
                               at == point->values.end() ? Cell() : Cell(at->second),
-                              point->status});
+                              describe(point->status)});
       }
   table.detail = true;
   return table;
@@ -183,14 +189,19 @@ std::string short_build(const std::string& id) {
   return commit ? id.substr(0, 10) : id;
 }
 
+std::string status_change(const History& history, const HistoryStep& step) {
+  const auto& points = history.rows[step.row].points;
+  return describe(points[step.before]->status) + " to " + describe(points[step.now]->status);
+}
+
 std::vector<SteppedValue> stepped_values(const History& history) {
   std::set<std::string_view> roles;
   for (const ValueSpec* value : values_with_role()) roles.insert(value->name);
   std::vector<SteppedValue> all;
-  std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> place;
+  std::map<std::tuple<std::size_t, Changing, std::string>, std::size_t> place;
   for (const HistoryStep& step : history.steps) {
     const auto [at, fresh] =
-        place.try_emplace({step.now, step.value, history.rows[step.row].solver}, all.size());
+        place.try_emplace({step.now, step.what, history.rows[step.row].solver}, all.size());
     if (fresh) all.push_back({&step, 0, ""});
     ++all[at->second].cases;
   }
@@ -202,8 +213,17 @@ std::vector<SteppedValue> stepped_values(const History& history) {
   }
   // order: statuses, costs, values that answer a question, other values
   std::ranges::stable_sort(all, {}, [&](const SteppedValue& one) {
-    const HistoryStep& step = *one.largest;
-    return step.value == "status" ? 0 : step.of_time() ? 1 : roles.contains(step.value) ? 2 : 3;
+    const Changing& what = one.largest->what;
+    switch (what.kind) {
+      case Kind::status:
+        return 0;
+      case Kind::cpu:
+      case Kind::wall:
+        return 1;
+      case Kind::value:
+        break;
+    }
+    return roles.contains(what.metric) ? 2 : 3;
   });
   return all;
 }
@@ -213,8 +233,8 @@ Answer answer_of(const History& history, const std::string& value) {
   std::size_t gaps = 0;
   for (std::size_t i = 0; i < history.builds.size(); ++i)
     gaps += history.is_gap(i) || history.missing(i) > 0;
-  const auto values =
-      std::ranges::count_if(history.steps, [](const HistoryStep& step) { return !step.of_time(); });
+  const auto values = std::ranges::count_if(
+      history.steps, [](const HistoryStep& step) { return !step.what.is_cost(); });
   answer.add({"builds"}, history.builds.size());
   answer.add({"gaps", "builds without all results"}, gaps);
   answer.add({"cases"}, history.rows.size());

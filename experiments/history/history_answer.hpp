@@ -11,6 +11,9 @@ namespace taut {
 /// Short form of a commit's hash, "3f2a9c1d0e"; any other id is returned unchanged.
 std::string short_build(const std::string& id);
 
+/// What happened to a status in a step: "ok to exploded (energy)".
+std::string status_change(const History&, const HistoryStep&);
+
 /// Steps of one value of one solver at one build, with a sentence: "stretch.rms of hang rose from
 /// 2.1 to 2.6 % at 3f2a9c1d0e (2026-05-04)".
 struct SteppedValue {

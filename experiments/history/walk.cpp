@@ -15,6 +15,7 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/history/history_answer.hpp"
 #include "experiments/results/store.hpp"
 #include "experiments/results/store_error.hpp"
@@ -61,7 +62,8 @@ class Walker {
         repository_(asked.repository),
         line_(repository_.line(asked.range)),
         file_(find_study(asked.study)),
-        name_(study_name(asked.study)) {
+        name_(study_name(asked.study)),
+        bisected_(changing(asked.bisect)) {
     walked_.study = name_;
     digest_ = sha256(join(std::vector<std::string>{file_.string(), asked.preset, asked.build,
                                                    asked.solver, asked.taut, read_text(file_)},
@@ -82,7 +84,7 @@ class Walker {
 
  private:
   bool of_solver() const { return !asked_.solver.empty(); }
-  bool of_cost() const { return asked_.bisect.ends_with(".per_step"); }
+  bool of_cost() const { return bisected_.is_cost(); }
   bool timed() const { return asked_.speed || of_cost(); }
   fs::path kept_program(const Build& commit) const {
     return store_.root() / "builds" / commit.id / "taut";
@@ -329,8 +331,8 @@ class Walker {
   bool choose_value(const Build& last) {
     const History history = ends(last);
     for (const HistoryStep& step : history.steps)
-      if (step.value == asked_.bisect ||
-          (step.value == "status" && !history.rows[step.row].points[step.now]->completed)) {
+      if (step.what == bisected_ || (step.what.kind == Changing::Kind::status &&
+                                     !completed(history.rows[step.row].points[step.now]->status))) {
         timed_ = history.rows[step.row].id;
         if (of_solver()) only_ = timed_;
         return true;
@@ -352,7 +354,7 @@ class Walker {
     if (of_solver()) only_ = timed_;
     return true;
   }
-  bool of_wall() const { return asked_.bisect == "wall.per_step"; }
+  bool of_wall() const { return bisected_.kind == Changing::Kind::wall; }
   /// Logarithm of a build's cost relative to the first one.
   double cost_of(const TwoBuilds& one) const {
     return std::log((of_wall() ? one.wall : one.cpu).mid);
@@ -368,11 +370,12 @@ class Walker {
     const History history = ends(commit);
     const HistoryPoint *a = point_of(history, line_[0].id), *b = point_of(history, commit.id);
     if (!a || !b) return false;
-    if (a->status != b->status) return true;
-    return std::ranges::any_of(
-        compare_values(a->values, b->values, tolerances_), [&](const ComparedValue& one) {
-          return one.value == asked_.bisect && one.kind == ComparedValue::Kind::moved;
-        });
+    if (!ended_alike(*a, *b)) return true;
+    return std::ranges::any_of(compare_values(a->values, b->values, tolerances_),
+                               [&](const ComparedValue& one) {
+                                 return Changing{Changing::Kind::value, one.value} == bisected_ &&
+                                        one.kind == ComparedValue::Kind::moved;
+                               });
   }
 
   const Walk& asked_;
@@ -381,6 +384,7 @@ class Walker {
   std::vector<Build> line_;
   std::filesystem::path file_;  ///< file of the study
   std::string name_;            ///< name of the study
+  Changing bisected_;           ///< what a bisection looks for
   bool any_ran_ = false;        ///< whether any commit has run the study
 
   Tolerances tolerances_;

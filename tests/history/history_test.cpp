@@ -80,8 +80,39 @@ TEST_F(Histories, ACaseThatFailsStepsInItsStatusAlone) {
   build("two", 0.5, {Status::Kind::exploded, Reason::energy, 3});
   const History found = history();
   ASSERT_EQ(found.steps.size(), 1U);
-  EXPECT_EQ(found.steps[0].value, "status");
-  EXPECT_EQ(found.steps[0].text, "ok to exploded (energy)");
+  EXPECT_EQ(found.steps[0].what.kind, Changing::Kind::status);
+  EXPECT_EQ(status_change(found, found.steps[0]), "ok to exploded (energy)");
+  EXPECT_EQ(stepped_values(found)[0].sentence,
+            "the status of hang a went from ok to exploded (energy) at two (2026-05-02)");
+}
+
+TEST_F(Histories, AStatusIsItsKindAndItsReason) {
+  const Status::Kind exploded = Status::Kind::exploded;
+  build("one", 0.02, {exploded, "energy", 3});
+  build("two", 0.03, {exploded, "energy", 4});
+  build("three", 0.03, {exploded, "nonfinite", 4});
+  build("four", 0.03, {Status::Kind::extreme, "nonfinite", 4});
+  const History found = history();
+  ASSERT_EQ(found.steps.size(), 2U) << "not the step at which it happened";
+  EXPECT_EQ(status_change(found, found.steps[0]), "exploded (energy) to exploded (nonfinite)");
+  EXPECT_EQ(status_change(found, found.steps[1]), "exploded (nonfinite) to extreme (nonfinite)");
+}
+
+// Whatever a metric will be called, its value is no cost.
+TEST(Changes, HaveTheNamesThatAreTyped) {
+  using Kind = Changing::Kind;
+  for (const auto& [name, kind] : {std::pair{"status", Kind::status},
+                                   {"cpu.per_step", Kind::cpu},
+                                   {"wall.per_step", Kind::wall},
+                                   {"stretch.rms", Kind::value},
+                                   {"slip.per_step", Kind::value}}) {
+    const Changing what = changing(name);
+    EXPECT_EQ(what.kind, kind) << name;
+    EXPECT_EQ(what.name(), name);
+    EXPECT_EQ(what.is_cost(), kind == Kind::cpu || kind == Kind::wall) << name;
+    EXPECT_EQ(what.metric.empty(), kind != Kind::value) << name;
+  }
+  EXPECT_NE(changing("stretch.rms"), changing("stretch.max"));
 }
 
 TEST_F(Histories, OnlyTheBuildsThatAreAskedForAreLookedAt) {
@@ -110,6 +141,7 @@ TEST_F(Histories, ACostStepsBeyondIntervalAndControl) {
   const History found = history();
   ASSERT_EQ(found.steps.size(), 1U);
   EXPECT_EQ(found.builds[found.steps[0].now].id, "two");
+  EXPECT_EQ(found.steps[0].what.kind, Changing::Kind::cpu);
   EXPECT_EQ(stepped_values(found)[0].sentence,
             "CPU time of hang a rose to 2.1 (2.08 to 2.12) times what it was at two (2026-05-02)");
 }

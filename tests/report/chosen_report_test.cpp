@@ -300,8 +300,7 @@ TEST(Chosen, AHistoryHasALineForEachCase) {
   EXPECT_FALSE(model_of(input).contains("history"));
   const Record& now = input.studies[0].records[0];
   const auto point = [](const std::string& key, double stretch) {
-    return std::make_shared<const HistoryPoint>(
-        HistoryPoint{key, "ok", true, {{"stretch.rms", stretch}}});
+    return std::make_shared<const HistoryPoint>(HistoryPoint{key, {}, {{"stretch.rms", stretch}}});
   };
   History history{"s",
                   {{"one", "2026-01-01"}, {"two", "2026-02-01"}, {"three", "2026-03-01"}},
@@ -314,7 +313,7 @@ TEST(Chosen, AHistoryHasALineForEachCase) {
                   {},
                   1};
   history.builds[1].gap = "does not build";
-  history.steps = {{0, 0, 2, "stretch.rms", 0.02, 0.03, "", 0.5}};
+  history.steps = {{0, 0, 2, {.metric = "stretch.rms"}, 0.02, 0.03, 0.5}};
   input.histories = {history};
   const Json found = model_of(input)["history"][0];
   EXPECT_EQ(found["rows"][0]["values"], (Json{0.02, nullptr, 0.03}));

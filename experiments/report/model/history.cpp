@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "experiments/case/record_io.hpp"
 #include "experiments/history/history_answer.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
@@ -16,12 +17,36 @@ constexpr std::size_t kMostBuilds = 200, kMostSentences = 20, kMostValues = 40;
 /// A case in a build: the key of its result, and its entry among the page's cases, if it has one.
 Json json_of_point(const HistoryPoint* point, const std::map<std::string, const Record*>& listed,
                    CaseList& refs) {
-  Json one{{"status", point ? point->status : "no result"}};
+  Json one{{"status", point ? describe(point->status) : "no result"}};
   if (!point) return one;
   one["key"] = point->key.substr(0, 12);
   if (const auto at = listed.find(point->key); at != listed.end())
     one["case"] = refs.key(*at->second);
   return one;
+}
+
+/// What changed in a step, as the page shows it.
+Json json_of_change(const History& history, const HistoryStep& step, CaseList& refs) {
+  const std::string name = step.what.name();
+  Json value{{"value", name}, {"title", name}};
+  switch (step.what.kind) {
+    case Changing::Kind::status:
+      value["text"] = status_change(history, step);
+      break;
+    case Changing::Kind::cpu:
+      value["title"] = "CPU time of a step";
+      value["text"] = number_text(step.is) + " times";
+      break;
+    case Changing::Kind::wall:
+      value["title"] = "wall time of a step";
+      value["text"] = number_text(step.is) + " times";
+      break;
+    case Changing::Kind::value:
+      value["title"] = refs.use(name).title;
+      value["text"] = number_text(step.was, unit_of_value(name), 4) + " -> " +
+                      number_text(step.is, unit_of_value(name), 4);
+  }
+  return value;
 }
 
 /// Steps of a case, by build: both builds and all values that stepped.
@@ -39,18 +64,7 @@ Json json_of_row_steps(const History& history, std::size_t row, std::size_t firs
              {"cases", Json::array({json_of_point(points[step.before].get(), listed, refs),
                                     json_of_point(points[step.now].get(), listed, refs)})}};
     if (one["values"].size() >= kMostValues) continue;
-    Json value{{"value", step.value}, {"title", step.value}};
-    if (step.value == "status")
-      value["text"] = step.text;
-    else if (step.of_time()) {
-      value["title"] = step.value == "cpu.per_step" ? "CPU time of a step" : "wall time of a step";
-      value["text"] = number_text(step.is) + " times";
-    } else {
-      value["title"] = refs.use(step.value).title;
-      value["text"] = number_text(step.was, unit_of_value(step.value), 4) + " -> " +
-                      number_text(step.is, unit_of_value(step.value), 4);
-    }
-    one["values"].push_back(std::move(value));
+    one["values"].push_back(json_of_change(history, step, refs));
   }
   Json all;
   for (auto& [build, one] : by_build) all.push_back(std::move(one));

@@ -35,7 +35,7 @@ std::string history_rows(const History& history, const std::string& value, doubl
       if (row.points[i] && row.points[i]->values.contains(value))
         number = scale * row.points[i]->values.at(value);
       const bool stepped = std::ranges::any_of(history.steps, [&](const HistoryStep& step) {
-        return step.row == r && step.now == i && step.value == value;
+        return step.row == r && step.now == i && step.what == changing(value);
       });
       csv += csv_field(row.id) + "," + std::to_string(r) + "," +
              csv_field(short_build(history.builds[i].id)) + "," + std::to_string(i) + "," +
