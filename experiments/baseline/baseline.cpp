@@ -67,7 +67,7 @@ class RowComparison {
       return;
     }
     if (before.projections != now.projections)
-      move("projections", static_cast<double>(before.projections),
+      move(kProjections, static_cast<double>(before.projections),
            static_cast<double>(now.projections),
            "projections per step " + std::to_string(before.projections) + " -> " +
                std::to_string(now.projections));
@@ -262,12 +262,35 @@ std::string junit(const std::string& study, const Baseline& now, const Compariso
 
 double MovedValue::relative() const { return relative_change(largest->before, largest->now); }
 
+std::string MovedGroup::title() const {
+  switch (kind) {
+    case Kind::status:
+      return "status";
+    case Kind::projections:
+      return kProjections;
+    case Kind::titled:
+      return value_title;
+    case Kind::others:
+      break;
+  }
+  return "other values";
+}
+
+MovedGroup group_of(const Change& change,
+                    const std::function<std::string(const std::string&)>& title_of) {
+  using Kind = MovedGroup::Kind;
+  if (change.kind == Change::Kind::status_changed) return {Kind::status};
+  if (change.value == kProjections) return {Kind::projections};
+  const std::string title = title_of(change.value);
+  return title.empty() ? MovedGroup{Kind::others} : MovedGroup{Kind::titled, title};
+}
+
 std::vector<MovedValue> roll_up(const Comparison& comparison,
-                                const std::function<std::string(const std::string&)>& group_of) {
+                                const std::function<std::string(const std::string&)>& title_of) {
   std::vector<MovedValue> all;
   for (const Change& c : comparison.findings) {
     if (!c.is_regression()) continue;
-    const std::string group = group_of(c.value);
+    const MovedGroup group = group_of(c, title_of);
     auto at = std::ranges::find_if(
         all, [&](const MovedValue& m) { return m.solver == c.solver && m.group == group; });
     if (at == all.end()) at = all.insert(all.end(), MovedValue{c.solver, group});

@@ -43,6 +43,9 @@ const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullp
 /// keeps only parameters that differ from their defaults, so that a new parameter changes no row.
 BaselineRow baseline_row(const Record&, const std::string& scene);
 
+/// Name of the number of projections among a row's values, of which it is none.
+inline constexpr const char* kProjections = "projections";
+
 /// A difference between a baseline and the results of a run.
 struct Change {
   enum class Kind {
@@ -65,7 +68,7 @@ struct Change {
   std::string id;      ///< id of the case; empty for a solver
   std::string solver;  ///< name
   std::string text;    ///< one line: old -> new
-  /// Of a moved value: the scene's name and the value's name, or "status".
+  /// Of a moved value: the scene's name and the value's name, kProjections or "status".
   std::string scene = {}, value = {};
   double before = 0, now = 0;  ///< of a moved value, in its unit; NaN: meaningless
   bool is_regression() const { return kind <= Kind::status_changed; }
@@ -85,9 +88,24 @@ struct Comparison {
   bool mismatched() const;
 };
 
-/// How a value or group of values moved, over all cases of a solver.
+/// What a regression is counted with.
+struct MovedGroup {
+  enum class Kind { status, projections, titled, others };
+  Kind kind = Kind::others;
+  std::string value_title = {};  ///< of the kind `titled`, whose values have a title of their own
+
+  /// What people read: "status", "projections", "RMS stretch", "other values".
+  std::string title() const;
+  bool operator==(const MovedGroup&) const = default;
+};
+/// The group of a regression. `title_of` returns a value's own title; "" if it counts among the
+/// other values.
+MovedGroup group_of(const Change&, const std::function<std::string(const std::string&)>& title_of);
+
+/// How a group of values moved, over all cases of a solver.
 struct MovedValue {
-  std::string solver, group;  ///< name of a value or of a group of values, or "status"
+  std::string solver;
+  MovedGroup group;
   std::size_t cases = 0;
   std::size_t less = 0, more = 0;   ///< how many are now below, above the old value
   const Change* largest = nullptr;  ///< by relative change; points into the comparison
@@ -98,9 +116,9 @@ struct MovedValue {
 };
 
 /// Counts changed statuses and moved values by solver and group, in the order of their first
-/// change. `group_of` returns the group of a value's name.
+/// change. For `title_of` see group_of().
 std::vector<MovedValue> roll_up(const Comparison&,
-                                const std::function<std::string(const std::string&)>& group_of);
+                                const std::function<std::string(const std::string&)>& title_of);
 
 /// Command that runs a case in the foreground: "taut case hang jakobsen:iterations=8 --set ...".
 std::string reproduce(const CaseSpec&);

@@ -42,25 +42,14 @@ CheckEnd end_of(const BaselineStudy& study, const Comparison& comparison) {
 }
 
 constexpr std::size_t kMostRows = 12;  ///< moved values printed unless all are asked for
-constexpr const char* kOthers = "other values";
 
-/// Returns the name of the row in which a moved value is counted.
-using GroupOf = std::function<std::string(const std::string& value)>;
-
-GroupOf groups_of(const BaselineOptions& options) {
-  return [&](const std::string& value) {
-    if (value == "status" || value == "projections") return value;
-    const std::string title = options.title(value);
-    return title.empty() ? std::string(kOthers) : title;
-  };
-}
-
-/// The largest change: "strip, 2.64 -> 2.81 %".
-std::string largest_text(const Change& change, const GroupOf& group_of) {
+/// The largest change of a group: "strip, 2.64 -> 2.81 %".
+std::string largest_text(const MovedValue& moved) {
+  const Change& change = *moved.largest;
   const Unit unit = unit_of_value(change.value);
   std::string text = change.scene;
-  if (change.kind == Change::Kind::status_changed) return text + ", " + change.text;
-  if (group_of(change.value) == kOthers) text += " " + change.value;
+  if (moved.group.kind == MovedGroup::Kind::status) return text + ", " + change.text;
+  if (moved.group.kind == MovedGroup::Kind::others) text += " " + change.value;
   const auto number = [&](int digits) {
     return std::pair(number_text(change.before * unit.scale, digits),
                      number_text(change.now * unit.scale, digits));
@@ -75,7 +64,7 @@ std::string largest_text(const Change& change, const GroupOf& group_of) {
 /// Collects the comparisons of studies.
 class Report {
  public:
-  explicit Report(const BaselineOptions& options) : group_of_(groups_of(options)) {}
+  explicit Report(const BaselineOptions& options) : title_of_(options.title) {}
   /// `typed`: the study as the user named it.
   void add(const std::string& typed, const BaselineStudy& study, const Comparison& comparison,
            CheckEnd end) {
@@ -107,6 +96,7 @@ class Report {
     Answer all{"check"};
     add_compared(all, cases_, values_);
     findings_.detail = true;
+    fill_moved();
     for (Table* table : {&studies_, &findings_, &not_run_, &mismatches_, &moved_})
       all.add(std::move(*table));
     if (!accept_.empty()) all.tables.back().caption = "if this was meant to change: " + accept_;
@@ -115,20 +105,28 @@ class Report {
 
  private:
   void add_moved(const BaselineStudy& study, const Comparison& comparison) {
-    for (const MovedValue& m : roll_up(comparison, group_of_)) {
-      const bool judged = m.group != kOthers && unit_of_value(m.largest->value).less_is_better;
-      const auto number = [&](std::size_t n) { return m.group == "status" ? Cell() : Cell(n); };
-      moved_.rows.push_back({study.name, m.solver, m.group, m.cases, number(m.less), number(m.more),
-                             largest_text(*m.largest, group_of_), m.relative(),
-                             judged ? "less is better" : "", m.largest->id});
+    for (const MovedValue& m : roll_up(comparison, title_of_)) {
+      const bool of_status = m.group.kind == MovedGroup::Kind::status;
+      const bool judged = m.group.kind != MovedGroup::Kind::others &&
+                          unit_of_value(m.largest->value).less_is_better;
+      const auto number = [&](std::size_t n) { return of_status ? Cell() : Cell(n); };
+      moved_rows_.push_back(
+          {m.group.kind,
+           m.relative(),
+           {study.name, m.solver, m.group.title(), m.cases, number(m.less), number(m.more),
+            largest_text(m), m.relative(), judged ? "less is better" : "", m.largest->id}});
     }
-    // statuses first, then the largest changes
-    std::ranges::stable_sort(moved_.rows, {}, [](const std::vector<Cell>& row) {
-      constexpr double kMost = std::numeric_limits<double>::infinity();
-      const double relative = std::abs(row[7].number());
-      return std::pair(row[2].text() != "status", std::isnan(relative) ? -kMost : -relative);
-    });
     moved_.most = kMostRows;
+  }
+  /// Statuses first, then the largest changes.
+  void fill_moved() {
+    std::ranges::stable_sort(moved_rows_, {}, [](const MovedRow& row) {
+      constexpr double kMost = std::numeric_limits<double>::infinity();
+      return std::pair(row.kind != MovedGroup::Kind::status,
+                       std::isnan(row.relative) ? -kMost : -std::abs(row.relative));
+    });
+    for (MovedRow& row : moved_rows_) moved_.rows.push_back(std::move(row.cells));
+    moved_rows_.clear();
   }
   /// Adds cases and solvers without a counterpart, one row for each kind and solver.
   void add_mismatches(const BaselineStudy& study, const Comparison& comparison) {
@@ -147,7 +145,14 @@ class Report {
     mismatches_.most = kMostRows / 2;
   }
 
-  GroupOf group_of_;
+  /// A row of the table of what moved, and what it is sorted by.
+  struct MovedRow {
+    MovedGroup::Kind kind;
+    double relative;
+    std::vector<Cell> cells;
+  };
+  std::function<std::string(const std::string& value)> title_of_;
+  std::vector<MovedRow> moved_rows_;
   std::size_t cases_ = 0, values_ = 0;
   std::string accept_;
   Table studies_{"studies",

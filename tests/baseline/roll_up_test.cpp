@@ -39,15 +39,38 @@ TEST(RollUp, NamesTheLargestChangeOfASolversValues) {
   const auto all = rolled(comparison);
   ASSERT_EQ(all.size(), 4u);
   const auto& [solver, group, cases, less, more, largest] = all[0];
-  EXPECT_EQ((std::tuple(solver, group, cases, less, more)),
+  EXPECT_EQ((std::tuple(solver, group.title(), cases, less, more)),
             (std::tuple(std::string("xpbd"), std::string("stretch"), std::size_t{2}, std::size_t{1},
                         std::size_t{1})));
   EXPECT_EQ(largest, &comparison.findings[1]);
   EXPECT_NEAR(all[0].relative(), -0.02, 1e-12);
   EXPECT_DOUBLE_EQ(all[1].relative(), 0.5) << "a share of the size of what was";
   EXPECT_DOUBLE_EQ(all[2].relative(), 1);
-  EXPECT_EQ(all[3].group, "status");
+  EXPECT_EQ(all[3].group.kind, MovedGroup::Kind::status);
+  EXPECT_EQ(all[3].group.title(), "status");
   EXPECT_EQ(all[3].cases, 2u);
+}
+
+// Titles are for people: a value that is called like a group is not counted in it.
+TEST(RollUp, GroupsAreNoTitles) {
+  using Kind = MovedGroup::Kind;
+  const auto group = [](const Change& change, const char* title) {
+    return group_of(change, [&](const std::string&) { return std::string(title); });
+  };
+  const Change of_value = moved("xpbd", "a", 1, 2), of_work = moved("xpbd", kProjections, 1, 2);
+  Change of_status = moved("xpbd", "status", 0, 0);
+  of_status.kind = Change::Kind::status_changed;
+  EXPECT_EQ(group(of_status, "RMS stretch").kind, Kind::status);
+  EXPECT_EQ(group(of_work, "").kind, Kind::projections);
+  EXPECT_EQ(group(of_value, "").title(), "other values");
+  for (const char* title : {"status", "projections", "other values"}) {
+    const MovedGroup titled = group(of_value, title);
+    EXPECT_EQ(titled.kind, Kind::titled);
+    EXPECT_EQ(titled.title(), title);
+    EXPECT_FALSE(titled == group(of_value, "")) << title;
+    EXPECT_FALSE(titled == group(of_status, title)) << title;
+    EXPECT_FALSE(titled == group(of_work, title)) << title;
+  }
 }
 
 TEST(RollUp, FromNothingIsWorseThanAnyPerCent) {
