@@ -6,6 +6,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/truths/first_step.hpp"
+#include "experiments/truths/quoted.hpp"
 
 namespace taut {
 
@@ -20,8 +21,8 @@ TAUT_TRUTH(xpbd_fixed_point, 8, 26,
   const FirstStep step(s);
   const double end = step.distance(solver, 16384);
   findings.holds(solver, "16384 sweeps end more than a micrometre from it", end > 1e-6);
-  findings.equal(solver, "distance after 16384 over 8192 sweeps", "1",
-                 end / step.distance(solver, 8192), 1, 0.02);
+  findings.equal(solver, quoted::kRestOfXpbdSweeps, "1", end / step.distance(solver, 8192), 1,
+                 0.02);
   findings.below("implicit", "distance of Newton's method from it", "m",
                  step.distance("implicit", 100), 1e-9);
 }
@@ -36,11 +37,11 @@ TAUT_TRUTH(primal_residual, 8, 28,
   if (!can_run(findings, solver, s)) return;
   s.start = Simulation(s, "implicit", 32).state();
   const FirstStep step(s);
-  findings.equal(solver, "farthest vertex from it after 64 solutions, 32 x 32", "m",
-                 step.farthest(solver, 64), 1.2e-3, 0.2e-3);
+  findings.equal(solver, quoted::kRestOfXpbdSolutions, "m", step.farthest(solver, 64), 1.2e-3,
+                 0.2e-3);
   findings.equal(solver, "distance after 5 over 64 solutions", "1",
                  step.distance(solver, 5) / step.distance(solver, 64), 1, 0.02);
-  findings.below(solver + ",primal=on", "distance after 64 solutions", "m",
+  findings.below(solver + ",primal=on", quoted::kRestWithPrimalResidual, "m",
                  step.distance(solver + ",primal=on", 64), 1e-8);
 }
 
@@ -53,9 +54,9 @@ TAUT_TRUTH(lbfgs_factor, 8, 27,
   s.start = Simulation(s, "implicit", 32).state();
   const FirstStep step(s);
   const double plain = step.distance("pd", 10);
-  findings.equal("pd:method=lbfgs,history=0", "distance after ten iterations over pd's", "1",
+  findings.equal("pd:method=lbfgs,history=0", quoted::kLbfgsWithoutPairs, "1",
                  step.distance("pd:method=lbfgs,history=0", 10) / plain, 1, 1e-9);
-  findings.below("pd:method=lbfgs", "distance after 60 iterations over pd's", "1",
+  findings.below("pd:method=lbfgs", quoted::kLbfgsWithPairs, "1",
                  step.distance("pd:method=lbfgs", 60) / step.distance("pd", 60), 0.5);
 }
 
@@ -174,11 +175,12 @@ TAUT_TRUTH(integrator_damping, 8, 31,
                     swing.energy(swing.after(integrator, 200))) /
            (2 * 100 * angle);
   };
-  for (const double angle : {0.1, 0.2}) {
+  for (const auto& [angle, of_bdf2] :
+       {std::pair(0.1, quoted::kDampingOfBdf2), {0.2, "damping ratio over (w h)^3/4, w h = 0.2"}}) {
     const std::string of = ", w h = " + shortest(angle);
     findings.equal("implicit", "damping ratio over w h/2" + of, "1",
                    ratio("euler", angle) / (angle / 2), 1, 0.03);
-    findings.equal("implicit:integrator=bdf2", "damping ratio over (w h)^3/4" + of, "1",
+    findings.equal("implicit:integrator=bdf2", of_bdf2, "1",
                    ratio("bdf2", angle) / (std::pow(angle, 3) / 4), 1, 0.1);
     findings.below("implicit:integrator=midpoint", "damping ratio" + of, "1",
                    std::abs(ratio("midpoint", angle)), 1e-9);
@@ -199,8 +201,7 @@ TAUT_TRUTH(integrator_orders, 8, 32,
        {std::pair<std::string, double>{"euler", 1}, {"bdf2", 2}, {"midpoint", 2}})
     findings.equal("implicit:integrator=" + integrator, "order of the error, 128 and 256 steps",
                    "1", std::log2(error(integrator, 128) / error(integrator, 256)), order, 0.1);
-  findings.below("implicit:integrator=midpoint",
-                 "error over implicit Euler's, 64 steps of 1/64 rad", "1",
+  findings.below("implicit:integrator=midpoint", quoted::kErrorOfMidpointRule, "1",
                  error("midpoint", 64) / error("euler", 64), 0.1);
 }
 
@@ -215,7 +216,7 @@ TAUT_TRUTH(midpoint_stability, 8, 33,
   const auto strain = [&](const std::string& solver) {
     return rms_strain(s, Simulation(s, solver, 256).state());
   };
-  findings.holds(midpoint, "RMS strain after 4 s is above 1", strain(midpoint) > 1);
+  findings.holds(midpoint, quoted::kMidpointRuleFliesApart, strain(midpoint) > 1);
   for (const char* other : {"implicit", "implicit:integrator=bdf2"})
     findings.below(other, "RMS strain after 4 s", "1", strain(other), 1e-3);
 }

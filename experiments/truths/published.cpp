@@ -3,6 +3,7 @@
 
 #include "core/reference/fit.hpp"
 #include "core/reference/textbook.hpp"
+#include "experiments/truths/quoted.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -92,7 +93,7 @@ TAUT_TRUTH(xpbd_chain_force, 8, 3,
     Textbook<double> textbook(s, k);
     textbook.load(sim.state());
     textbook.step();
-    findings.equal(solver, "force of the top link of 20 at rest over the weight", "1",
+    findings.equal(solver, quoted::kForceOfTopLink, "1",
                    textbook.lambda()[0] / s.dt / s.dt / (20 * kG), 1, 1e-6);
   }
 }

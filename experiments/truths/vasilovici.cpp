@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/case/case.hpp"
+#include "experiments/truths/quoted.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -71,8 +72,7 @@ TAUT_TRUTH(box_halt, 8, 8,
   if (coarse.empty()) return;
   findings.equal(solver, "depth in a box at 1/64 s over that at 1/256 s", "1",
                  coarse["penetration.max"] / std::max(fine["penetration.max"], 1e-9), 5.6, 2.8);
-  findings.equal(solver, "largest acceleration at rest, 1/256 s: it pops", "m/s^2",
-                 fine["popping.max"], 320, 200);
+  findings.equal(solver, quoted::kPopOfHaltedCloth, "m/s^2", fine["popping.max"], 320, 200);
 }
 
 TAUT_TRUTH(octree_split, 8, 9, "an octree of boxes misses what collides across a split",

@@ -30,7 +30,8 @@ struct Assertion {
   std::string_view because;  ///< condition, figure, or why it cannot be tested
   /// Name of the truth to which `taut verify` holds the verdict; "": none can.
   std::string_view truth;
-  std::string_view figure = "";  ///< quantity of the truth to quote; "": the first
+  /// Quantity of the truth to quote, a constant of experiments/truths/quoted.hpp; "": the first.
+  std::string_view figure = "";
 };
 
 /// All assertions, source by source.

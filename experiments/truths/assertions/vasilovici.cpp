@@ -1,4 +1,5 @@
 #include "experiments/truths/assertions/assertions.hpp"
+#include "experiments/truths/quoted.hpp"
 
 namespace taut {
 
@@ -102,7 +103,7 @@ constexpr Assertion kOfVasilovici[] = {
      "box-halt"},
     {kReport, "4.2.3", "stopped for a step, particles pop at large time steps", holds_if,
      "they pop at every step; the acceleration of a pop grows as the step shrinks", "box-halt",
-     "largest acceleration at rest, 1/256 s: it pops"},
+     quoted::kPopOfHaltedCloth},
     {kReport, "4.2.4", "self-collision with an octree gives nice results", holds_if,
      "no faces of a folding sheet cross, where 120 do without; but its particles overlap by half "
      "their size",
