@@ -264,7 +264,8 @@ TEST(Settings, LabelsHaveWhatVariesAndNoMore) {
   EXPECT_EQ(labels.of(all[2]), "1 × 8") << "what is as the solver has it is not said";
   EXPECT_EQ(labels.of(all[1], {"order"}), "1 × 8, tethers=on") << "what is said beside it";
   EXPECT_EQ(labels.of(all[3]), "") << "nothing varies of Bullet's";
-  EXPECT_EQ(labels.parts(all[1]).terms(), (Names{kWorkTerm, "order", "tethers"}));
+  EXPECT_EQ(labels.parts(all[1]).terms(), (Names{kWorkTerm, "order of Jakobsen", "tethers"}))
+      << "vbd and bullet have another order";
   EXPECT_EQ(label_part(Work{4, -1}).term, "") << "it says what it is";
 
   std::vector<Record> by_order = at_work({{"jakobsen", {{1, 4}, {1, 4}}}});

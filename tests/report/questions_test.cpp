@@ -4,6 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/report/input.hpp"
 #include "experiments/report/questions/costs.hpp"
@@ -360,6 +367,72 @@ TEST(PageAnswers, SayInWhatArithmeticAndOrderLinksAreSolved) {
   EXPECT_EQ(price.rows[0][1].terms, (std::vector<std::string>{kWorkTerm, "coloured"}));
   EXPECT_EQ(setting_label(made.input.bench->scenes[0], 2).text(), "20 × 1, mesh order")
       << "its order is said once";
+}
+
+/// Records of a solver: the defaults, and one more whose parameter has another value.
+std::vector<Record> with_another_value(const SolverEntry& entry, const ParamSpec& spec) {
+  const Params defaults(entry.name, entry.params, "");
+  Record first = synthetic::record("hang", std::string(entry.name), 1, 1.0 / 64), second = first;
+  const std::string name(spec.name), usual(defaults.value(name));
+  std::string other = "0.125";
+  for (const std::string& choice : parts_of(spec.choices))
+    if (choice != usual) other = choice;
+  first.params[name] = usual;
+  second.params[name] = other;
+  return {first, second};
+}
+
+std::map<std::string, std::string> meanings(const std::vector<Record>& all) {
+  const auto terms = terms_of(Records(all), "");
+  return {terms.begin(), terms.end()};
+}
+
+TEST(Terms, ExplainEveryParameterThatALabelNamesByItsOwnSolver) {
+  std::vector<Record> all;
+  std::vector<std::pair<std::string, const ParamSpec*>> named;  // a label's term, and of what
+  for (const SolverEntry* entry : solvers())
+    for (const std::string& name : labelled_parameters(std::string(entry->name))) {
+      const ParamSpec& spec = *std::ranges::find(entry->params, name, &ParamSpec::name);
+      const std::vector<Record> two = with_another_value(*entry, spec);
+      const Label label = SettingLabels(two).parts(two[1]);
+      ASSERT_EQ(label.terms().size(), 1u) << entry->name << " " << name;
+      named.emplace_back(label.terms()[0], &spec);
+      all.insert(all.end(), two.begin(), two.end());
+    }
+  const auto found = meanings(all);
+  for (const auto& [term, spec] : named) {
+    ASSERT_TRUE(found.contains(term)) << term;
+    EXPECT_TRUE(found.at(term).starts_with(spec->help)) << term << ": " << found.at(term);
+  }
+}
+
+TEST(Terms, NameTheSolverWhereOthersMeanSomethingElseAndSayUnitsAndChoices) {
+  std::vector<Record> all;
+  for (const auto& [solver, name] : {std::pair("jakobsen", "tethers"),
+                                     {"bullet", "stiffness"},
+                                     {"bullet-deformable", "stiffness"}})
+    for (const SolverEntry* entry : solvers())
+      if (entry->name == solver)
+        for (Record& r :
+             with_another_value(*entry, *std::ranges::find(entry->params, name, &ParamSpec::name)))
+          all.push_back(std::move(r));
+  const auto found = meanings(all);
+  EXPECT_TRUE(found.at("tethers").ends_with(" (off, on)")) << found.at("tethers");
+  EXPECT_TRUE(found.at("stiffness of Bullet deformable").ends_with(" [N/m]"));
+  EXPECT_TRUE(found.contains("stiffness of Bullet"));
+  EXPECT_FALSE(found.contains("stiffness"));
+}
+
+TEST(Terms, LeaveOutAnOrderThatStandsInTheLabelByItsOwnName) {
+  std::vector<Record> all(2, synthetic::record("hang", "jakobsen", 1, 1.0 / 64));
+  for (const std::size_t i : {0u, 1u}) {
+    const std::string order = i == 0 ? "coloured" : "mesh";
+    all[i].params["order"] = order;
+    all[i].resolved_settings = {{kLinkOrder, "in some order", order}};
+  }
+  EXPECT_TRUE(meanings(all).contains("mesh"));
+  EXPECT_FALSE(meanings(all).contains("order"));
+  EXPECT_FALSE(meanings(all).contains("order of Jakobsen"));
 }
 
 TEST(PageAnswers, APenetrationNamesItsMomentAndBulletsPush) {

@@ -241,6 +241,27 @@ std::vector<std::string> labelled_parameters(const std::string& solver) {
   return all;
 }
 
+std::string parameter_meaning(const std::string& solver, const std::string& name) {
+  const SolverEntry* entry = find_entry(solver);
+  if (!entry) return "";
+  const auto spec = std::ranges::find(entry->params, name, &ParamSpec::name);
+  if (spec == entry->params.end()) return "";
+  std::string meaning(spec->help);
+  if (!spec->unit.empty()) meaning += " [" + std::string(spec->unit) + "]";
+  if (!spec->choices.empty()) meaning += " (" + join(parts_of(spec->choices), ", ") + ")";
+  return meaning;
+}
+
+std::string parameter_term(const std::string& solver, const std::string& name) {
+  const std::string meaning = parameter_meaning(solver, name);
+  const bool means_one_thing = std::ranges::all_of(solvers(), [&](const SolverEntry* entry) {
+    const std::string other(entry->name);
+    return std::ranges::count(labelled_parameters(other), name) == 0 ||
+           parameter_meaning(other, name) == meaning;
+  });
+  return means_one_thing ? name : name + " of " + solver_title(solver);
+}
+
 std::string link_order_parameter(const std::string& solver) {
   const SolverEntry* entry = find_entry(solver);
   return entry ? std::string(entry->accuracy.link_order) : "";
@@ -415,7 +436,7 @@ Label SettingLabels::parts(const Record& record, const std::vector<std::string>&
     if (name == kSubsteps || name == kSweeps)
       work = true;
     else if (*value != default_of(record.solver, name))
-      all.push_back({named_setting(name, *value), name});
+      all.push_back({named_setting(name, *value), parameter_term(record.solver, name)});
   }
   if (work || (any && all.empty())) all.insert(all.begin(), label_part(work_of(record)));
   return all;

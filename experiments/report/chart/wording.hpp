@@ -91,6 +91,12 @@ std::string link_order_parameter(const std::string& solver);
 std::vector<std::string> stiffness_parameters(const std::string& solver);
 /// Name of the parameter with that role; of a solver that this program lacks, its usual name.
 std::string parameter_of(std::string_view solver, ParamSpec::Role);
+/// The term that explains a labelled parameter: its name; "method of XPBD" where it means something
+/// else in labels of another solver.
+std::string parameter_term(const std::string& solver, const std::string& name);
+/// What the term means, with the parameter's unit or its choices; "" for a solver or a parameter
+/// that this program lacks.
+std::string parameter_meaning(const std::string& solver, const std::string& name);
 /// The parameters that a search may vary, the labelled ones included: cases that differ in these
 /// alone are settings of one solver.
 std::vector<std::string> searched_parameters(const std::string& solver);

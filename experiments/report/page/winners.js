@@ -15,13 +15,17 @@ const kept = (text) => text.replaceAll(' × ', '\u00A0×\u00A0');
 const explained = (text, terms, props = {}) =>
     el('small', {...props, title: explain(terms)}, kept(text));
 
-/** The list of all abbreviations. */
+/** The list of all terms; those of one meaning stand together. */
 function termList() {
   if (!model.terms?.length) return null;
-  const entry =
-      ({term, meaning},
-       i) => [i ? '; ' : '', el('b', {}, term.replaceAll(' ', '\u00A0')), ` ${meaning}`];
-  return el('p', {className: 'note terms'}, model.terms.map(entry), '.');
+  const entry = ([meaning, terms], i) => {
+    const names = terms.map((term) => term.replaceAll(' ', '\u00A0')).join(', ');
+    return [i ? '; ' : '', el('b', {}, names), ` ${meaning}`];
+  };
+  const byMeaning = new Map();
+  for (const {term, meaning} of model.terms)
+    byMeaning.set(meaning, [...(byMeaning.get(meaning) ?? []), term]);
+  return el('p', {className: 'note terms'}, [...byMeaning].map(entry), '.');
 }
 
 /** Part of a sentence. A number links to its case, or to the map whose cells it counts. */

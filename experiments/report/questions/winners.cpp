@@ -279,18 +279,17 @@ std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<cons
     arithmetics[own.brief()] = own.meaning();
     if (const ResolvedSetting* order = find_setting(r->resolved_settings, kLinkOrder))
       orders[order->compared()] = order->text;
+    // labels name the order itself, a term of its own
+    const std::string beside = link_order(*r).empty() ? "" : link_order_parameter(r->solver);
     for (const std::string& name : labelled_parameters(r->solver))
-      if (const auto at = r->params.find(name); at != r->params.end())
+      if (const auto at = r->params.find(name); at != r->params.end() && name != beside)
         seen[{r->solver, name}].insert(at->second);
   }
-  for (const SolverEntry* entry : solvers())
-    for (const ParamSpec& spec : entry->params) {
-      const auto at = seen.find({std::string(entry->name), std::string(spec.name)});
-      if (at == seen.end() || at->second.size() < 2 || spec.kind == ParamSpec::Kind::choice)
-        continue;
-      parameters[std::string(spec.name)] =
-          std::string(spec.help) + (spec.unit.empty() ? "" : " [" + std::string(spec.unit) + "]");
-    }
+  for (const auto& [parameter, values] : seen) {
+    const auto& [solver, name] = parameter;
+    if (values.size() > 1)
+      parameters[parameter_term(solver, name)] = parameter_meaning(solver, name);
+  }
   std::vector<std::pair<std::string, std::string>> terms;
   if (works)
     terms.emplace_back(kWorkTerm,

@@ -75,7 +75,8 @@ std::vector<std::string> rules_of(const WinnerMap&);
 /// How sure a ratio of costs is: one statement for the page.
 std::string certainty_text(double noise);
 
-/// Abbreviations that stand in settings and in arithmetics of these cases, and what they mean.
+/// Terms that stand in settings and in arithmetics of these cases (LabelPart::term,
+/// Arithmetic::brief()), and what they mean.
 std::vector<std::pair<std::string, std::string>> terms_of(const std::vector<const Record*>&,
                                                           const std::string& vectors);
 
