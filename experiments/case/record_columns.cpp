@@ -4,6 +4,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "experiments/case/record_io.hpp"
+
 namespace taut {
 
 namespace {
@@ -80,19 +82,9 @@ const RecordColumn* find_axis(std::string_view json) {
   return found == std::end(kColumns) || found->title.empty() ? nullptr : found;
 }
 
-std::optional<ImpossibleNumber> impossible_number(const Record& record) {
-  static const Record kEmpty;
-  for (const RecordColumn& column : kColumns) {
-    const auto whole = [&](const Record& r) {
-      return with_member(r, column, [](const auto& value) {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, int>) return value;
-        return 0;
-      });
-    };
-    if (whole(record) < whole(kEmpty))
-      return ImpossibleNumber{column.json, "expected at least " + std::to_string(whole(kEmpty))};
-  }
-  if (!(record.dt > 0)) return ImpossibleNumber{"dt", "expected a time step greater than 0"};
+std::optional<ImpossibleField> impossible_field(const Record& record) {
+  if (!is_key(record.key)) return ImpossibleField{"key", "expected 64 hexadecimal digits"};
+  if (!(record.dt > 0)) return ImpossibleField{"dt", "expected a time step greater than 0"};
   return {};
 }
 

@@ -52,13 +52,12 @@ const RecordColumn* find_axis(std::string_view json);
 /// The record's number in this column; NaN if the record lacks it.
 double number_in(const Record&, const RecordColumn&);
 
-/// What a record that was read back cannot be, and the JSON key of the field.
-struct ImpossibleNumber {
-  std::string_view json;
-  std::string why;
+/// What a record that was read back cannot be. Its JSON and a results file give the field one name.
+struct ImpossibleField {
+  const char *name, *why;
 };
-/// A time step that is not above 0, or a whole number below that of an empty record.
-std::optional<ImpossibleNumber> impossible_number(const Record&);
+/// A key that is none (is_key), or a time step that is not above 0.
+std::optional<ImpossibleField> impossible_field(const Record&);
 
 // A column's member of a record, const as the record is.
 template <class AnyRecord, class Value>

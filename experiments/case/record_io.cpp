@@ -93,11 +93,7 @@ Record record_of(const JsonReader& j) {
         column.may_be_absent() ? within.find(key.c_str()) : within.at(key.c_str());
     if (value) with_member(r, column, [&](auto& member) { read_into(*value, member); });
   }
-  if (!is_key(r.key)) j.at("key").fail("expected 64 hexadecimal digits");
-  if (const auto wrong = impossible_number(r)) {
-    const auto [object, key] = object_and_key(wrong->json);
-    (object.empty() ? j : j.at(object.c_str())).at(key.c_str()).fail(wrong->why);
-  }
+  if (const auto wrong = impossible_field(r)) j.at(wrong->name).fail(wrong->why);
   return r;
 }
 

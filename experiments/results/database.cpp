@@ -72,6 +72,26 @@ std::string Database::Rows::exact_text(int column) const {
   return value.isFloat() ? exact(value.getDouble()) : value.getString();
 }
 
+void Database::Rows::fail(int column, const std::string& why) const {
+  throw InputError(std::string(statement_.getColumn(column).getName()) + ": " + why);
+}
+
+int Database::Rows::whole(int column, int least, int most) const {
+  const std::int64_t number = integer(column);
+  if (!statement_.getColumn(column).isInteger() || number < least || number > most)
+    fail(column,
+         "expected a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  return static_cast<int>(number);
+}
+
+std::size_t Database::Rows::count(int column) const {
+  constexpr std::int64_t kMost = std::int64_t{1} << 53;
+  const std::int64_t number = integer(column);
+  if (!statement_.getColumn(column).isInteger() || number < 0 || number > kMost)
+    fail(column, "expected a count");
+  return static_cast<std::size_t>(number);
+}
+
 SQLite::Statement& Database::prepared(const std::string& sql) {
   auto at = statements_.find(sql);
   if (at == statements_.end())

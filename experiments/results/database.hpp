@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -40,12 +41,17 @@ class Database {
     /// The text of a column; a number is written to the bit, and NULL is "".
     std::string exact_text(int column) const;
     std::int64_t integer(int column) const { return statement_.getColumn(column).getInt64(); }
-    double number(int column) const {  ///< NaN for NULL and for numbers that are not finite
+    /// A whole number within the bounds. Throws InputError that names the column if it is another
+    /// number, a text or NULL.
+    int whole(int column, int least, int most = std::numeric_limits<int>::max()) const;
+    std::size_t count(int column) const;  ///< the same from 0 to 2^53
+    double number(int column) const {     ///< NaN for NULL and for numbers that are not finite
       const double value = null(column) ? std::nan("") : statement_.getColumn(column).getDouble();
       return std::isfinite(value) ? value : std::nan("");
     }
 
    private:
+    [[noreturn]] void fail(int column, const std::string& why) const;
     Database& of_;
     SQLite::Statement& statement_;
   };

@@ -10,14 +10,8 @@
 namespace taut {
 
 namespace {
+
 constexpr int kNone = -1;  ///< of a whole number that is not known: NULL in the file
-}
-
-int whole_or_none(const Database::Rows& row, int column) {
-  return row.null(column) ? kNone : static_cast<int>(row.integer(column));
-}
-
-namespace {
 
 // Conversions between a column of a record and its form in the file. What is not a single value is
 // stored as JSON text.
@@ -38,13 +32,11 @@ Database::Value kept(const Value& value) {
 
 void read(const Database::Rows& row, int column, std::string& text) { text = row.text(column); }
 void read(const Database::Rows& row, int column, double& number) { number = row.number(column); }
+/// As from JSON, at least what an empty record has; NULL only where that is kNone.
 void read(const Database::Rows& row, int column, int& number) {
-  number = whole_or_none(row, column);
+  if (number != kNone || !row.null(column)) number = row.whole(column, number);
 }
-void read(const Database::Rows& row, int column, std::size_t& count) {
-  if (row.integer(column) < 0) throw InputError("a count is below 0");
-  count = static_cast<std::size_t>(row.integer(column));
-}
+void read(const Database::Rows& row, int column, std::size_t& count) { count = row.count(column); }
 void read(const Database::Rows& row, int column, Status::Kind& kind) {
   kind = status_kind(row.text(column));
 }
@@ -60,15 +52,16 @@ void read(const Database::Rows& row, int column, Value& value) {
             });
 }
 
-/// Reads a record, without its values, from case_columns(). Throws InputError if a text is invalid.
+/// Reads a record, without its values, from case_columns(). Throws InputError that names the
+/// column.
 Record record_in(const Database::Rows& row) {
   Record r;
   int at = 0;
   for (const RecordColumn& column : record_columns())
     if (!column.column.empty())
       with_member(r, column, [&](auto& member) { read(row, at++, member); });
-  if (const auto wrong = impossible_number(r))
-    throw InputError(std::string(wrong->json) + ": " + wrong->why);
+  if (const auto wrong = impossible_field(r))
+    throw InputError(std::string(wrong->name) + ": " + wrong->why);
   return r;
 }
 

@@ -11,11 +11,8 @@
 
 namespace taut {
 
-/// A whole number; -1 where the column is NULL.
-int whole_or_none(const Database::Rows&, int column);
-
 /// The record in a row of case_columns(), without its values. Returns nothing and sets `why` if a
-/// text is invalid.
+/// column holds what no record has.
 std::optional<Record> record_of_row(const Database::Rows&, std::string& why);
 
 /// The values of case_columns() for a record.

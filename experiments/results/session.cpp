@@ -102,9 +102,13 @@ std::vector<PlannedKey> Store::planned() const {
   if (!database) return all;
   Database::Rows row = database->rows(
       "SELECT min(study), key, id, shard, shards FROM planned GROUP BY key ORDER BY key");
-  while (row.next())
-    all.push_back({row.text(0), row.text(1), row.text(2), static_cast<int>(row.integer(3)),
-                   static_cast<int>(row.integer(4))});
+  while (row.next()) {
+    try {
+      all.push_back({row.text(0), row.text(1), row.text(2), row.whole(3, 1), row.whole(4, 1)});
+    } catch (const InputError& error) {
+      throw InputError(file().string() + ": plan of " + row.text(2) + ": " + error.what());
+    }
+  }
   return all;
 }
 

@@ -228,7 +228,7 @@ Trajectory Store::motion(const std::string& key) const {
   if (!row.next()) fail("it is not stored");
   if (sha256(row.text(0)) != row.text(4)) fail("it does not match its digest");
   try {
-    return {row.text(2), row.number(3), frames_in(row.text(0), whole_or_none(row, 1))};
+    return {row.text(2), row.number(3), frames_in(row.text(0), row.whole(1, 0))};
   } catch (const InputError& error) {
     fail(error.what());
   }

@@ -99,7 +99,8 @@ class Store {
   /// This replaces earlier plans of the same studies. Throws InputError, and then records nothing.
   void begin_session(const std::string& command, const std::vector<StudyCases>& = {},
                      const Shard& = {});
-  /// The cases that sessions planned to run, each key once, sorted by key.
+  /// The cases that sessions planned to run, each key once, sorted by key. Throws InputError if a
+  /// shard is none.
   std::vector<PlannedKey> planned() const;
   /// Marks cases that a merge did without. Reports mention them until they are stored. Throws
   /// InputError.

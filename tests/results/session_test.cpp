@@ -97,6 +97,23 @@ TEST(Sessions, WhatTheyPlanIsThereOnceWithItsShard) {
   EXPECT_EQ(file.number_of("SELECT count(*) FROM planned"), 3) << "study by study";
 }
 
+TEST(Sessions, AShardBeyondAnIntIsRefused) {
+  const Scratch scratch;
+  Store store(scratch.path());
+  for (const char* damage : {"shard = 4294967297", "shards = 0", "shard = 'one'"}) {
+    store.begin_session("", {planned("a", {"1"})}, {1, 4});
+    change(store, std::string("UPDATE planned SET ") + damage);
+    const std::string column = damage[5] == 's' ? "shards" : "shard";
+    try {
+      store.planned();
+      ADD_FAILURE() << damage;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()), store.file().string() + ": plan of case 1: " + column +
+                                               ": expected a whole number from 1 to 2147483647");
+    }
+  }
+}
+
 TEST(MissingCases, AreNamedAsFarAsThereIsRoom) {
   Missing mark{"m", {}, 31};
   for (int n = 1; n <= 10; ++n) mark.ids.push_back(std::to_string(n));

@@ -20,6 +20,7 @@
 #include "experiments/results/schema.hpp"
 #include "experiments/results/store_error.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
 #include "tests/support/damaged_results.hpp"
 
 namespace taut::store_test {
@@ -54,6 +55,16 @@ Record some_record() {
   r.resolved_settings = {{"time step", "1/60 s"}};
   r.digest = "beef";
   return r;
+}
+
+/// The message for this text of a record.
+std::string refusal(const std::string& json) {
+  try {
+    record_from_json(json, "JSON");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 class StoreTest : public testing::Test {
@@ -284,6 +295,69 @@ TEST_F(StoreTest, ACaseOfAnotherDigestIsReportedAsMissing) {
     EXPECT_EQ(put(r), Store::Commit::stored) << damage;
     EXPECT_EQ(to_json(*store_.find(r.key)), to_json(r));
     EXPECT_EQ(store_.digest(), digest);
+  }
+}
+
+/// 600 steps, vertex 3 and 6080 projections are also what the low bits of some of these say, and
+/// step and vertex are part of the digest.
+TEST_F(StoreTest, WhatNoRecordHasIsRefusedInTheWordsOfJson) {
+  const Record r = some_record();
+  const Json json = parse_json(to_json(r));
+  put(r);
+  const auto said_of = [&](const std::string& key, const std::string& column,
+                           const std::string& value) {
+    said_.clear();
+    change(store_, "UPDATE cases SET " + column + " = " + value);
+    EXPECT_FALSE(store_.find(key)) << column << " = " << value;
+    EXPECT_TRUE(store_.entries().empty()) << column << " = " << value;
+    change(store_, "DELETE FROM cases");
+    put(r);
+    return said_.empty() ? "" : said_.front();
+  };
+  const std::string file = store_.file().string() + ": damaged case ";
+  for (const auto& [column, value] : {std::pair("steps", "4294967896"),
+                                      {"steps", "-1"},
+                                      {"steps", "600.5"},
+                                      {"vertices", "-4294966896"},
+                                      {"links", "2147483648"},
+                                      {"sweeps", "4294967304"},
+                                      {"substeps", "-2"},
+                                      {"projections", "-1"},
+                                      {"projections", "6080.5"},
+                                      {"projections", "9007199254740994"}}) {
+    Json same = json;
+    same[column] = parse_json(value);
+    const std::string why = refusal(to_text(same));
+    ASSERT_TRUE(why.starts_with("JSON: " + std::string(column) + ": expected a ")) << why;
+    EXPECT_EQ(said_of(r.key, column, value),
+              file + r.key + " (" + why.substr(6) + "), counts as none");
+  }
+  for (const auto& [column, value] :
+       {std::pair("step", "4294967313"), {"vertex", "4294967299"}, {"vertex", "'three'"}})
+    EXPECT_EQ(said_of(r.key, column, value),
+              file + r.key + " (" + column +
+                  ": expected a whole number from -1 to 2147483647), counts as none");
+  for (const std::string& key : {std::string("../escaped"), std::string(64, 'A'), r.key + "0"}) {
+    Json same = json;
+    same["key"] = key;
+    EXPECT_EQ(refusal(to_text(same)), "JSON: key: expected 64 hexadecimal digits");
+    EXPECT_EQ(said_of(key, "key", "'" + key + "'"),
+              file + key + " (key: expected 64 hexadecimal digits), counts as none");
+  }
+}
+
+TEST_F(StoreTest, AMotionOfMoreVerticesThanThereAreNumbersIsRefused) {
+  const Record r = some_record();
+  store_.prepare();
+  store_.commit(r, {.motion = frame_bytes({0.5, {std::vector<Vec3>(400, Vec3(1, 2, 3)), {}}})});
+  change(store_, "UPDATE cases SET vertices = 4294967696");  // 2^32 + 400
+  try {
+    store_.motion(r.key);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              store_.file().string() + ": motion of " + r.key +
+                  ": vertices: expected a whole number from 0 to 2147483647");
   }
 }
 
