@@ -18,9 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::tuple kSpec{Field{"scene", &CaseSpec::scene},
-                           Field{"overrides", &CaseSpec::settings},
+constexpr std::tuple kSpec{Field{"scene", &CaseSpec::scene}, Field{"settings", &CaseSpec::settings},
                            Field{"solver", &CaseSpec::solver}};
+/// The same in rows of an earlier taut.
+constexpr const char* kEarlierSettings = "overrides";
+constexpr std::tuple kEarlierSpec{Field{"scene", &CaseSpec::scene},
+                                  Field{kEarlierSettings, &CaseSpec::settings},
+                                  Field{"solver", &CaseSpec::solver}};
 
 std::string line_of(const BaselineRow& row) {
   Json json{{"id", row.id}};
@@ -38,7 +42,10 @@ std::string line_of(const BaselineRow& row) {
 BaselineRow row_of(const JsonReader& json) {
   BaselineRow row;
   row.id = printable(json.at("id").text());  // it is printed on terminals
-  read_into(json, row.spec, kSpec);
+  if (json.find(kEarlierSettings))
+    read_into(json, row.spec, kEarlierSpec);
+  else
+    read_into(json, row.spec, kSpec);
   row.scene = json.at("content").text();
   row.status.kind = json.at("status").text();
   if (row.status.kind.find(" (") != std::string::npos)

@@ -6,10 +6,14 @@
 #include <array>
 
 #include "experiments/case/fingerprint.hpp"
-#include "experiments/case/record_io.hpp"
 #include "experiments/system/json.hpp"
 
 namespace taut {
+
+namespace {
+/// Part of every key. Another number makes every stored result be computed again.
+constexpr int kKeySchema = 2;
+}  // namespace
 
 std::string sha256(std::string_view bytes) {
   std::array<unsigned char, SHA256_DIGEST_LENGTH> hash{};
@@ -41,7 +45,7 @@ std::string digest(const State& state) {
 std::string case_key(const Scene& scene, const std::string& scene_digest,
                      const SolverChoice& choice) {
   const std::string_view own = choice.entry->implementation;
-  Json parts{{"schema", kRecordSchema},
+  Json parts{{"schema", kKeySchema},
              {"scene", scene_digest},
              {"solver", choice.addressed()},
              {"implementation", own.empty() ? implementation(choice.entry->name) : own},

@@ -19,7 +19,7 @@ const RecordColumn kColumns[] = {
     {"setting", "setting", &Record::setting,
      "settings of the scene and the solver's text: `id` without the scene", !kResult, kMayLack},
     {"spec.scene", "scene_file", &CaseSpec::scene, "the scene as it was asked for"},
-    {"spec.overrides", "settings", &CaseSpec::settings, "settings of the scene, in their order"},
+    {"spec.settings", "settings", &CaseSpec::settings, "settings of the scene, in their order"},
     {"spec.solver", "solver_text", &CaseSpec::solver, "the solver with all its parameters"},
     {"scene", "scene", &Record::scene, "name of the scene"},
     {"solver", "solver", &Record::solver, "name of the solver"},

@@ -17,8 +17,9 @@
 // member of Record, a row here and its value in run_case.cpp. `taut export` (study_csv.cpp) and the
 // page (report/model/cases.cpp) choose their fields themselves. Raise kRecordSchema and
 // kSchemaVersion once per release that adds fields: every stored result is then computed again.
-// The number is also in tests/cli/stored.py, tests/case/records_test.cpp,
-// tests/results/store_test.cpp, tests/fuzz/corpus/record and experiments/cli/README.md.
+// Another name in JSON raises kRecordSchema alone, and stored results stay valid. The number is
+// also in tests/cli/stored.py, tests/case/records_test.cpp, tests/results/store_test.cpp,
+// tests/fuzz/corpus/record and experiments/cli/README.md.
 
 namespace taut {
 

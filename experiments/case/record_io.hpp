@@ -20,7 +20,7 @@ bool failed(const Status&);
 std::string describe(const Status&);
 
 /// Version of every JSON text below; readers refuse others.
-inline constexpr int kRecordSchema = 2;
+inline constexpr int kRecordSchema = 3;
 
 /// One JSON object; doubles in shortest exact form, NaN as null. indent < 0: one line.
 std::string to_json(const Record&, int indent = -1);

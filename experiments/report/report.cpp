@@ -81,7 +81,7 @@ class Builder {
     Json method = this->method();
     Json cases = this->cases();
     for (const char* name : {kSweeps, kSubsteps, "dt", "t", "projections"}) refs_.use(name);
-    Json model{{"schema", "taut-report/7"}, {"meta", meta(cases.size())}, {"solvers", solvers()},
+    Json model{{"schema", "taut-report/8"}, {"meta", meta(cases.size())}, {"solvers", solvers()},
                {"statuses", statuses()},    {"shades", shades()},         {"metrics", metrics()}};
     add_if(model, "winners", std::move(winners));
     model["answer"] = parse_json(to_json(answer));

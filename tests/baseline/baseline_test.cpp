@@ -193,9 +193,31 @@ TEST_F(BaselineFiles, WhatIsWrittenIsReadBack) {
   write_baseline(folder_, two());
   EXPECT_TRUE(compare(two(), read_baseline(folder_), {}).findings.empty());
   EXPECT_EQ(slurp("bullet.jsonl"),
-            "{\"id\":\"hang bullet:iterations=3\",\"scene\":\"hang\",\"overrides\":[],"
+            "{\"id\":\"hang bullet:iterations=3\",\"scene\":\"hang\",\"settings\":[],"
             "\"solver\":\"bullet:iterations=3\",\"content\":\"content of hang\",\"status\":\"ok\","
             "\"projections\":100,\"values\":{\"drift.max\":null,\"stretch.max\":0.25}}\n");
+}
+
+TEST_F(BaselineFiles, OfAnEarlierTautCallTheSettingsOverrides) {
+  Baseline rows = two();
+  rows[0].spec.settings = {"time.dt=\"1/64\""};
+  write_baseline(folder_, rows);
+  const std::string name = rows[0].solver() + ".jsonl", text = slurp(name);
+  std::string earlier = text;
+  earlier.replace(earlier.find("\"settings\""), 10, "\"overrides\"");
+  write(name, earlier);
+  EXPECT_EQ(read_baseline(folder_)[0].spec.settings, rows[0].spec.settings);
+  write_baseline(folder_, read_baseline(folder_));
+  EXPECT_EQ(slurp(name), text);
+  earlier.replace(earlier.find("\"overrides\""), 11, "\"set\"");
+  write(name, earlier);
+  try {
+    read_baseline(folder_);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("has no 'settings'"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(BaselineFiles, ANoOpUpdateTouchesNoFile) {

@@ -183,8 +183,8 @@ TEST(RecordLine, HasEveryColumnOnce) {
 
 TEST(RecordLine, IsThisOneLine) {
   const std::string text =
-      R"({"schema":2,"key":")" + std::string(63, '0') +
-      R"(f","id":"an id","setting":"a setting","spec":{"scene":"file","overrides":["a=1","b=2"],"solver":"text"},)"
+      R"({"schema":3,"key":")" + std::string(63, '0') +
+      R"(f","id":"an id","setting":"a setting","spec":{"scene":"file","settings":["a=1","b=2"],"solver":"text"},)"
       R"("scene":"hang","solver":"xpbd","params":{"p":"q"},"substeps":2,"sweeps":8,)"
       R"("work_parameters":["p"],"dt":0.25,"steps":6,"vertices":4,"links":5,)"
       R"("status":{"kind":"exploded","reason":"energy","step":17,"vertex":3},)"

@@ -841,7 +841,7 @@ searched = "mine-searched.toml"
     def test_a_fabric_stands_beside_other_settings(self):
         words = ["case", "./small.toml", "jakobsen", "--set", "time.duration=0.1", "--fabric", "petrak-m1", "--json"]
         spec = json.loads(self.taut(*words).out)["spec"]
-        self.assertEqual(sorted(spec["set"] if "set" in spec else spec["overrides"]), ['fabric="petrak-m1"', "time.duration=0.1"])
+        self.assertEqual(sorted(spec["settings"]), ['fabric="petrak-m1"', "time.duration=0.1"])
         self.assertIn("petrak-m1", self.taut(*words[:-2], "petrak", expect=2).err)
 
     def test_the_curves_of_a_step_are_drawn_from_its_points(self):

@@ -51,7 +51,7 @@ class AllFrontiers(CommandLine):
             self.assertTrue(gap < 0.021 or whole, one)
         # The case beyond a frontier shows the reported symptom.
         over = next(one for one in answered if "overstretches" in one["symptom"])
-        sets = [word for one in beyond if one["parameter"] == over["parameter"] for word in ("--set", one["override"])]
+        sets = [word for one in beyond if one["parameter"] == over["parameter"] for word in ("--set", one["scene_setting"])]
         values = json.loads(self.taut("case", over["beyond_scene"], over["beyond_solver"], *sets, "--json").out)["values"]
         self.assertGreater(values["stretch.max"], 1)
 

@@ -63,7 +63,7 @@ def records(folder):
 
 
 def record_of(row, values):
-    record = {"schema": 2}
+    record = {"schema": 3}
     for key, column, kind in FIELDS:
         value = values if not column else -1 if row[column] is None else json.loads(row[column]) if kind == "JSON" else row[column]
         if key == "log" and not value:

@@ -24,7 +24,7 @@ class Inputs(module.Case):
         again = taut.scene(module.SMALL, {"time.dt": "1/60"}).replace({"time.dt": "1/50"})
         self.assertAlmostEqual(again.dt, 1 / 50, delta=1e-9)
         record = taut.simulate(again, dt="1/40", duration=0.1).record
-        self.assertEqual(record["spec"]["overrides"], ['time.dt="1/40"', "time.duration=0.1"], "what was replaced is not there")
+        self.assertEqual(record["spec"]["settings"], ['time.dt="1/40"', "time.duration=0.1"], "what was replaced is not there")
         self.assertEqual(taut.scene(taut.scene(module.SMALL), {"cloth.mass": 0.3}).mass.sum().round(12), 0.3)
         self.assertEqual(taut.simulate("mine.toml", duration="1/64").record["scene"], "mine")
         named = taut.scene(module.SMALL, name="shirt")

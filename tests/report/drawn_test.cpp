@@ -153,7 +153,7 @@ TEST(Drawn, ACaseHasItsSettingsItsCommandAndItsCost) {
       }
       const std::string command = one["command"], settings = one["settings"];
       EXPECT_NE(command.find(settings), std::string::npos);
-      for (const Json& text : one.value("overrides", Json::array()))
+      for (const Json& text : one.value("scene_settings", Json::array()))
         EXPECT_NE(command.find(text.get<std::string>().substr(0, 7)), std::string::npos) << command;
       if (!one.contains("cost")) continue;
       for (const char* end : {"low", "mid", "high"}) {

@@ -133,7 +133,7 @@ TEST(Model, TitleCountsTheSolversOfStudiesAndOfTimedCases) {
 
 TEST(Model, HasEveryPartThatTheDataHaveAndNoOther) {
   const Json model = model_of(example());
-  EXPECT_EQ(model["schema"], "taut-report/7");
+  EXPECT_EQ(model["schema"], "taut-report/8");
   for (const char* part : {"meta", "solvers", "statuses", "metrics", "answer", "scenes", "charts",
                            "maps", "tables", "method", "missing", "cases"})
     EXPECT_TRUE(model.contains(part) && !model[part].empty()) << part;

@@ -143,6 +143,6 @@ TAUT_VERB(frontier) = {
          {"parameters",
           "solver parameter unit good bad symptom at_start theory law lacks from to downwards "
           "cases beyond_scene beyond_solver"},
-         {"beyond", "solver parameter override"},
+         {"beyond", "solver parameter scene_setting"},
          {"commands", "solver parameter command"}},
     .bind = taut::bind_verb<taut::verb::frontier::add_options, taut::verb::frontier::run>};

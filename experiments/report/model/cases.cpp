@@ -122,7 +122,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
     one["cost"] = {{kCpuPerSecond, json_interval(second, n)},
                    {kCpuPerStep, json_interval(step, n)}};
   }
-  add_if(one, "overrides", r.spec.settings);
+  add_if(one, "scene_settings", r.spec.settings);
   one["command"] = reproduce(spec);
   return one;
 }

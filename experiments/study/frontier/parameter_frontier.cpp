@@ -121,7 +121,7 @@ Answer answer_of(const std::vector<ParameterFrontier>& frontiers) {
                Column("cases").in_detail(),
                Column("beyond_scene").in_detail(),
                Column("beyond_solver").in_detail()}},
-      beyond{"beyond", "the cases beyond", {{"solver"}, {"parameter"}, {"override", "--set"}}};
+      beyond{"beyond", "the cases beyond", {{"solver"}, {"parameter"}, {"scene_setting", "--set"}}};
   for (const ParameterFrontier& one : frontiers) {
     table.rows.push_back({one.solver, one.parameter, one.unit, one.good, one.bad, one.symptom,
                           one.at_start, one.theory, one.law, one.lacks, one.from, one.to,
@@ -139,6 +139,8 @@ Answer answer_of(const std::vector<ParameterFrontier>& frontiers) {
 std::vector<ParameterFrontier> frontiers_of(const Answer& answer) {
   std::vector<ParameterFrontier> all;
   const Table &table = answer.table("parameters"), &beyond = answer.table("beyond");
+  const bool earlier = std::ranges::count(beyond.columns, "override", &Column::name) > 0;
+  const char* const set = earlier ? "override" : "scene_setting";
   for (const auto& row : table.rows) {
     const auto text = [&](const char* column) { return table.at(row, column).text(); };
     const auto number = [&](const char* column) { return table.at(row, column).number(); };
@@ -162,7 +164,7 @@ std::vector<ParameterFrontier> frontiers_of(const Answer& answer) {
     for (const auto& own : beyond.rows)
       if (beyond.at(own, "solver").text() == one.solver &&
           beyond.at(own, "parameter").text() == one.parameter)
-        one.beyond.settings.emplace_back(beyond.at(own, "override").text());
+        one.beyond.settings.emplace_back(beyond.at(own, set).text());
     all.push_back(std::move(one));
   }
   return all;

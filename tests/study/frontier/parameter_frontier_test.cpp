@@ -242,6 +242,9 @@ TEST(Frontiers, AreReadBackFromTheirAnswer) {
   EXPECT_EQ(read[0].beyond.settings, all[0].beyond.settings);
   EXPECT_DOUBLE_EQ(read[0].headroom(), 10);
   EXPECT_DOUBLE_EQ(read[1].headroom(), 10) << "downwards from 1 to 0.1";
+  Answer earlier = answer;
+  earlier.tables[1].columns[2].name = "override";
+  EXPECT_EQ(answer_of(frontiers_of(earlier)), answer) << "an earlier taut had another word";
   Answer damaged = answer;
   damaged.tables[0].columns[0].name = "who";
   EXPECT_THROW(frontiers_of(damaged), InputError);
