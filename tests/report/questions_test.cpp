@@ -613,5 +613,49 @@ TEST(FailureMap, IsOfCasesThatDifferInStiffnessAlone) {
   EXPECT_EQ(failure_map(made.records, {}, nullptr).columns.size(), 3u);
 }
 
+TEST(FailureMap, GroupsByNumbersAndParametersAndNotByWords) {
+  Stiffened made;
+  made.add("1e3", "jakobsen", 0.1, 0, 0);
+  made.add("1e6", "jakobsen", 1, 0, 0);
+  Record& other = made.add("", "xpbd", 1, 0, 0);
+  other.spec.settings.emplace_back("links.stiffness={structural=1000}");
+  const Table table = failure_map(made.records, {}, nullptr);
+  ASSERT_EQ(table.columns.size(), 3u) << "1e3 and 1000 are one stiffness";
+  EXPECT_EQ(table.columns[1].heading, "swing, structural = 1e3");
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[1][1].text(), "right");
+  EXPECT_TRUE(table.rows[1][2].empty());
+}
+
+TEST(FailureMap, LosesNoCase) {
+  Stiffened made;
+  for (const char* stiffness : {"1e3", "1e6"}) {
+    made.add(stiffness, "jakobsen", 0.1, 0, 0);
+    made.add(stiffness, "jakobsen", 1, 0, 0).params["precision"] = "float";
+    made.add(stiffness, "jakobsen", 1, 0.5, 0).key += "of another version";
+    Record& finer = made.add(stiffness, "jakobsen", 0.8, 0, 0);
+    finer.spec.settings.emplace_back("cloth.grid=[64, 64]");
+    made.add(stiffness, "jakobsen", 1, 0, 1).dt /= 2;
+  }
+  made.records.push_back(made.records.front());  // the same case twice
+  const Table table = failure_map(made.records, {}, nullptr);
+  std::vector<std::string> headings;
+  for (const Column& column : table.columns) headings.push_back(column.heading);
+  EXPECT_EQ(headings, (std::vector<std::string>{
+                          "solver", "swing, dt = 0.015625 s, structural = 1e3",
+                          "swing (cloth.grid=[64, 64]), dt = 0.015625 s, structural = 1e3",
+                          "swing, dt = 0.0078125 s, structural = 1e3",
+                          "swing, dt = 0.015625 s, structural = 1e6",
+                          "swing (cloth.grid=[64, 64]), dt = 0.015625 s, structural = 1e6",
+                          "swing, dt = 0.0078125 s, structural = 1e6"}));
+  std::vector<std::string> first_half, second_half;
+  for (const auto& row : table.rows)
+    for (std::size_t i = 1; i < row.size(); ++i)
+      (i < 4 ? first_half : second_half).push_back(row[i].text());
+  EXPECT_EQ(first_half, (std::vector<std::string>{"freezes", "late", "gains energy", "right", "",
+                                                  "", "strains", "", ""}));
+  EXPECT_EQ(second_half, first_half);
+}
+
 }  // namespace
 }  // namespace taut::report::questions_test

@@ -29,8 +29,9 @@ std::vector<Cell> row_of(const OneStep& step, const StepSolver& solver) {
   };
   return {step.titled_scene(),
           solver_label(step, solver.text),
-          std::isnan(solver.structural) ? Cell("rigid")
-                                        : Cell(shown({"N/m", "N/m"}, solver.structural, 2)),
+          std::isnan(solver.structural)
+              ? Cell("rigid")
+              : Cell(shown({Unit::Kind::other, "N/m", "N/m"}, solver.structural, 2)),
           distance_after(solver, 1),
           distance_after(solver, kLooked),
           solver.contraction,

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
@@ -16,22 +20,94 @@ namespace taut::report {
 namespace {
 
 constexpr double kLate = 0.9, kStrained = 0.005, kGained = 0.02;
-constexpr std::string_view kStiffness = "links.stiffness";
 
-/// "structural = 1e3" from a case's settings; "" if they do not set stiffness.
-std::string stiffness_of(const Record& r) {
-  const SceneSetting* setting = find_setting(r.spec.settings, kStiffness);
-  if (!setting) return "";
-  std::string text = setting->value();
+using Stiffness = std::map<std::string, double>;
+
+Stiffness stiffness_of(const Record& r) { return links_stiffness(r.spec.settings); }
+
+/// How the case's settings write its stiffness: "structural = 1e3".
+std::string stiffness_text(const Record& r) {
+  std::string text = find_setting(r.spec.settings, kLinksStiffness)->value();
   std::erase_if(text, [](char c) { return c == '{' || c == '}'; });
   const auto first = text.find_first_not_of(' ');
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-/// Column of a case: "swing, structural = 1e3".
-std::string column_of(const Record& r) { return r.scene + ", " + stiffness_of(r); }
+/// What the cases of a column have in common.
+struct ColumnKey {
+  Task task;  ///< without stiffness
+  Stiffness stiffness;
+  bool operator==(const ColumnKey&) const = default;
+};
+ColumnKey column_key(const Record& r) {
+  Task task = task_of(r);
+  task.settings = without(std::move(task.settings), kLinksStiffness);
+  return {std::move(task), stiffness_of(r)};
+}
 
-std::string row_of(const Record& r) { return titled(r.solver, brief_settings(r)); }
+/// What the cases of a row have in common.
+struct RowKey {
+  std::string solver;
+  std::map<std::string, std::string> params;
+  bool operator==(const RowKey&) const = default;
+};
+
+/// The cases of the map, each in a place of its own.
+class Grid {
+ public:
+  explicit Grid(const Records& cases) {
+    for (const Record* r : cases) add(*r);
+  }
+
+  struct Row {
+    RowKey key;
+    std::vector<const Record*> cases;  ///< by column; may be shorter, and null where none was run
+  };
+  const std::vector<Row>& rows() const { return rows_; }
+  std::size_t columns() const { return columns_.size(); }
+
+  /// "swing, structural = 1e3", with what else a scene's columns differ in.
+  std::string heading(std::size_t column) const {
+    std::set<Task> tasks;
+    for (const Column& one : columns_) tasks.insert(one.key.task);
+    const Task& task = columns_[column].key.task;
+    const bool many_steps = std::ranges::any_of(
+        tasks, [&](const Task& one) { return one.scene == task.scene && one.dt != task.dt; });
+    return title_among(task, tasks) + (many_steps ? ", dt = " + shortest(task.dt) + " s" : "") +
+           ", " + stiffness_text(*columns_[column].first);
+  }
+
+ private:
+  struct Column {
+    ColumnKey key;
+    const Record* first;
+  };
+
+  std::size_t column_of(const Record& r) {
+    const ColumnKey key = column_key(r);
+    const auto at = std::ranges::find(columns_, key, &Column::key);
+    if (at != columns_.end()) return static_cast<std::size_t>(at - columns_.begin());
+    columns_.push_back({key, &r});
+    return columns_.size() - 1;
+  }
+  /// Puts a case into the first row of its solver that has room for it. Another result of the same
+  /// solver and task, such as another version's of an external program, opens one more row.
+  void add(const Record& r) {
+    const std::size_t column = column_of(r);
+    const RowKey key{r.solver, r.params};
+    for (Row& row : rows_) {
+      if (row.key != key) continue;
+      row.cases.resize(std::max(row.cases.size(), column + 1));
+      if (!row.cases[column]) row.cases[column] = &r;
+      if (row.cases[column]->key == r.key) return;
+    }
+    rows_.push_back({key, std::vector<const Record*>(column + 1)});
+    rows_.back().cases[column] = &r;
+  }
+
+  std::vector<Column> columns_;
+  std::vector<Row> rows_;
+};
 
 const char* verdict(const Record& r) {
   const auto value = [&](std::string_view name) { return r.value(std::string(name)); };
@@ -92,19 +168,18 @@ Table failure_map(const Records& records, const std::vector<Record>& timed, Case
     const auto with_cost = std::ranges::find(timed, r->key, &Record::key);
     here.push_back(with_cost == timed.end() ? r : &*with_cost);
   }
-  const auto columns = distinct(here, [](const Record* r) { return column_of(*r); });
   if (distinct(here, [](const Record* r) { return stiffness_of(*r); }).size() < 2) return table;
-  for (const std::string& column : columns) table.columns.emplace_back(column, column);
-  const auto rows = distinct(here, [](const Record* r) { return row_of(*r); });
-  for (const std::string& row : rows) {
-    table.rows.emplace_back(columns.size() + 1);
-    table.rows.back()[0] = row;
+  const Grid grid(here);
+  for (std::size_t i = 0; i < grid.columns(); ++i) {
+    const std::string heading = grid.heading(i);
+    table.columns.emplace_back(heading, heading);
   }
-  for (const Record* r : here) {
-    const auto row = std::ranges::find(rows, row_of(*r)) - rows.begin();
-    const auto column = std::ranges::find(columns, column_of(*r)) - columns.begin();
-    table.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column) + 1] =
-        cell_of(*r, list);
+  for (const Grid::Row& row : grid.rows()) {
+    const Record& any = **std::ranges::find_if(row.cases, std::identity());
+    std::vector<Cell>& cells = table.rows.emplace_back(grid.columns() + 1);
+    cells[0] = titled(any.solver, brief_settings(any));
+    for (std::size_t i = 0; i < row.cases.size(); ++i)
+      if (row.cases[i]) cells[i + 1] = cell_of(*row.cases[i], list);
   }
   return table;
 }
