@@ -156,7 +156,7 @@ void leave_out_unsound(const Store& store, History& history) {
 }  // namespace
 
 bool ended_alike(const HistoryPoint& a, const HistoryPoint& b) {
-  return a.status.kind == b.status.kind && a.status.reason == b.status.reason;
+  return a.status.kind == b.status.kind && a.status.reason.text() == b.status.reason.text();
 }
 
 std::string Changing::name() const {

@@ -66,7 +66,8 @@ int run(const Options& o) {
   answer.add({"folder"}, folder.string());
   answer.add({"cases"}, made.cases);
   answer.add({"shards"}, made.shards);
-  answer.add({"minutes", "limit of a shard", {"min", "min"}}, shard_minutes(made));
+  answer.add({"minutes", "limit of a shard", {Unit::Kind::time, "min", "min"}},
+             shard_minutes(made));
   print(answer, o.format);
   if (!o.dry_run) start(folder, on);
   return kPass;
