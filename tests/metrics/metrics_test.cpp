@@ -48,9 +48,12 @@ TEST(Metrics, HaveUnitsOfTheKindThatTheyMeasure) {
       EXPECT_EQ(unit.kind == Kind::length, unit.si == "m") << value.name;
       EXPECT_EQ(unit.kind == Kind::time, unit.si == "s") << value.name;
       EXPECT_EQ(unit.kind == Kind::share, unit.shown == "%") << value.name;
-      if (unit.kind == Kind::count)
+      if (unit.kind == Kind::count) {
         EXPECT_TRUE(unit.si == "1" && unit.shown.empty() && unit.scale == 1) << value.name;
-      if (value.role == Role::passages) EXPECT_EQ(unit.kind, Kind::count) << value.name;
+      }
+      if (value.role == Role::passages) {
+        EXPECT_EQ(unit.kind, Kind::count) << value.name;
+      }
     }
 }
 
