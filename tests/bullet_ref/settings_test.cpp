@@ -57,7 +57,7 @@ TEST(BulletSettings, OfTheSoftBodyAreTheseLines) {
       {"friction",
        "holds if the predicted way along the surface in a substep is less than mu times the way "
        "into it; else each contact pass takes the share mu of it, whatever the load"},
-      {"plane", "the top of a box of 100 m x 10 m x 100 m"}};
+      {"plane", "the top of a box of at least 100 m x 10 m x 100 m"}};
   Lines all = plain;
   all[1].second = "0.0078125 s x 2, as binary32";
   all[4].second = "sqrt-free, weighted by inverse mass, kLST 1.5";
