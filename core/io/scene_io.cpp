@@ -371,26 +371,6 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
 
 }  // namespace
 
-std::vector<Value*> file_names(Value& root) {
-  std::vector<Value*> found;
-  const auto look = [&](const SceneKey& key, Value& table) {
-    for (std::size_t i = 0; i < table.keys.size(); ++i)
-      if (table.keys[i].text == key.name() && table.items[i].is_string())
-        found.push_back(&table.items[i]);
-  };
-  for (const SceneKey& key : scene_keys()) {
-    if (key.type != "file") continue;
-    for (std::size_t i = 0; i < root.keys.size(); ++i) {
-      if (root.keys[i].text != key.section()) continue;
-      Value& section = root.items[i];
-      if (section.is_table()) look(key, section);
-      if (!section.is_array()) continue;
-      for (Value& table : section.items) look(key, table);
-    }
-  }
-  return found;
-}
-
 Scene load_scene(const std::filesystem::path& path, const SceneSettings& settings,
                  std::vector<std::string>* remarks) {
   return scene_of(read_document(path, settings), path, remarks);

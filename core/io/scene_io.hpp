@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "core/io/document.hpp"
 #include "core/model/scene.hpp"
 #include "core/model/scene_setting.hpp"
 
@@ -21,10 +20,6 @@ Scene load_scene(const std::filesystem::path&, const SceneSettings& settings = {
 /// load_scene() for text in memory. `file` is for messages; a mesh is searched for beside it.
 Scene parse_scene(const std::filesystem::path& file, const std::string& text,
                   const SceneSettings& settings = {});
-
-/// The values that name files, in a scene's document: whoever writes the scene to another folder
-/// changes them or copies the files. A name is relative to the scene's folder.
-std::vector<Value*> file_names(Value& root);
 
 /// Value of a number or a fraction such as "1/64"; throws InputError. Also used for dt on the
 /// command line.

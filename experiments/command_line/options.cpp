@@ -74,8 +74,8 @@ CLI::Option* add_preset(CLI::App& app, std::string& preset) {
 static void refuse_same_key(const SceneSettings& settings) {
   std::map<std::string, std::string> by_key;
   for (const SceneSetting& one : settings)
-    if (const auto [at, is_new] = by_key.emplace(one.key(), one.text()); !is_new)
-      throw InputError("'" + at->second + "' and '" + one.text() + "' both set " + one.key() +
+    if (const auto [at, is_new] = by_key.emplace(one.key(), one.written()); !is_new)
+      throw InputError("'" + at->second + "' and '" + one.written() + "' both set " + one.key() +
                        ": leave out one of them");
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/io/fabrics.hpp"
-#include "core/io/scene_io.hpp"
+#include "core/io/scene_files.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/system/data.hpp"

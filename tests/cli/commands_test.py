@@ -38,7 +38,7 @@ class BadInput(CommandLine):
             self.refuse(*verb, "iterations", "--preset", "quikc", says="has no preset 'quikc'; did you mean 'quick'?")
         self.refuse("case", "/", "jakobsen", says="/ is a folder, not a scene file")
         self.refuse("bench", "hang", says="'hang' is a scene; --solver says what to time on it")
-        self.refuse("case", "hang", "jakobsen", "--set", "cloth.mesh=none.obj", says='cloth.mesh is of type string, as in cloth.mesh="disc.obj"')
+        self.refuse("case", "hang", "jakobsen", "--set", "cloth.mesh=none.obj", says='cloth.mesh is of type file, as in cloth.mesh="disc.obj"')
         self.refuse("case", "hang", "jakobsen", "--set", "nothing.mesh=none.obj", says='a text stands in quotes: key="text"')
         self.refuse("case", "hang", "jakobsen", "--set", "time.dt=fast", says="time.dt is of type number, as in time.dt=")
         self.refuse("case", "hang", "jakobsen", "--set", "span=0.9", says="unknown key 'span' in the scene; did you mean 'cloth.span'?")
@@ -701,7 +701,8 @@ searched = "mine-searched.toml"
             steps = [s for s in series if s["key"] == row["key"] and s["metric"] == "stretch.rms"]
             self.assertEqual(len(steps), int(row["steps"]) + 1)
             self.assertEqual(sorted(float(s["t"]) for s in steps)[-1], float(row["dt"]) * int(row["steps"]))
-        more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"], rest='axes.time.dt = ["1/64", "1/32"]\n')
+        more = self.study(solvers=["jakobsen:iterations=2", "xpbd", "bullet"],
+                          rest='set = ["forces.damping=0.5"]\naxes.time.dt = ["1/64", "1/32"]\n')
         missing = self.taut("export", more, expect=3)
         self.assertEqual(missing.out.count(",not run,"), 2)
 

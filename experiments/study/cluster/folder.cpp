@@ -4,7 +4,7 @@
 #include <set>
 
 #include "core/io/document.hpp"
-#include "core/io/scene_io.hpp"
+#include "core/io/scene_files.hpp"
 #include "core/io/text_file.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
