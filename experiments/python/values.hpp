@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/model/scene_setting.hpp"
 #include "core/model/vec3.hpp"
 
 /// Conversion of texts, arrays and settings between Python and the library.
