@@ -43,7 +43,7 @@ const BaselineRow* find_row(const Baseline&, const std::string& id);  ///< nullp
 /// keeps only parameters that differ from their defaults, so that a new parameter changes no row.
 BaselineRow baseline_row(const Record&, const std::string& scene);
 
-/// Name of the number of projections among a row's values, of which it is none.
+/// Name under which changes of a row's number of projections are reported, beside its values.
 inline constexpr const char* kProjections = "projections";
 
 /// A difference between a baseline and the results of a run.

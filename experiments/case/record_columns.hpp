@@ -57,7 +57,7 @@ double number_in(const Record&, const RecordColumn&);
 struct ImpossibleField {
   const char *name, *why;
 };
-/// A key that is none (is_key), or a time step that is not above 0.
+/// A key that is no digest (is_key), or a time step that is not above 0.
 std::optional<ImpossibleField> impossible_field(const Record&);
 
 // A column's member of a record, const as the record is.

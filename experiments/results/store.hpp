@@ -100,7 +100,7 @@ class Store {
   void begin_session(const std::string& command, const std::vector<StudyCases>& = {},
                      const Shard& = {});
   /// The cases that sessions planned to run, each key once, sorted by key. Throws InputError if a
-  /// shard is none.
+  /// stored number of a shard is out of range.
   std::vector<PlannedKey> planned() const;
   /// Marks cases that a merge did without. Reports mention them until they are stored. Throws
   /// InputError.
