@@ -29,7 +29,8 @@ constexpr ParamSpec kParams[] = {
         "kLST: share of a link's error that one projection removes; above 1 over-relaxes"),
     ParamSpec::real(
         "hardness", "", "0.1", 0, 1,
-        "kKHR: share of the penetration that one contact pass removes; 0.1 is Bullet's own"),
+        "kKHR: share of the penetration that one contact pass removes; 0.1 is Bullet's own")
+        .as(ParamSpec::Role::contact_share),
     bullet_ref::kMargin,
     bullet_ref::kVoxel,
     ParamSpec::choice(

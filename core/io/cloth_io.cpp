@@ -15,7 +15,6 @@ namespace taut {
 
 namespace {
 
-constexpr int kMaxVertices = 1 << 24;
 constexpr Range kSpace = Range::within(kFar);
 
 std::optional<Grid> read_grid(Section& cloth) {

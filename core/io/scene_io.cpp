@@ -295,9 +295,9 @@ Bending read_bending(Section& section, const Fabric* fabric) {
 void set_steps(const FileKeys& said, Section& time, Scene& scene) {
   scene.dt = static_cast<double>(static_cast<float>(said.dt));
   const double steps = std::ceil(said.duration / scene.dt * (1 - 1e-7));
-  constexpr double kMaxSteps = 1e9;
   if (steps > kMaxSteps) {
-    time.report("duration", "makes " + as_typed(steps) + " steps; at most 1e9 are allowed");
+    time.report("duration", "makes " + as_typed(steps) + " steps; at most " + as_typed(kMaxSteps) +
+                                " are allowed");
     return;
   }
   scene.steps = std::max(1, static_cast<int>(steps));

@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "core/model/input_error.hpp"
-#include "core/model/names.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -208,8 +207,9 @@ std::string_view parameter_with(ParamSpec::Role role, std::span<const ParamSpec>
 }
 
 std::string_view usual_name(ParamSpec::Role role) {
-  static constexpr Names<ParamSpec::Role::instructions> kUsual{"", "precision", "simd"};
-  return kUsual[role];
+  if (role == ParamSpec::Role::precision) return "precision";
+  if (role == ParamSpec::Role::instructions) return "simd";
+  return "";
 }
 
 }  // namespace taut

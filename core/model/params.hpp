@@ -29,8 +29,10 @@ struct ParamSpec {
   /// What a parameter means to those who know no solver's names.
   enum class Role {
     none,
-    precision,    ///< the scalar type: "float" or "double"
-    instructions  ///< the instruction set of the kernels, which changes no bits; "auto" chooses
+    precision,      ///< the scalar type: "float" or "double"
+    instructions,   ///< the instruction set of the kernels, which changes no bits; "auto" chooses
+    contact_share,  ///< share of a depth that one pass over the contacts corrects
+    face_contact    ///< whether faces of the cloth touch bodies, not only vertices: "on"
   };
   Role role = Role::none;
 
@@ -88,7 +90,7 @@ struct ParamSpec {
 /// Name of the parameter with that role; "": there is none.
 std::string_view parameter_with(ParamSpec::Role, std::span<const ParamSpec>);
 /// Name that a parameter with that role has in a solver that declares no roles, such as a program
-/// from outside.
+/// from outside; "": none is usual.
 std::string_view usual_name(ParamSpec::Role);
 
 /// An item "key=value" of a solver's text. A value in quotes ('a, b' or "a, b") may contain commas;

@@ -50,8 +50,9 @@ SceneKey other(std::string_view path, std::string_view type, std::string_view un
 // Scenes are hashed in the order of the table: add a new key at the end of its section, with
 // came_later().
 const SceneKey kKeys[] = {
-    other("cloth.grid", "two whole numbers", "1", "1 to 2^24 vertices, 2 at least", "", "[32, 32]",
-          "vertices along u and v; `[1, n]` is a chain")
+    other("cloth.grid", "two whole numbers", "1",
+          lasting("1 to 2^" + std::to_string(kVertexBits) + " vertices, 2 at least"), "",
+          "[32, 32]", "vertices along u and v; `[1, n]` is a chain")
         .needed_for(ClothKind::grid),
     other("cloth.mesh", "file", "", "", "needed for a mesh", "\"disc.obj\"",
           "OBJ file, relative to the scene; excludes `grid`"),
@@ -232,7 +233,7 @@ const SceneKey kKeys[] = {
            "rounded to binary32, because Bullet keeps it so: all solvers get the same"),
     number("time.duration", &FileKeys::duration, "s", Range::positive(1e6), "5",
            "rounded up to whole steps")
-        .limited("1e9 steps at most"),
+        .limited(lasting(as_typed(kMaxSteps) + " steps at most")),
 
     other("fabric", "string", "", "`taut list fabrics`", "none", "\"petrak-m3\"",
           "mass by area and bending stiffness of a fabric as it was measured; `--fabric` and a "

@@ -66,6 +66,10 @@ struct FileKeys {
   double duration = 10;  ///< s
 };
 
+/// Most vertices of a cloth, a power of two, and most steps of a run.
+inline constexpr int kVertexBits = 24, kMaxVertices = 1 << kVertexBits;
+inline constexpr double kMaxSteps = 1e9;
+
 /// A key of a scene file. A key with a member is a single value. Other keys are only described here
 /// and have reading code of their own.
 struct SceneKey {

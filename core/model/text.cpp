@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <deque>
+#include <utility>
 
 namespace taut {
 
@@ -35,6 +38,13 @@ std::string as_typed(double value) {
   const auto digits = text.find_first_of("0123456789", exponent);
   if (text[digits] == '0') text.erase(digits, 1);
   return text;
+}
+
+std::string percent(double share) { return as_typed(std::round(1e8 * share) / 1e6) + " %"; }
+
+std::string_view lasting(std::string text) {
+  static auto& all = *new std::deque<std::string>;  // tables point into it until the very end
+  return all.emplace_back(std::move(text));
 }
 
 std::vector<std::string> parts_of(std::string_view list, char separator) {

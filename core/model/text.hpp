@@ -18,6 +18,13 @@ std::string shortest(double value);
 /// The shortest text as a person types it: 1e6 and not 1e+06, zero without a sign.
 std::string as_typed(double value);
 
+/// "5 %" of 0.05, without a digit that rounding alone makes.
+std::string percent(double share);
+
+/// The same text for as long as the program runs, for tables of std::string_view: a help text takes
+/// its numbers from the constants that it speaks of.
+std::string_view lasting(std::string);
+
 /// The parts of "a|b|c".
 std::vector<std::string> parts_of(std::string_view list, char separator = '|');
 

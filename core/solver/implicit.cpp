@@ -45,8 +45,9 @@ constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
 /// than conjugate gradients at every size that was tried (methods.md); its memory is the limit, 6
 /// kB a vertex at this size.
 constexpr std::size_t kFactorPays = 100000;
-constexpr ParamSpec kOwn[] = {
-    loop::iterations("50", "Newton iterations, at most; they end at 1e-9 of the forces of inertia"),
+const ParamSpec kOwn[] = {
+    loop::iterations("50", lasting("Newton iterations, at most; they end at " +
+                                   as_typed(kTolerance) + " of the forces of inertia")),
     loop::substeps("1", "each step is this many steps of dt / substeps"),
     kStiffness[0],
     kStiffness[1],
@@ -65,7 +66,7 @@ constexpr ParamSpec kOwn[] = {
                       "solver of the linear systems: a sparse LDLT, conjugate gradients with a "
                       "block Jacobi preconditioner, or one of them by the number of vertices"),
 };
-constexpr auto kParams = loop::with_common(kOwn);
+const auto kParams = loop::with_common(kOwn);
 
 bool factors(const Params& params, std::size_t moving) {
   return params.is("linear", "auto") ? moving <= kFactorPays : params.is("linear", "ldlt");

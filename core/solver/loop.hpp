@@ -124,10 +124,12 @@ inline constexpr ParamSpec kContact = ParamSpec::choice(
     "(continuous) or without (discrete); or as published, where cloth does not come to rest "
     "correctly: push them out once, before or after the sweeps, or put them on the surface for "
     "good (freeze) or for a step (halt)");
-inline constexpr ParamSpec kFaces = ParamSpec::choice(
-    "faces", "off", "off|edges|on",
-    "keep edges of the cloth (edges), or faces and edges (on), not only vertices, "
-    "out of balls, capsules, boxes and solid bodies of triangles");
+inline constexpr ParamSpec kFaces =
+    ParamSpec::choice(
+        "faces", "off", "off|edges|on",
+        "keep edges of the cloth (edges), or faces and edges (on), not only vertices, "
+        "out of balls, capsules, boxes and solid bodies of triangles")
+        .as(ParamSpec::Role::face_contact);
 inline constexpr ParamSpec kSelf = ParamSpec::choice(
     "self", "grid", "grid|octree|off",
     "self-collision where the scene has it: grid, octree as published by Vasilovici, or none");

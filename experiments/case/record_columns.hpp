@@ -11,15 +11,14 @@
 #include "experiments/case/record.hpp"
 #include "experiments/metrics/metric.hpp"
 
-// The fields of a record, a row for each. The table makes its JSON
-// (record_io), its row in a results file (experiments/results), its axis in a chart, `taut list
-// record` and, by tests/cli/keys_test.py --write, the tables of the documents. A new field is a
-// member of Record, a row here and its value in run_case.cpp. `taut export` (study_csv.cpp) and the
-// page (report/model/cases.cpp) choose their fields themselves. Raise kRecordSchema and
-// kSchemaVersion once per release that adds fields: every stored result is then computed again.
-// Another name in JSON raises kRecordSchema alone, and stored results stay valid. The number is
-// also in tests/cli/stored.py, tests/case/records_test.cpp, tests/results/store_test.cpp,
-// tests/fuzz/corpus/record and experiments/cli/README.md.
+// The fields of a record, a row for each. The table makes its JSON (record_io), its row in a
+// results file (experiments/results), its axis in a chart, `taut list record` and, by
+// tests/cli/keys_test.py --write, the tables of the documents. A new field is a member of Record, a
+// row here and its value in run_case.cpp; the line that RecordLine.IsThisOneLine expects shows it.
+// `taut export` (study_csv.cpp) and the page (report/model/cases.cpp) choose their fields
+// themselves. Raise kRecordSchema and kSchemaVersion once per release that adds fields: every
+// stored result is then computed again. Another name in JSON raises kRecordSchema alone, and stored
+// results stay valid.
 
 namespace taut {
 

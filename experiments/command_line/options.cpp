@@ -117,12 +117,14 @@ void add_record(CLI::App& app, bool& record) {
 }
 
 void add_limits(CLI::App& app, Limits& limits) {
-  static_assert(kWallPerCpu == 5, "the help says five times");
   app.add_option("--timeout", limits.seconds,
-                 "CPU time limit of a case [s] (default: 120); wall time: five times that")
+                 "CPU time limit of a case [s] (default: " + as_typed(limits.seconds) +
+                     "); wall time: " + as_typed(kWallPerCpu) + " times that")
       ->check(above_zero_seconds());
   const auto set = [&limits](double mb) { limits.bytes = static_cast<std::size_t>(mb) << 20; };
-  app.add_option_function<double>("--memory", set, "Memory limit of a case [MB] (default: 2048)")
+  app.add_option_function<double>(
+         "--memory", set,
+         "Memory limit of a case [MB] (default: " + std::to_string(limits.bytes >> 20) + ")")
       ->check(CLI::Range(64.0, 1e9));
 }
 

@@ -1,5 +1,7 @@
+#include <cmath>
 #include <numbers>
 
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -11,7 +13,7 @@ class Cantilever final : public Metric {
  public:
   static constexpr Unit kDegrees{Unit::Kind::other, "rad", "\u00B0", 180 / std::numbers::pi, false};
   static constexpr double kMost = std::numbers::pi / 3;  ///< rad, limit of Peirce's formula
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = "cantilever.angle",
        .unit = kDegrees,
        .help = "angle below the horizontal at which the clamp sees the middle of the last row, "
@@ -21,9 +23,11 @@ class Cantilever final : public Metric {
        .title = "angle of a cantilever"},
       {.name = "cantilever.bending_length",
        .unit = kLength,
-       .help = "Peirce's bending length (B/w)^(1/3) from that angle and the overhang L: L "
-               "(cos(angle/2)/(8 tan(angle)))^(1/3), too long by 0.4 % at 20 degrees, 1.9 % at "
-               "41.5, 4.4 % at 60; no value beyond 60, where the formula fails (57 % at 87)",
+       .help = lasting(
+           "Peirce's bending length (B/w)^(1/3) from that angle and the overhang L: L "
+           "(cos(angle/2)/(8 tan(angle)))^(1/3), too long by 0.4 % at 20 degrees, 1.9 % at 41.5, "
+           "4.4 % at 60, 57 % at 87; no value beyond " +
+           as_typed(std::round(kMost * kDegrees.scale)) + " degrees, where the formula fails"),
        .title = "bending length"}};
   static bool measures(const Scene& scene) {
     if (!scene.mesh.grid || scene.mesh.grid->nv < 3 || scene.gravity.isZero(0)) return false;

@@ -164,6 +164,6 @@ class Drape final : public Metric {
 }  // namespace
 
 TAUT_METRIC(drape, Drape, "How much of a cloth on a support hangs: Cusick's drape coefficient",
-            "ISO 9073-9, BS 5058; the shadow by 1000 lines, exact along each");
+            "ISO 9073-9, BS 5058; the shadow by lines, exact along each");
 
 }  // namespace taut

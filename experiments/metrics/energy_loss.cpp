@@ -1,3 +1,4 @@
+#include "core/model/text.hpp"
 #include "experiments/metrics/mechanical_energy.hpp"
 #include "experiments/metrics/metric.hpp"
 
@@ -15,15 +16,19 @@ constexpr double kSwing = 1e-3;
 
 class EnergyLoss final : public Metric {
  public:
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = "energy.loss",
        .unit = kSignedShare,
-       .help = "kinetic + potential energy lost from the first turning point to the last, over the "
-               "sum of the largest kinetic energies between them; a turning point is a minimum of "
-               "the kinetic energy of at most a quarter of the maximum on either side. No value "
-               "with colliders, self-collision, wind, damping or moving pins, which do work; none "
-               "if that sum is below a thousandth of m g L (cloth at rest) or if the loss exceeds "
-               "it (cloth that sinks and does not swing)",
+       .help = lasting(
+           "kinetic + potential energy lost from the first turning point to the last, over the sum "
+           "of the largest kinetic energies between them; a turning point is a minimum of the "
+           "kinetic energy of at most " +
+           percent(kTurn) +
+           " of the maximum on either side. No value with colliders, self-collision, wind, damping "
+           "or moving pins, which do work; none if that sum is at most " +
+           as_typed(kSwing) +
+           " m g L (cloth at rest) or if the loss exceeds it (cloth that sinks and does not "
+           "swing)"),
        .window = Window::run,
        .title = "energy lost from peak to peak"},
   };

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "core/model/triangle.hpp"
 #include "core/model/triangle_mesh.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -10,9 +11,13 @@ namespace taut {
 
 namespace {
 
-/// Depth of the deepest point of a triangle in a solid body, to 1 % of its longest side; `at_least`
-/// if it is no deeper. Both are in the body's frame. Two points at distance d differ in depth by at
-/// most d, so a part that cannot be deeper than the known maximum is not examined further.
+/// Error of a face's depth in a body of triangles, as a share of the face's longest side.
+constexpr double kDepthError = 0.01;
+
+/// Depth of the deepest point of a triangle in a solid body, to kDepthError of its longest side;
+/// `at_least` if it is no deeper. Both are in the body's frame. Two points at distance d differ in
+/// depth by at most d, so a part that cannot be deeper than the known maximum is not examined
+/// further.
 double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_least) {
   double longest = 0;
   Eigen::AlignedBox3d around;
@@ -31,7 +36,7 @@ double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_l
     for (const Vec3& corner : t) reach = std::max(reach, (corner - middle).norm());
     const double depth = -body.nearest(middle).distance;
     deepest = std::max(deepest, depth);
-    if (depth + reach <= deepest + 0.01 * longest) continue;
+    if (depth + reach <= deepest + kDepthError * longest) continue;
     const Vec3 ab = (t[0] + t[1]) / 2, bc = (t[1] + t[2]) / 2, ca = (t[2] + t[0]) / 2;
     parts.insert(parts.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
   }
@@ -40,7 +45,7 @@ double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_l
 
 class Faces final : public Metric {
  public:
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = "face.max",
        .unit = kErrorLength,
        .help = "largest depth of a point of a face below the surface of a ball, box, capsule or "
@@ -63,7 +68,8 @@ class Faces final : public Metric {
       {"face.box", kErrorLength, "face.max of the boxes alone"},
       {"face.capsule", kErrorLength, "face.max of the capsules alone"},
       {"face.mesh", kErrorLength,
-       "face.max of the bodies of triangles alone, to 1 % of a face's longest side"},
+       lasting("face.max of the bodies of triangles alone, to " + percent(kDepthError) +
+               " of a face's longest side")},
       {"face.passages", kErrorCount,
        "number of times that the centre of a ball, a corner of a box, a point of a capsule's axis "
        "or a vertex of a body of triangles passes through a face, returns included; paths are "

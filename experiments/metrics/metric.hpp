@@ -211,6 +211,7 @@ class LastSecond {
            (last_ - step) / std::max(1, length_ / kSamples) < kSamples;
   }
   static constexpr int kSamples = 10;
+  static std::string samples_text() { return std::to_string(kSamples) + " moments"; }
 
  private:
   int last_;

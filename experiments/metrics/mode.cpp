@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -49,14 +50,18 @@ class Mode final : public Metric {
   /// Share of the first amplitude below which amplitudes do not count.
   static constexpr double kLeast = 0.01;
 
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = "mode.damping",
        .unit = kErrorShare,
-       .help = "damping ratio of the lowest mode of small swings, whose exact value is 0: d/sqrt(4 "
-               "pi^2 + d^2), d the logarithmic decrement per period, from the first amplitude to "
-               "the last of at least 1 % of it. Has a value for rows that hang from a pinned one "
-               "and are let go at most 0.1 rad from rest, without damping, wind, colliders or "
-               "self-collision; rows that stretch much bounce instead of swinging",
+       .help = lasting(
+           "damping ratio of the lowest mode of small swings, whose exact value is 0: "
+           "d/sqrt(4 pi^2 + d^2), d the logarithmic decrement per period, from the first amplitude "
+           "to the last of at least " +
+           percent(kLeast) +
+           " of it. Has a value for rows that hang from a pinned one and are let go at most " +
+           as_typed(kSmall) +
+           " rad from rest, without damping, wind, colliders or self-collision; rows that stretch "
+           "much bounce instead of swinging"),
        .window = Window::run,
        .title = "damping ratio of the lowest mode",
        .role = Role::motion},

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -19,6 +21,12 @@ int first_steps(const Scene& scene) {
   const double steps =
       g > 0 ? kFirst * std::sqrt(extent(scene) / g) / scene.dt : kFirstWithoutGravity;
   return static_cast<int>(std::lround(std::min<double>(steps, scene.steps)));
+}
+
+std::string first_time_text() {
+  const double square_metre = kFirst * std::sqrt(std::numbers::sqrt2 / 9.81);
+  return "T = " + as_typed(kFirst) + " sqrt(size/g), " +
+         as_typed(std::round(10 * square_metre) / 10) + " s for a square metre";
 }
 
 Vec3 way_of_pins(const Scene& scene, double t) {

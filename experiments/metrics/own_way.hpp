@@ -1,14 +1,21 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "core/model/scene.hpp"
 
 namespace taut {
 
-/// Number of steps in which a cloth shows whether it moves: T = 1.3 sqrt(L/g) with the scene's
-/// extent L, which is half a second for a hanging square metre; 32 steps without gravity.
+/// Number of steps in which a cloth shows whether it moves, by the scene's extent; a fixed number
+/// without gravity.
 int first_steps(const Scene&);
+/// Their time T for a help text: its formula, and that of a square metre in seconds.
+std::string first_time_text();
+
+/// Most free vertices of a cloth whose exact steps a metric computes.
+inline constexpr std::size_t kMostFree = 2500;
 
 /// Mean displacement [m] of the pins until time t, which carries the cloth along.
 Vec3 way_of_pins(const Scene&, double t);

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -24,26 +25,31 @@ struct Kind {
 
 class Principal final : public Metric {
  public:
-  static constexpr ValueSpec kValues[] = {
+  static inline const std::string_view kP95 =
+      lasting("its 95th percentile, mean of " + LastSecond::samples_text());
+  static inline const std::string_view kLargest =
+      lasting("its largest, of " + LastSecond::samples_text());
+  static inline const ValueSpec kValues[] = {
       {"principal.first.p50", kSignedShare,
-       "sigma_1 - 1 of each face, sigma_1 >= sigma_2 the singular values of F = [dx][dX]^-1: "
-       "median over faces, mean of ten moments of the last second"},
-      {"principal.first.p95", kSignedShare, "its 95th percentile, mean of ten moments"},
-      {"principal.first.max", kSignedShare, "its largest, of ten moments"},
+       lasting("sigma_1 - 1 of each face, sigma_1 >= sigma_2 the singular values of F = "
+               "[dx][dX]^-1: median over faces, mean of " +
+               LastSecond::samples_text() + " of the last second")},
+      {"principal.first.p95", kSignedShare, kP95},
+      {"principal.first.max", kSignedShare, kLargest},
       {"principal.second.p50", kSignedShare, "1 - sigma_2, how far a face shortens: median"},
-      {"principal.second.p95", kSignedShare, "its 95th percentile, mean of ten moments"},
-      {"principal.second.max", kSignedShare, "its largest, of ten moments"},
+      {"principal.second.p95", kSignedShare, kP95},
+      {"principal.second.max", kSignedShare, kLargest},
       {"principal.warp.p50", kErrorShare,
        "strain | |F d| - 1 | along the grid's v, the direction in which a sheet hangs: median"},
-      {"principal.warp.p95", kErrorShare, "its 95th percentile, mean of ten moments"},
-      {"principal.warp.max", kErrorShare, "its largest, of ten moments"},
+      {"principal.warp.p95", kErrorShare, kP95},
+      {"principal.warp.max", kErrorShare, kLargest},
       {"principal.weft.p50", kErrorShare, "the same strain along the grid's u: median"},
-      {"principal.weft.p95", kErrorShare, "its 95th percentile, mean of ten moments"},
-      {"principal.weft.max", kErrorShare, "its largest, of ten moments"},
+      {"principal.weft.p95", kErrorShare, kP95},
+      {"principal.weft.max", kErrorShare, kLargest},
       {"principal.bias.p50", kErrorShare,
        "the same strain along the two directions halfway between u and v, the larger one: median"},
-      {"principal.bias.p95", kErrorShare, "its 95th percentile, mean of ten moments"},
-      {"principal.bias.max", kErrorShare, "its largest, of ten moments"},
+      {"principal.bias.p95", kErrorShare, kP95},
+      {"principal.bias.max", kErrorShare, kLargest},
   };
   static bool measures(const Scene& scene) { return !scene.mesh.triangles.empty(); }
   explicit Principal(const Scene& scene) : end_(scene) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/metrics/reference_path.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 class Distance final : public Metric {
  public:
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = "reference.rms",
        .unit = kErrorLength,
        .help = "distance of the free vertices from the static reference, RMS over vertices and "
@@ -25,8 +26,8 @@ class Distance final : public Metric {
        "largest distance of a free vertex from the static reference, in the last second", true,
        Window::last_second, "largest distance from the reference"},
       {"reference.motion", kErrorLength,
-       "distance of the free vertices from the dynamic reference, RMS over vertices, at its moment "
-       "(0.5 s)",
+       "distance of the free vertices from the dynamic reference, RMS over vertices, at its first "
+       "moment",
        false, Window::end, "distance from the reference in motion (RMS)"},
       {"reference.floor", kLength, "the static reference's own error, by self-convergence", false,
        Window::none},
@@ -37,11 +38,12 @@ class Distance final : public Metric {
        false, Window::none},
       {.name = "motion.share",
        .unit = kSignedShare,
-       .help =
+       .help = lasting(
            "share of the reference's motion that the cloth makes: sum of (cloth's move . "
            "reference's move) over the sum of the reference's squared, over the free vertices' "
-           "moves from each moment of the dynamic reference to the next (0.5 s). 0 if the cloth "
-           "stands still; no value if the reference hardly moves, at most 5 % of the cloth's size",
+           "moves from each moment of the dynamic reference to the next. 0 if the cloth stands "
+           "still; no value if the reference hardly moves, less than " +
+           percent(ReferencePath::kLeastWay) + " of the cloth's size"),
        .window = Window::none,
        .title = "share of the way travelled",
        .role = Role::motion},
@@ -54,8 +56,8 @@ class Distance final : public Metric {
       {.name = "motion.phase",
        .unit = kTime,
        .help = "time shift that brings the cloth nearest to the dynamic reference at its moments; "
-               "positive if the cloth is late; at most 0.5 s (the first moment), over the moments "
-               "at least that long before the end of the run",
+               "positive if the cloth is late; at most the time of the first moment, over the "
+               "moments at least that long before the end of the run",
        .window = Window::none,
        .title = "phase behind the reference in motion"},
       {.name = "motion.horizon",

@@ -1,4 +1,5 @@
 #include "core/model/crossings.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -7,21 +8,30 @@ namespace {
 
 class SelfIntersection final : public Metric {
  public:
-  static constexpr ValueSpec kValues[] = {
+  /// Distance of faces that coincide, in radii.
+  static constexpr double kCoincident = 0.01;
+  static constexpr int kMoments = 20;  ///< of the run, at which faces are tested
+
+  static inline const ValueSpec kValues[] = {
       {.name = "self.crossings",
        .unit = kErrorCount,
-       .help = "pairs of faces that share no vertex and cross, or coincide (nearer than 1 % of the "
-               "radius, since layers in one plane do not cross), at the end",
+       .help = lasting("pairs of faces that share no vertex and cross, or coincide (nearer than " +
+                       percent(kCoincident) +
+                       " of the radius, since layers in one plane do not cross), at the end"),
        .in_series = true,
        .window = Window::end,
        .title = "crossing faces",
        .kept = true},
-      {"self.crossings.max", kErrorCount, "the same, largest of ten moments of the last second"},
+      {"self.crossings.max", kErrorCount,
+       lasting("the same, largest of " + LastSecond::samples_text() + " of the last second")},
       {"self.crossings.peak", kErrorCount,
-       "the same, largest of these and of twenty moments of the run", false, Window::run},
+       lasting("the same, largest of these and of " + std::to_string(kMoments) +
+               " moments of the run"),
+       false, Window::run},
       {"self.gap", kSignedLength,
-       "least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at most 0: "
-       "how far the particles' balls overlap, worst of ten moments of the last second",
+       lasting("least of (distance - min(2 radius, distance at rest)) over pairs of vertices, at "
+               "most 0: how far the particles' balls overlap, worst of " +
+               LastSecond::samples_text() + " of the last second"),
        true},
       {.name = "self.contour",
        .unit = kErrorLength,
@@ -40,7 +50,7 @@ class SelfIntersection final : public Metric {
 
   void observe(const Snapshot& m) override {
     const bool at_end = end_.samples(m.step);
-    if (!at_end && m.step % std::max(1, steps_ / 20) != 0) return;
+    if (!at_end && m.step % std::max(1, steps_ / kMoments) != 0) return;
     const Crossings found = crossed(m.state.x);
     count_.add(m.step, at_end, found.pairs);
     if (m.step == steps_) final_ = found;
@@ -62,7 +72,8 @@ class SelfIntersection final : public Metric {
   };
   Crossings crossed(const std::vector<Vec3>& x) const {
     const auto crossing = crossings(faces_, x);
-    return {static_cast<double>(crossing.size() + coincidences(faces_, x, 0.01 * radius_).size()),
+    return {static_cast<double>(crossing.size() +
+                                coincidences(faces_, x, kCoincident * radius_).size()),
             contour_length(faces_, x, crossing)};
   }
   std::vector<Triangle> faces_;

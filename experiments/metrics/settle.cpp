@@ -1,3 +1,4 @@
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -8,11 +9,12 @@ class Settle final : public Metric {
  public:
   static constexpr double kSpeed = 5e-3, kWay = 5e-4;  ///< m/s, m
 
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = "settle.time",
        .unit = kTime,
-       .help = "time after which no free vertex is faster than 5 mm/s or goes further than 0.5 mm "
-               "from where it was then; the duration if one still does at the end",
+       .help = lasting("time after which no free vertex is faster than " + as_typed(1e3 * kSpeed) +
+                       " mm/s or goes further than " + as_typed(1e3 * kWay) +
+                       " mm from where it was then; the duration if one still does at the end"),
        .window = Window::run,
        .kept = true},
   };

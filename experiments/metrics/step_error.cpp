@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
+#include "core/model/text.hpp"
 #include "core/reference/exact_path.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/metrics/own_way.hpp"
@@ -13,16 +15,16 @@ namespace taut {
 namespace {
 
 /// Every kEvery-th step is judged, at most kMostSamples of them including the last, and only for at
-/// most kMostVertices vertices: each judgement takes as long as some forty steps of Jakobsen's
-/// solver.
+/// most kMostFree vertices: each judgement takes as long as some forty steps of Jakobsen's solver.
 constexpr int kEvery = 16, kMostSamples = 8;
-constexpr std::size_t kMostVertices = 2500;
 /// Least share of the judged steps that must be believed.
 constexpr double kEnough = 0.5;
 /// Least displacement of the cloth, as a share of the scene's extent.
 constexpr double kLeastWay = 0.05;
 /// Largest share of the expected displacement that rounding may seem to miss.
 constexpr double kMostRounding = 0.1;
+/// Most displacement that the cloth may seem to have missed, in falls from its start.
+constexpr double kMostFalls = 2;
 /// Number of the first steps in which the displacement is judged.
 constexpr int kFirstSamples = 8;
 
@@ -36,29 +38,33 @@ double relative_rounding(const std::vector<Vec3>& x) {
   return (all ? 0x1p-24 : 0x1p-53) / std::sqrt(3.0);
 }
 
-/// Upper bound of a cloth's displacement [m] in these seconds: twice a fall from its start. Where
-/// hundreds of substeps in single precision have rounded in contact, what they seem to miss is
-/// more. Infinite without gravity, where nothing is known.
+/// Upper bound of a cloth's displacement [m] in these seconds, by kMostFalls. Where hundreds of
+/// substeps in single precision have rounded in contact, what they seem to miss is more. Infinite
+/// without gravity, where nothing is known.
 double farthest(const Scene& scene, double seconds) {
   const double g = scene.gravity.norm();
   if (g == 0) return std::numeric_limits<double>::infinity();
   double fastest = 0;
   for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());
-  return 2 * (g * seconds / 2 + fastest) * seconds;
+  return kMostFalls * (g * seconds / 2 + fastest) * seconds;
 }
 
 /// Error of single steps, from the step that the solver declares and the states alone: the state
 /// before a step, or before its last substep, and the state after it.
 class StepErrors final : public Metric {
  public:
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = "step.error",
        .unit = kErrorLength,
-       .help =
+       .help = lasting(
            "distance between the free vertices after a step and where the exact step of implicit "
-           "Euler leads from the solver's own state before it, RMS over vertices, mean over every "
-           "16th step, or eight steps of a long run; the last substep is judged if the solver has "
-           "substeps. No value if fewer than half of these steps can be believed",
+           "Euler leads from the solver's own state before it, RMS over vertices, mean over one "
+           "step in " +
+           std::to_string(kEvery) + ", or " + std::to_string(kMostSamples) +
+           " steps of a long run; the last substep is judged if the solver has substeps. No value "
+           "if fewer than " +
+           percent(kEnough) + " of these steps can be believed, or with more than " +
+           std::to_string(kMostFree) + " free vertices"),
        .window = Window::run,
        .title = "distance from the exact step",
        .role = Role::step_error,
@@ -70,12 +76,15 @@ class StepErrors final : public Metric {
        // w.(w + l)/|w + l|^2 with w the cloth's way and l the sum over steps of (T - t) times the
        // velocity that the step at t misses along its own way. A step rounds by |x|/sqrt(3) times
        // 2^-24 if all coordinates are floats, else 2^-53.
-       .help = "how much of the way that exact steps would have led the cloth it has gone, in the "
-               "time T = 1.3 sqrt(size/g), half a second for a square metre; estimated from what "
-               "each step misses, relative to the pins or else to the centre of mass. 0: it stands "
-               "still. No value if the way is at most 5 % of the cloth's size or longer than twice "
-               "a fall, if rounding may be more than a tenth of it, or if way.share has a value, "
-               "which knows the exact steps",
+       .help = lasting(
+           "how much of the way that exact steps would have led the cloth it has gone, in the "
+           "time " +
+           first_time_text() +
+           "; estimated from what each step misses, relative to the pins or else to the centre of "
+           "mass. 0: it stands still. No value if the way is at most " +
+           percent(kLeastWay) + " of the cloth's size or longer than " + as_typed(kMostFalls) +
+           " falls, if rounding may be more than " + percent(kMostRounding) +
+           " of it, or if way.share has a value, which knows the exact steps"),
        .window = Window::none,
        .title = "share of the way, from what steps miss"},
       {"step.error.believed", kSignedShare,
@@ -96,8 +105,8 @@ class StepErrors final : public Metric {
 
   void declare(const DeclaredStep& step) override {
     declared_ = step;
-    if (declared_.none.empty() && free_vertices(scene_).size() > kMostVertices)
-      declared_.none = "more than " + std::to_string(kMostVertices) + " vertices";
+    if (declared_.none.empty() && free_vertices(scene_).size() > kMostFree)
+      declared_.none = "more than " + std::to_string(kMostFree) + " free vertices";
     if (!declared_.none.empty()) return;
     enter(0);
   }

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <string>
 
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 
 namespace taut {
@@ -104,7 +106,7 @@ constexpr StretchValue kStretchValues[] = {
      &Strain::max},
     {{.name = "stretch.p95",
       .unit = kErrorShare,
-      .help = "95th percentile of |strain| of those links, mean of ten moments of the last second",
+      .help = "95th percentile of |strain| of those links",
       .floor = kRounding,
       .falls_with_sweeps = true},
      {},
@@ -144,7 +146,7 @@ constexpr StretchValue kStretchValues[] = {
      Family::structural,
      &Group::max,
      &Strain::max},
-    {{"structural.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+    {{"structural.p95", kErrorShare, "95th percentile of their |strain|"},
      Family::structural,
      &Group::percentile},
     {{"structural.compression", kErrorShare, "their largest shortening in the last second"},
@@ -158,7 +160,7 @@ constexpr StretchValue kStretchValues[] = {
      Family::shear,
      &Group::max,
      &Strain::max},
-    {{"shear.p95", kErrorShare, "95th percentile of their |strain|, mean of ten moments"},
+    {{"shear.p95", kErrorShare, "95th percentile of their |strain|"},
      Family::shear,
      &Group::percentile},
     {{"shear.compression", kErrorShare, "their largest shortening in the last second"},
@@ -172,17 +174,21 @@ constexpr StretchValue kStretchValues[] = {
      Family::bend,
      &Group::max,
      &Strain::max},
-    {{"bend.p95", kShare, "95th percentile of their |strain|, mean of ten moments"},
-     Family::bend,
-     &Group::percentile},
+    {{"bend.p95", kShare, "95th percentile of their |strain|"}, Family::bend, &Group::percentile},
     {{"bend.compression", kShare, "their largest shortening in the last second"},
      Family::bend,
      &Group::compression},
 };
 
-constexpr auto kSpecs = [] {
+const auto kSpecs = [] {
   std::array<ValueSpec, std::size(kStretchValues)> all{};
-  std::ranges::transform(kStretchValues, all.begin(), &StretchValue::spec);
+  std::ranges::transform(kStretchValues, all.begin(), [](const StretchValue& value) {
+    ValueSpec spec = value.spec;
+    if (value.of_run == &Group::percentile)
+      spec.help = lasting(std::string(spec.help) + ", mean of " + LastSecond::samples_text() +
+                          " of the last second");
+    return spec;
+  });
   return all;
 }();
 static_assert(std::ranges::all_of(kStretchValues, [](const StretchValue& value) {
@@ -200,7 +206,7 @@ std::vector<Link> movable_links(const Scene& scene) {
 
 class Stretch final : public Metric {
  public:
-  static constexpr auto kValues = kSpecs;
+  static constexpr const auto& kValues = kSpecs;
   static bool measures(const Scene& scene) { return !movable_links(scene).empty(); }
   explicit Stretch(const Scene& scene) : links_(movable_links(scene)), end_(scene) {
     for (const Link& link : links_) family(link.family).exists = true;

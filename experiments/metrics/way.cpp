@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "core/model/text.hpp"
 #include "core/reference/exact_path.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/metrics/own_way.hpp"
@@ -14,7 +16,6 @@ constexpr int kSamples = 8;  ///< number of moments that are compared
 constexpr int kMostSteps = 64;
 /// Least displacement of the cloth, as a share of the scene's extent.
 constexpr double kLeast = 0.01;
-constexpr std::size_t kMostFree = 2500;
 /// Largest stiffness of links [N/m]. Links of 1e5 N/m move as far as those of 1e8 to 0.5 % on
 /// `drape` and to 0.1 % on `swing`; those of 1e3 N/m move 1.43 times as far on `drape`.
 constexpr double kMostStiffness = 1e5;
@@ -23,16 +24,19 @@ constexpr double kMostStiffness = 1e5;
 /// its steps lead.
 class Way final : public Metric {
  public:
-  static constexpr ValueSpec kValues[] = {
+  static inline const ValueSpec kValues[] = {
       {.name = kShareOfWay,
        .unit = kSignedShare,
-       .help =
-           "share of the way that exact steps of implicit Euler lead the cloth in the time T = 1.3 "
-           "sqrt(size/g), half a second for a square metre: sum of w.e over sum of |e|^2 at eight "
-           "times. w is the cloth's way from the start relative to its pins; e is that of exact "
-           "steps of the scene's links, with at most 1e5 N/m. 0 if the cloth stands still. No "
-           "value with contact, bending, wind or pins that let go, with more than 2500 vertices, "
-           "or if e is less than 1 % of the cloth's size, RMS over vertices",
+       .help = lasting(
+           "share of the way that exact steps of implicit Euler lead the cloth in the time " +
+           first_time_text() + ": sum of w.e over sum of |e|^2 at " + std::to_string(kSamples) +
+           " moments. w is the cloth's way from the start relative to its pins; e is that of "
+           "exact steps of the scene's links, with at most " +
+           as_typed(kMostStiffness) +
+           " N/m. 0 if the cloth stands still. No value with contact, bending, wind or pins that "
+           "let go, with more than " +
+           std::to_string(kMostFree) + " free vertices, or if e is less than " + percent(kLeast) +
+           " of the cloth's size, RMS over vertices"),
        .window = Window::none,
        .title = "share of the way of exact steps"},
   };

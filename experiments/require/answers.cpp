@@ -124,9 +124,10 @@ KeptQuantity parse_answer(const std::string& asked, const Observation& full) {
 
 std::vector<std::string> default_answers(const Observation& full) {
   std::vector<std::string> names{kShapeAnswer};
-  const auto& params = full.record.params;  // Bullet's parameter "faces" is about normals
-  const bool faces =
-      params.contains("contact") && params.contains("faces") && params.at("faces") == "on";
+  const auto& params = full.record.params;
+  const auto touching = params.find(
+      std::string(parameter_with(ParamSpec::Role::face_contact, full.one.choice.entry->params)));
+  const bool faces = touching != params.end() && touching->second == "on";
   for (const MetricEntry* metric : metrics()) {
     const bool of_faces = std::ranges::count(metric->values, Role::face_depth, &ValueSpec::role);
     for (const ValueSpec& value : metric->values)

@@ -162,7 +162,7 @@ Table table_of(ProbePart part, const std::vector<std::string>& asked, Answer& an
               {{"scene"},
                {"solver"},
                {"probes"},
-               {"within", "within a quarter"},
+               {"within", "within " + percent(kWithin)},
                {"refused"},
                {"without_exact", "no exact step"},
                {"least", "least of told/true"},
@@ -192,8 +192,9 @@ Table table_of(ProbePart part, const std::vector<std::string>& asked, Answer& an
     }
   }
   table.rows.push_back(all.row("all", ""));
-  answer.add({name + "_share", name + ": within a quarter of the true distance", kShare},
-             all.probes > 0 ? all.within / static_cast<double>(all.probes) : 0);
+  answer.add(
+      {name + "_share", name + ": within " + percent(kWithin) + " of the true distance", kShare},
+      all.probes > 0 ? all.within / static_cast<double>(all.probes) : 0);
   return table;
 }
 

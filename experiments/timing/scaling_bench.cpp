@@ -16,12 +16,12 @@ namespace taut {
 namespace {
 
 constexpr int kMost = 1 << 16;  ///< most sweeps or substeps that a search tries
-constexpr std::size_t kMemory = std::size_t{8} << 30;  ///< private memory of a case [bytes]
+constexpr std::size_t kCaseMemory = std::size_t{8} << 30;  ///< private memory of a case [bytes]
 
 Measured measure(const Case& one, double expected, Store& store, const ScalingOptions& options) {
   const auto start = SteadyClock::now();
   options.say(one.id + (expected < 1 ? "" : ", about " + number_text(expected, 2) + " s"));
-  BenchedCase benched{*run_stored(one, store, {options.limit * 4, kMemory}), {}};
+  BenchedCase benched{*run_stored(one, store, {options.limit * 4, kCaseMemory}), {}};
   Timing& timing = benched.timing;
   const Record& record = benched.record;
   if (record.status.kind != Status::Kind::unsupported && record.status.is_result()) try {
@@ -62,7 +62,7 @@ Measured least(const Case& base, double error, Store& store, const ScalingOption
     return make_case(spec);
   };
   const auto meets = [&](int n) -> std::optional<bool> {
-    const auto record = run_stored(with_value(n), store, {kLongestSeconds, kMemory}, end);
+    const auto record = run_stored(with_value(n), store, {kLongestSeconds, kCaseMemory}, end);
     if (!record) return {};
     last = record;
     return completed(record->status) && record->value(kErrorMetric) <= error;

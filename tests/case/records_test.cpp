@@ -183,7 +183,7 @@ TEST(RecordLine, HasEveryColumnOnce) {
 
 TEST(RecordLine, IsThisOneLine) {
   const std::string text =
-      R"({"schema":3,"key":")" + std::string(63, '0') +
+      R"({"schema":)" + std::to_string(kRecordSchema) + R"(,"key":")" + std::string(63, '0') +
       R"(f","id":"an id","setting":"a setting","spec":{"scene":"file","settings":["a=1","b=2"],"solver":"text"},)"
       R"("scene":"hang","solver":"xpbd","params":{"p":"q"},"substeps":2,"sweeps":8,)"
       R"("work_parameters":["p"],"dt":0.25,"steps":6,"vertices":4,"links":5,)"

@@ -13,6 +13,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENES, STUDIES = ROOT / "experiments/scenes/README.md", ROOT / "experiments/studies/README.md"
+RECORDS = sorted((ROOT / "tests/fuzz/corpus/record").glob("*.json"))  # of another schema they would test no more than its refusal
 VERBS, RESULTS = ROOT / "experiments/cli/README.md", ROOT / "experiments/results/README.md"
 
 
@@ -93,6 +94,9 @@ def main():
         ["key", "meaning"], [[f"`{row['key']}`", row["help"]] for row in rows_of(answer, "study_keys")]))
     verbs = replaced(verbs, "\n## A record\n", markdown(["key", "column", "type", "meaning"], [
         [f"`{row['key']}`", f"`{row['column']}`" if row["column"] else "", row["type"], row["help"]] for row in fields]))
+    schema = re.search(r"\bkRecordSchema = (\d+);", (ROOT / "experiments/case/record_io.hpp").read_text())[1]
+    verbs = re.sub(r"(?<=`schema` is )\d+(?=;)", schema, verbs)
+    inputs = {file: re.sub(r'(?<="schema": )\d+', schema, file.read_text(), count=1) for file in RECORDS}
     columns = ", ".join(["case_id", *(row["column"] for row in fields if row["column"]), "is_result", "result_digest", "errors"])
     results = re.sub(r"(?<=\n\| cases \| a record each \| ).*(?= \|\n)", columns, results)
     statuses = next(row["help"] for row in fields if row["key"] == "status.kind")
@@ -104,13 +108,13 @@ def main():
     for file in wrong_versions():
         print(f"{file} names another newest version of the protocol than came_later() in core/model/scene_keys.cpp")
         wrong = 1
-    for file, text in (SCENES, scenes), (STUDIES, studies), (VERBS, verbs), (RESULTS, results):
+    for file, text in [(SCENES, scenes), (STUDIES, studies), (VERBS, verbs), (RESULTS, results), *inputs.items()]:
         if file.read_text() == text:
             continue
         if "--write" in sys.argv:
             file.write_text(text)
         else:
-            print(f"{file.relative_to(ROOT)} has other keys than `taut list`: tests/cli/keys_test.py BUILD --write")
+            print(f"{file.relative_to(ROOT)} differs from `taut list`: tests/cli/keys_test.py BUILD --write")
             wrong = 1
     return wrong
 

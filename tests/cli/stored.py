@@ -53,6 +53,7 @@ def keys(folder):
 # (key in the JSON, column in the file, type) from the document, which keys_test.py compares with the program
 DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "experiments/cli/README.md"
 FIELDS = re.findall(r"^\| `([\w.]+)` \| `?(\w*)`? ?\| (text|number|whole number|JSON) \|", DOCUMENT.read_text(), re.MULTILINE)
+SCHEMA = int(re.search(r"`schema` is (\d+);", DOCUMENT.read_text())[1])
 
 
 def records(folder):
@@ -63,7 +64,7 @@ def records(folder):
 
 
 def record_of(row, values):
-    record = {"schema": 3}
+    record = {"schema": SCHEMA}
     for key, column, kind in FIELDS:
         value = values if not column else -1 if row[column] is None else json.loads(row[column]) if kind == "JSON" else row[column]
         if key == "log" and not value:

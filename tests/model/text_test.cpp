@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <string>
+#include <string_view>
 
 namespace taut::text_test {
 namespace {
@@ -20,6 +22,18 @@ TEST(Text, NumbersAreSaidAsTheyAreTyped) {
     const double value = 1.0625 * std::pow(10.0, power);
     EXPECT_EQ(std::strtod(as_typed(value).c_str(), nullptr), value);
   }
+}
+
+TEST(Text, OfAShareHasNoDigitOfRounding) {
+  EXPECT_EQ(percent(0.5), "50 %");
+  EXPECT_EQ(percent(0.07), "7 %") << "100 * 0.07 is 7.000000000000001";
+  EXPECT_EQ(percent(1e-4), "0.01 %");
+}
+
+TEST(Text, ThatLastsStaysWhereItIs) {
+  const std::string_view first = lasting("the first, longer than what a string keeps inside");
+  for (int n = 0; n < 1000; ++n) lasting(std::to_string(n));
+  EXPECT_EQ(first, "the first, longer than what a string keeps inside");
 }
 
 }  // namespace

@@ -385,7 +385,7 @@ TEST(StepErrorMetric, SaysWhyThereIsNone) {
   EXPECT_EQ(measured(scene, "pd:self=off").remark, "from one implicit Euler step of a substep");
   Scene large = hanging_sheet(52, 52);
   large.steps = 1;
-  EXPECT_EQ(measured(large, "jakobsen").remark, "no value: more than 2500 vertices");
+  EXPECT_EQ(measured(large, "jakobsen").remark, "no value: more than 2500 free vertices");
 }
 
 }  // namespace

@@ -442,7 +442,7 @@ TEST(PageAnswers, APenetrationNamesItsMomentAndBulletsPush) {
   const Answer answer = made.answer();
   const std::string& caption = answer.table("penetration.peak").caption;
   EXPECT_NE(caption.find("at the end of a step"), std::string::npos);
-  EXPECT_NE(caption.find("Bullet corrects a share of a depth, its contact hardness: 0.1"),
+  EXPECT_NE(caption.find("Bullet corrects a share of a depth, its hardness: 0.1"),
             std::string::npos)
       << caption;
 }

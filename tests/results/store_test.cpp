@@ -93,8 +93,10 @@ TEST(RecordText, KeepsEveryBit) {
 
 TEST(RecordText, RefusesOtherSchemasAndNonsense) {
   std::string text = to_json(some_record());
-  text.replace(text.find("\"schema\":3"), 10, "\"schema\":2");
-  EXPECT_EQ(refusal(text), "JSON: schema: is 2; this program reads 3");
+  const std::string written = "\"schema\":" + std::to_string(kRecordSchema);
+  text.replace(text.find(written), written.size(), "\"schema\":1");
+  EXPECT_EQ(refusal(text),
+            "JSON: schema: is 1; this program reads " + std::to_string(kRecordSchema));
   EXPECT_THROW(record_from_json("{}", "x"), InputError);
   EXPECT_THROW(record_from_json("[1", "x"), InputError);
 }

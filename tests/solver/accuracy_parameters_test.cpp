@@ -59,15 +59,17 @@ TEST(ParameterRoles, BelongToEveryChoiceOfPrecisionAndOfInstructions) {
       const bool chooses = spec.choices == "float|double",
                  computes = spec.choices.starts_with("auto|scalar|");
       precisions += chooses;
-      EXPECT_EQ(spec.role, chooses    ? Role::precision
-                           : computes ? Role::instructions
-                                      : Role::none)
-          << entry->name << " " << spec.name;
+      EXPECT_EQ(spec.role == Role::precision, chooses) << entry->name << " " << spec.name;
+      EXPECT_EQ(spec.role == Role::instructions, computes) << entry->name << " " << spec.name;
     }
   EXPECT_GE(precisions, 5u);
   const std::span<const ParamSpec> jakobsen = parse_solver("jakobsen").entry->params;
   EXPECT_EQ(parameter_with(Role::precision, jakobsen), "precision");
   EXPECT_EQ(parameter_with(Role::instructions, jakobsen), "simd");
+  EXPECT_EQ(parameter_with(Role::face_contact, jakobsen), "faces");
+  const std::span<const ParamSpec> bullet = parse_solver("bullet").entry->params;
+  EXPECT_EQ(parameter_with(Role::face_contact, bullet), "") << "its faces are about normals";
+  EXPECT_EQ(parameter_with(Role::contact_share, bullet), "hardness");
   EXPECT_EQ(parameter_with(Role::precision, {}), "");
 }
 

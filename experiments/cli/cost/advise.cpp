@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/io/scene_io.hpp"
+#include "core/model/text.hpp"
 #include "experiments/advise/advice_answer.hpp"
 #include "experiments/advise/searched_study.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -96,13 +97,15 @@ void add_options(CLI::App& app, Options& o) {
       "In place of a scene: search all solvers on all scenes of this study with equal CPU time, "
       "and write the file that the study's key `searched` names");
   add_preset(app, o.preset);
-  app.add_option("--cpu", o.cpu,
-                 "With --study: CPU time of each solver on a scene [s] (default: 8)")
+  app.add_option(
+         "--cpu", o.cpu,
+         "With --study: CPU time of each solver on a scene [s] (default: " + as_typed(o.cpu) + ")")
       ->check(above_zero_seconds());
   app.add_option("--error", o.error, "Reach this error (0.01 or 1%) at the least cost");
   app.add_option("--budget", o.budget, "Reach the least error within this CPU time per frame [ms]")
       ->check(above_zero());
-  app.add_option("--fps", o.fps, "Frames in a second; the budget is that of one (default: 60)")
+  app.add_option("--fps", o.fps,
+                 "Frames in a second; the budget is that of one (default: " + as_typed(o.fps) + ")")
       ->check(above_zero());
   app.add_option(
          "--keep", o.keep,
@@ -120,8 +123,9 @@ void add_options(CLI::App& app, Options& o) {
                  "Only this solver, keeping what its text sets; repeat it for each (default: all)");
   add_settings(app, o.settings);
   add_judgement(app, o.metric, o.tolerance);
-  app.add_option("--patience", o.patience,
-                 "Search, time and verify within this time [s] (default: 120)")
+  app.add_option(
+         "--patience", o.patience,
+         "Search, time and verify within this time [s] (default: " + as_typed(o.patience) + ")")
       ->check(above_zero_seconds());
   add_samples(app, o.rounds, o.seconds, 2);
   add_results(app, o.out);

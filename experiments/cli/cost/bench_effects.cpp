@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/model/text.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
@@ -103,10 +104,12 @@ int run(const Options& o) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scenes, "Scenes beside hang (default: all that are shipped)");
-  app.add_option("--solver", o.solver, "The solver (default: jakobsen:iterations=1,substeps=15)");
+  app.add_option("SCENE", o.scenes,
+                 std::string("Scenes beside ") + kUnit + " (default: all that are shipped)");
+  app.add_option("--solver", o.solver, "The solver (default: " + o.solver + ")");
   app.add_option("--sizes", o.sizes,
-                 "Sheets of so many vertices along each side; 0: as they are (default: 0)")
+                 "Sheets of so many vertices along each side; 0: as they are (default: " +
+                     join(o.sizes, ",", [](int side) { return std::to_string(side); }) + ")")
       ->delimiter(',')
       ->check(CLI::Range(0, 1024));
   add_samples(app, o.rounds, o.seconds);

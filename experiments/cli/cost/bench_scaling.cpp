@@ -1,3 +1,4 @@
+#include "core/model/text.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/timing/scaling_bench.hpp"
@@ -37,9 +38,11 @@ void add_options(CLI::App& app, Options& o) {
       "Search for each solver the fewest substeps (of one sweep), or sweeps if it has more "
       "than one, that reach this RMS stretch: 0.005 or 0.5%");
   app.add_option("--limit", o.limit,
-                 "Skip a case that would take longer than this in all [s] (default: 20)")
+                 "Skip a case that would take longer than this in all [s] (default: " +
+                     as_typed(o.limit) + ")")
       ->check(above_zero_seconds());
-  app.add_option("--samples", o.samples, "Samples of each case (default: 6)")
+  app.add_option("--samples", o.samples,
+                 "Samples of each case (default: " + std::to_string(o.samples) + ")")
       ->check(CLI::Range(1, 1000));
   add_results(app, o.out);
   add_format(app, o.format, "Print every sample, too");

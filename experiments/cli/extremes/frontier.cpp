@@ -107,13 +107,15 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--update", options.update, "Keep what --all finds as the baseline")->needs(all);
   app.add_option("--of", options.of,
                  "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
-                 "(default: dt)")
+                 "(default: " +
+                     options.of + ")")
       ->excludes(all);
-  app.add_option("--from", options.from, "Where to start (dt: 1e-3 s)")->excludes(all);
-  app.add_option("--to", options.to, "Where to stop (dt: 0.5 s)")->excludes(all);
-  app.add_option(
-         "--tolerance", options.tolerance,
-         "Relative width of the bracket (default: " + number_text(SearchRange{}.tolerance) + ")")
+  app.add_option("--from", options.from, "Where to start (dt: " + as_typed(kTimeSteps.from) + " s)")
+      ->excludes(all);
+  app.add_option("--to", options.to, "Where to stop (dt: " + as_typed(kTimeSteps.to) + " s)")
+      ->excludes(all);
+  app.add_option("--tolerance", options.tolerance,
+                 "Relative width of the bracket (default: " + as_typed(options.tolerance) + ")")
       ->check(CLI::Range(1e-9, 0.5))
       ->excludes(all);
   add_jobs(app, options.jobs);

@@ -104,7 +104,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.scene,
                  "Name of a shipped scene, or a path; all: every shipped scene, as a table")
       ->required();
-  app.add_option("SOLVER", o.solver, "NAME or NAME:key=value,... (default: jakobsen)");
+  app.add_option("SOLVER", o.solver, "NAME or NAME:key=value,... (default: " + o.solver + ")");
   app.add_option("--keep", o.keep,
                  "An answer to keep: shape or a metric value, and :TOLERANCE in SI units, in the "
                  "unit shown (:2mm) or in % of the cloth, of the duration or of the value; repeat "
@@ -112,7 +112,8 @@ void add_options(CLI::App& app, Options& o) {
       ->allow_extra_args(false);
   add_settings(app, o.settings);
   app.add_option("--patience", o.patience,
-                 "Search, verify and time within this time for a scene [s] (default: 120)")
+                 "Search, verify and time within this time for a scene [s] (default: " +
+                     as_typed(o.patience) + ")")
       ->check(above_zero_seconds());
   add_output(app, o.output,
              "Where to draw both models (default: models.png beside the smallest scene)");

@@ -1,4 +1,5 @@
 #include "core/io/scene_io.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
@@ -11,6 +12,8 @@ namespace taut::verb::score {
 
 namespace {
 
+constexpr std::size_t kMostBeside = 3;  ///< solvers in one picture with the positions
+
 struct Options {
   std::string scene, series, picture;
   external::MotionOptions motion;
@@ -20,8 +23,9 @@ struct Options {
 };
 
 int run(const Options& o) {
-  if (o.solvers.size() > 3)
-    throw InputError("--solver: at most three are drawn beside the positions");
+  if (o.solvers.size() > kMostBeside)
+    throw InputError("--solver: at most " + std::to_string(kMostBeside) +
+                     " are drawn beside the positions");
   if (!o.picture.empty() && !o.picture.ends_with(".png"))
     throw InputError("--picture " + o.picture + ": expected a name that ends in .png");
   check_solvers(o.solvers);
@@ -59,8 +63,9 @@ void add_options(CLI::App& app, Options& o) {
       ->required();
   app.add_option("--fps", o.motion.fps, "Frames in a second (default: one a step of the scene)")
       ->check(above_zero());
-  app.add_option("--scale", o.motion.scale,
-                 "The file's unit [m]: 0.01 for centimetres (default: 1)")
+  app.add_option(
+         "--scale", o.motion.scale,
+         "The file's unit [m]: 0.01 for centimetres (default: " + as_typed(o.motion.scale) + ")")
       ->check(above_zero());
   app.add_flag("--z-up", o.motion.z_up, "The file's z points up, not its y");
   app.add_option(
@@ -70,7 +75,8 @@ void add_options(CLI::App& app, Options& o) {
   add_settings(app, o.settings);
   app.add_option("--series", o.series, "Write values over time (CSV)");
   app.add_option("--picture", o.picture, "Draw the end (.png), beside every --solver");
-  add_solvers(app, o.solvers, "A solver to draw beside them");
+  add_solvers(app, o.solvers,
+              "A solver to draw beside them, at most " + std::to_string(kMostBeside));
   add_format(app, o.format);
 }
 

@@ -94,8 +94,8 @@ int run(Options options) {
   check_output(options);
   RunRequest& what = options.what;
   if (what.solvers.empty() || what.solvers.size() > std::size_t{kMostPanels})
-    throw InputError(
-        "expected one to nine --solver, for example --solver jakobsen --solver bullet");
+    throw InputError("expected 1 to " + std::to_string(kMostPanels) +
+                     " --solver, for example --solver jakobsen --solver bullet");
   check_solvers(what.solvers);
   what.settings = options.changes.settings();
   Drawing drawing = drawing_of(options);

@@ -1,4 +1,5 @@
 #include "core/io/text_file.hpp"
+#include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/cluster/cluster.hpp"
 #include "experiments/system/data.hpp"
@@ -15,7 +16,7 @@ struct Options {
   std::string study, preset, folder, on, node_file;
   std::vector<std::string> logins;
   int shards = 0;
-  double hours = 0;
+  double hours = FolderRequest{}.hours;
   Limits limits;
   bool dry_run = false;
   Format format;
@@ -80,7 +81,8 @@ void add_options(CLI::App& app, Options& o) {
       ->check(known("scheduler", {"slurm", "parallel"}));
   auto* shards =
       app.add_option("--shards", o.shards, "How many shards")->check(CLI::Range(1, kMostShards));
-  app.add_option("--hours", o.hours, "The fewest shards that end within that time (default: 1)")
+  app.add_option("--hours", o.hours,
+                 "The fewest shards that end within that time (default: " + as_typed(o.hours) + ")")
       ->check(above_zero())
       ->excludes(shards);
   add_preset(app, o.preset);

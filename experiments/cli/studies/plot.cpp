@@ -104,7 +104,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--width", options.width,
                  "Width of the figure on paper, as 84mm; puts the key below the figure");
   app.add_option("--height", options.height, "Its height, as 60mm (default: from its width)");
-  app.add_option("--font", options.font, "Size of its text, as 8pt (default with --width: 8pt)");
+  app.add_option(
+      "--font", options.font,
+      "Size of its text, as 8pt (default with --width: " + as_typed(report::kPaperFont) + "pt)");
   add_output(app, options.output,
              "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
   add_json(app, options.json, "the names of the files");

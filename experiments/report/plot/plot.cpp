@@ -84,7 +84,7 @@ struct Layout {
       letters = std::max(letters, static_cast<double>(std::ranges::count_if(
                                       text, [](char c) { return (c & 0xC0) != 0x80; })));
     entry = kSample + kLetter * letters;
-    if (size.font > 0 || below) pixel = (size.font > 0 ? size.font : 8) / kFont;
+    if (size.font > 0 || below) pixel = (size.font > 0 ? size.font : kPaperFont) / kFont;
     const auto at_least_one = [](double n) { return std::max<std::size_t>(1, std::size_t(n)); };
     if (below) {
       width = size.width * kPoints / pixel;

@@ -29,6 +29,9 @@ struct FigureSize {
   double font = 0;               ///< pt
 };
 
+/// Font of a figure whose width is given, unless its font is, too [pt].
+inline constexpr double kPaperFont = 8;
+
 /// Parses numbers with units: "84mm", "60mm", "8pt"; "" is 0. Throws InputError that names the
 /// option.
 FigureSize parse_figure_size(const std::string& width, const std::string& height,

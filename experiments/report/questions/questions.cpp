@@ -116,15 +116,14 @@ class Questions {
         "; measured at the end of a step: solvers that project contact last end on the surface, "
         "those that solve it with the links where their iterations end";
     for (std::size_t i = 0; i < compared_.all.size(); ++i) {
+      const std::string share = parameter_of(compared_.all[i].name, ParamSpec::Role::contact_share);
       std::set<std::string> values;
       for (const QuotedScene& quoted : compared_.scenes)
-        if (const Record* r = quoted.cases[i]; r && r->params.contains("hardness"))
-          values.insert(r->params.at("hardness"));
+        if (const Record* r = quoted.cases[i]; r && r->params.contains(share))
+          values.insert(r->params.at(share));
       if (!values.empty())
-        text += "; " + solver_title(compared_.all[i].name) +
-                " corrects a share of a depth, its "
-                "contact hardness: " +
-                join(values, " and ");
+        text += "; " + solver_title(compared_.all[i].name) + " corrects a share of a depth, its " +
+                share + ": " + join(values, " and ");
     }
     return text;
   }

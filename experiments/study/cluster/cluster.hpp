@@ -64,8 +64,8 @@ std::string readme(const Plan&, Scheduler);
 struct FolderRequest {
   Study study;
   Limits limits;
-  int shards = 0;    ///< 0: determined by `hours`
-  double hours = 0;  ///< 0: one hour
+  int shards = 0;  ///< 0: determined by `hours`
+  double hours = 1;
   Scheduler on = Scheduler::slurm;
   std::string nodes = {};  ///< lines of the file `nodes`; "": no such file
 };

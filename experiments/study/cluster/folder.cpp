@@ -151,8 +151,7 @@ Plan write_folder(const fs::path& folder, const FolderRequest& request) {
   while (!there.empty() && !fs::exists(there)) there = there.parent_path();
   const std::vector<Case> cases = cases_of(study);
   try {
-    const Plan made =
-        plan(study, cases, request.limits, request.shards, request.hours > 0 ? request.hours : 1);
+    const Plan made = plan(study, cases, request.limits, request.shards, request.hours);
     make_folder(folder / "log");
     make_folder(folder / "shards");
     copy_scenes(cases, folder);

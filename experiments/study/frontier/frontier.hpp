@@ -86,7 +86,10 @@ struct FrontierQuestion {
   CaseSpec at(double value) const;
 };
 
-/// The range of a search. Ends that are not given default to 1e-3 and 0.5 s for "dt", and for a
+/// The range of a search for the time step, unless another is given [s].
+inline constexpr SearchRange kTimeSteps{.from = 1e-3, .to = 0.5};
+
+/// The range of a search. Ends that are not given default to kTimeSteps for "dt", and for a
 /// parameter to its own bounds if they are meaningful. Throws InputError if there is no such
 /// parameter, if it is not a number, or if the range has to be given.
 SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<double> from,

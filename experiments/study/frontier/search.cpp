@@ -172,8 +172,7 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
   SearchRange range;
   const SolverChoice choice = parse_solver(base.solver);
   if (of == "dt") {
-    range.from = 1e-3;
-    range.to = 0.5;
+    range = kTimeSteps;
   } else if (is_of_scene(of)) {
     const SceneKey* key = find_scene_key(of.substr(0, of.find('|')));
     if (key && !key->choices.empty())

@@ -5,14 +5,14 @@
 namespace taut {
 
 namespace {
-constexpr Names<AssertionVerdict::overturned> kVerdicts{
+constexpr Names<AssertionVerdict::overturned> kAssertionVerdicts{
     "holds", "holds under conditions", "does not hold", "cannot be tested", "overturned"};
 }
 
-std::string_view to_string(AssertionVerdict verdict) { return kVerdicts[verdict]; }
+std::string_view to_string(AssertionVerdict verdict) { return kAssertionVerdicts[verdict]; }
 
 AssertionVerdict assertion_verdict_of(std::string_view text) {
-  return kVerdicts.find(text).value_or(AssertionVerdict::overturned);
+  return kAssertionVerdicts.find(text).value_or(AssertionVerdict::overturned);
 }
 
 Cell cell_of(AssertionVerdict verdict) {
