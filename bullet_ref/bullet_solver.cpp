@@ -197,7 +197,7 @@ Scene BulletSolver::held_scene(RestLength rest_length) const {
 namespace bullet_ref {
 
 void require_cells(const btAlignedObjectArray<btSoftBody*>& bodies) {
-  constexpr btScalar kFarthest = 1e6;  // m: 3e8 cells of three voxels, with the smallest voxel
+  constexpr btScalar kFarthest = 1e6;  // m; 3e8 cells, which are three of the smallest voxels wide
   const auto near = [&](const btVector3& x) {
     return std::abs(x.x()) <= kFarthest && std::abs(x.y()) <= kFarthest &&
            std::abs(x.z()) <= kFarthest;
@@ -258,7 +258,7 @@ ResolvedSettings contact_settings(const Scene& scene, const Params& params,
                        "rests 0.06 to 0.1 m above");
   if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.frames != nullptr; }))
     lines.emplace_back("body that deforms",
-                       "each contact is told the velocity of the surface where it touches");
+                       "each contact gets the velocity of the surface where it touches");
   return lines;
 }
 

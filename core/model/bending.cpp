@@ -61,8 +61,8 @@ Patch patch(const Mesh& mesh, const Triangle& t, const Opposite& opposite, const
 
 /// Components [uu, vv, sqrt(2) uv] of the second derivative as combinations of the patch's
 /// vertices. The offset j of a vertex beyond an edge from the plane of the triangle is linear in
-/// these components h: R h = j, solved for the least h. Directions about which j says next to
-/// nothing (six vertices near one conic) are left out.
+/// these components h: R h = j, solved for the least h. Directions that j hardly
+/// determines (six vertices near one conic) are left out.
 Eigen::MatrixXd second_derivative(const Patch& p) {
   const auto squares = [](const Vec2& x) {
     return Vec3(x.x() * x.x() / 2, x.y() * x.y() / 2, x.x() * x.y() / std::sqrt(2.0));
@@ -87,8 +87,8 @@ Eigen::MatrixXd second_derivative(const Patch& p) {
   return solved.compute(rows).solve(off);
 }
 
-/// The element with these weights, its vertices in order and those without weight left out; empty
-/// if all are.
+/// The element with these weights. Its vertices are sorted, and those without weight are left out;
+/// it is empty if no vertex is left.
 BendingElement element(const Patch& p, const Eigen::RowVectorXd& weights, double stiffness) {
   std::vector<std::pair<int, double>> parts;
   const double most = weights.cwiseAbs().maxCoeff();
@@ -107,7 +107,7 @@ BendingElement element(const Patch& p, const Eigen::RowVectorXd& weights, double
   return e;
 }
 
-/// Merges b into a if b is a times a factor, by adding to a's stiffness. Returns whether it did.
+/// If b is a multiple of a, merges it into a by raising a's stiffness. Returns whether it did.
 bool merged(BendingElement& a, const BendingElement& b) {
   if (a.size != b.size || a.vertex != b.vertex) return false;
   const double factor = b.weight[0] / a.weight[0];
@@ -121,7 +121,7 @@ bool merged(BendingElement& a, const BendingElement& b) {
 
 namespace {
 
-/// Adds the elements of one triangulation, which stands for this share of the cloth.
+/// Adds the elements of one triangulation, whose energy counts by `share`.
 void add_bending(const Scene& scene, const std::vector<Triangle>& triangles, double share,
                  std::map<int, std::vector<std::size_t>>& beginning,
                  std::vector<BendingElement>& all) {

@@ -26,7 +26,7 @@ struct ParamSpec {
   std::optional<Family> family = {};    ///< of the links whose stiffness [N/m] it is
   bool is_compliance = false;           ///< [m/N] instead of a stiffness
   std::string_view rigid = {};          ///< choice with which all links are rigid; "": none
-  /// What a parameter means to those who know no solver's names.
+  /// What a parameter means, for code that knows no solver by name.
   enum class Role {
     none,
     precision,      ///< the scalar type: "float" or "double"
@@ -89,8 +89,8 @@ struct ParamSpec {
 
 /// Name of the parameter with that role; "": there is none.
 std::string_view parameter_with(ParamSpec::Role, std::span<const ParamSpec>);
-/// Name that a parameter with that role has in a solver that declares no roles, such as a program
-/// from outside; "": none is usual.
+/// Usual name of a parameter with that role, for solvers that declare no roles, such as external
+/// programs; "": none is usual.
 std::string_view usual_name(ParamSpec::Role);
 
 /// An item "key=value" of a solver's text. A value in quotes ('a, b' or "a, b") may contain commas;

@@ -18,17 +18,17 @@ std::string shortest(double value);
 /// The shortest text as a person types it: 1e6 and not 1e+06, zero without a sign.
 std::string as_typed(double value);
 
-/// "5 %" of 0.05, without a digit that rounding alone makes.
+/// "5 %" for 0.05, without digits that come from rounding alone.
 std::string percent(double share);
 
-/// The same text for as long as the program runs, for tables of std::string_view: a help text takes
-/// its numbers from the constants that it speaks of.
+/// Keeps the text for as long as the program runs, for tables of std::string_view. So a help text
+/// can take its numbers from constants.
 std::string_view lasting(std::string);
 
 /// The parts of "a|b|c".
 std::vector<std::string> parts_of(std::string_view list, char separator = '|');
 
-/// Joins the texts of all elements; text_of(one) is the text of an element.
+/// Joins the texts of all elements; text_of(element) is an element's text.
 template <class All, class TextOf = std::identity>
 std::string join(const All& all, std::string_view separator, const TextOf& text_of = {}) {
   std::string joined;

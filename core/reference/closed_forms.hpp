@@ -60,9 +60,10 @@ double spring_grid_eigenvalue(int nu, bool shear, bool bend);
 /// cos(link/2) = mu (T1 + T2) sin(link/2). Tends to exp(mu wrap) in second order.
 double capstan_ratio(double mu, double wrap, double link);
 
-/// Ratio of the tensions as in capstan_ratio(), but the links touch the cylinder, in their middle,
-/// and not the nodes. Each end takes half of a link's contact force, so tension and push grow by r
-/// per node, r - 1/r = 2 mu sin(link). Tends to exp(mu wrap) in second order, from below.
+/// Ratio of the tensions as in capstan_ratio(), but the links touch the cylinder at their middles
+/// and the nodes do not touch it. Each end takes half of a link's contact force, so tension and
+/// push grow by r per node, r - 1/r = 2 mu sin(link). Tends to exp(mu wrap) in second order, from
+/// below.
 double capstan_ratio_of_links(double mu, double wrap, double link);
 
 /// A chain of equal links between two supports of equal height, with an equal load at every joint.
@@ -98,13 +99,13 @@ Eigen::VectorXd steady_strain(const Eigen::MatrixXd& sweep, int k, double a);
 /// 1 / (exp(j^2 pi^2 k / (4 n^2)) - 1).
 double collapsed_strain(int n, int k, double a);
 
-/// Spectral radius of a sweep over a chain of n links, the printed limits: cos^2(pi/2n) for
-/// Gauss-Seidel, cos(pi/2n) for Jacobi.
+/// Spectral radius of a sweep over a chain of n links: cos^2(pi/2n) for Gauss-Seidel, cos(pi/2n)
+/// for Jacobi.
 double chain_radius(int n, Sweep);
 
-/// Effect of k Gauss-Seidel sweeps on small sideways displacements of that chain hanging at rest,
-/// in place of the implicit (1 + w^2 dt^2)^-1. Each correction acts along its link as it lies at
-/// that moment of the sweeps. [n x n]; a = g dt^2 [m], links of length l [m].
+/// Effect of k Gauss-Seidel sweeps on small sideways displacements of that chain hanging at rest.
+/// It takes the place of (1 + w^2 dt^2)^-1 of an implicit step. Each correction acts along the
+/// current direction of its link. [n x n]; a = g dt^2 [m], links of length l [m].
 Eigen::MatrixXd transverse_sweeps(int n, int k, double a, double l);
 
 /// Growth per step of a mode that k sweeps multiply by mu: the root of z^2 - 2 mu z + mu = 0 with

@@ -17,8 +17,9 @@ struct LinearStability {
   bool stable() const { return margin <= 1 + 1e-6; }
 };
 
-/// Linear stability of the solver, by what it says that it does (SolverEntry::linear_model). Empty
-/// where no theory is known or its eigenvalues cannot be computed.
+/// Linear stability of the solver, by the model that its entry declares
+/// (SolverEntry::linear_model). Empty where no theory is known or its eigenvalues cannot be
+/// computed.
 ///
 /// LinearSprings, Verlet and symplectic Euler: with the stiffness K of springs and bending, masses
 /// M, drag C, substep h and q = exp(-damping h), a mode becomes unstable when its multiplier

@@ -49,7 +49,7 @@ struct ImplicitStep::Multiplied {
   Eigen::VectorXd gradient(const Points& x) const;  ///< N, indexed by `column`
   Vec3 contact_force(const Points& x) const;        ///< N
   void lay_planes(const Points& x);                 ///< sets the tangent planes to those at x
-  /// Sets planes and forces to those at x. Returns how far that is from contact's conditions [m].
+  /// Sets planes and forces to those at x. Returns how far x is from the conditions of contact [m].
   double update_contact(const Points& x);
 
   /// Effect of a collider on a vertex: energy, force and Hessian of the push (push - k gap)+ and of
@@ -101,7 +101,8 @@ struct ImplicitStep::Multiplied {
         visit(i, k, held(i, k, x[i]));
   }
   /// Calls add(row, column, block) for the Hessian's blocks of three rows and columns, in its lower
-  /// triangle; each block is symmetric.
+  /// triangle; each block is symmetric. clamped: links that push add nothing across their
+  /// direction.
   template <class Add>
   void each_block(const Points& x, bool clamped, const Add& add) const {
     for (std::size_t i = 0; i < x.size(); ++i)

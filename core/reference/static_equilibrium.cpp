@@ -335,8 +335,8 @@ Equilibrium refused(const std::string& reason) {
 
 std::vector<std::string> refuse_static(const Scene& scene) {
   std::vector<std::string> reasons;
-  const auto refuse = [&](bool it, const char* why) {
-    if (it) reasons.emplace_back(why);
+  const auto refuse = [&](bool refused, const char* why) {
+    if (refused) reasons.emplace_back(why);
   };
   refuse(!scene.colliders.empty(), "contact: where the cloth comes to rest depends on its history");
   refuse(scene.self_collision.has_value(), "self-collision: it depends on its history");
@@ -369,7 +369,7 @@ Equilibrium static_equilibrium(const Scene& scene) {
     return e;
   }
   const Problem p(scene);
-  // Solve twice, sharing neither start nor penalty: the distance of the solutions is the floor.
+  // Solve from two starts with two penalties: the distance between the solutions is the floor.
   const Solution s = solve(p, scene.start.x, 1);
   if (!s.reason.empty()) return refused(s.reason);
   std::vector<Vec3> other = scene.start.x;

@@ -29,8 +29,8 @@ class ThreadPool {
 
   std::size_t threads() const { return threads_.size() + 1; }  ///< the caller included
 
-  /// Fewest particles for which threads share a pass: a smaller pass is done before another thread
-  /// has come. A second thread began to pay at about this size (64 x 64 no, 96 x 96 yes; not
+  /// Fewest particles for which threads share a pass: a smaller pass ends before another thread
+  /// could join. A second thread began to pay at about this size (64 x 64 no, 96 x 96 yes; not
   /// measured again).
   static constexpr std::size_t kWorthSharing = 8192;
 
@@ -114,8 +114,8 @@ class ThreadPool {
     void (*call_)(const std::byte*, std::size_t, std::size_t);
     alignas(16) std::byte work_[368];  // fits contact with a moving box in double
   };
-  /// Progress of a part: numbers of stages. Only a thread that takes the part on reads `begun`, so
-  /// it stays in that core's cache.
+  /// Progress of a part, as numbers of stages. Only a thread that may take on the part reads
+  /// `begun`, so `begun` stays in that core's cache.
   struct Part {
     alignas(64) std::atomic<std::uint32_t> done{0};
     alignas(64) std::atomic<std::uint32_t> begun{0};
@@ -126,7 +126,7 @@ class ThreadPool {
   static constexpr std::size_t kParts = 4;
   static constexpr std::size_t kMostStages = 128;  ///< also limits the depth of advance()
 
-  /// A thread at work: its own parts, and how long it leaves the others' to them.
+  /// A thread at work: its own parts, and how long it waits before it takes on parts of others.
   struct Member {
     std::size_t begin, end;
     int patience;  ///< number of pauses

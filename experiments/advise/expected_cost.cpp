@@ -56,17 +56,17 @@ std::vector<std::string> by_expected_cost(std::vector<std::string> solvers,
       name_of[solver] = one.choice.entry->name;
       items[solver] = items_of(one);
     } catch (const std::runtime_error&) {
-      // an external program: it would have to be run
+      // an external program would have to be run
     }
   const std::map<std::string, double> known = last_known(name, store);
-  std::vector<double> each;  // cost per item [s]
+  std::vector<double> costs_per_item;  // s, of the timed solvers
   for (const auto& [solver, n] : items)
     if (const auto cost = known.find(name_of[solver]); cost != known.end() && n < kUnknown)
-      each.push_back(cost->second / n);
-  const double dear = each.empty() ? 1 : median(each);
+      costs_per_item.push_back(cost->second / n);
+  const double cost_per_item = costs_per_item.empty() ? 1 : median(costs_per_item);
   for (const std::string& solver : solvers) {
     const auto cost = known.find(name_of[solver]);
-    expected[solver] = cost != known.end() ? cost->second : dear * items[solver];
+    expected[solver] = cost != known.end() ? cost->second : cost_per_item * items[solver];
   }
   std::ranges::stable_sort(solvers, {}, [&](const std::string& one) { return expected.at(one); });
   return solvers;

@@ -88,13 +88,13 @@ struct Comparison {
   bool mismatched() const;
 };
 
-/// What a regression is counted with.
+/// Group in which a regression is counted.
 struct MovedGroup {
   enum class Kind { status, projections, titled, others };
   Kind kind = Kind::others;
   std::string value_title = {};  ///< of the kind `titled`, whose values have a title of their own
 
-  /// What people read: "status", "projections", "RMS stretch", "other values".
+  /// The name of the group for people: "status", "projections", "RMS stretch", "other values".
   std::string title() const;
   bool operator==(const MovedGroup&) const = default;
 };

@@ -14,7 +14,7 @@ struct Tolerance {
   double absolute = 0;  ///< in the metric's unit
   double relative = 0;
   bool ignored = false;  ///< never compared
-  std::string reason;    ///< why so much and no more; never empty
+  std::string reason;    ///< why this much and no more; never empty
 
   bool holds(double value, double before) const;
 };
@@ -26,30 +26,31 @@ class Tolerances {
   explicit Tolerances(std::map<std::string, Tolerance> by_name) : by_name_(std::move(by_name)) {}
   /// Accepts no difference.
   static Tolerances exact();
-  /// The most special one; the built-in default (relative 1e-6, absolute 1e-12) if none is given.
+  /// The most specific tolerance for the value; the built-in default (relative 1e-6, absolute
+  /// 1e-12) if none is given.
   const Tolerance& of(const std::string& value) const;
 
  private:
   std::map<std::string, Tolerance> by_name_;
 };
 
-/// A value beside what it was.
+/// A value before and now.
 struct ComparedValue {
   enum class Kind {
     same,    ///< within the tolerance
     moved,   ///< beyond it, or a number has come or gone
-    lost,    ///< there is no such value any more
-    gained,  ///< there was no value
+    lost,    ///< the value no longer exists
+    gained,  ///< the value did not exist before
   };
   std::string value;           ///< "stretch.rms"
-  double before = 0, now = 0;  ///< NaN: no meaning, or none
+  double before = 0, now = 0;  ///< NaN: no meaning, or no such value
   Kind kind = Kind::same;
 
   bool both_finite() const;
 };
 
 using MetricValues = std::map<std::string, double>;
-/// All values of either that are not ignored, by name; gained ones come last.
+/// Compares all values of both sides that are not ignored, by name; gained ones come last.
 std::vector<ComparedValue> compare_values(const MetricValues& before, const MetricValues& now,
                                           const Tolerances&);
 

@@ -201,7 +201,7 @@ void Connection::ended() {
                     static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   if (end->from_outside(std::min<std::size_t>(most, memory.rlim_cur)))
     throw EndedFromOutside("the solver's program was ended (" + end->text() +
-                           ") from outside; nothing is stored of its case");
+                           ") from outside; no result of its case is stored");
   if (end->signal == SIGKILL) fail(Status::Kind::oom, "killed by the system" + during);
   if (names_memory(log())) fail(Status::Kind::oom, "out of memory" + during + why);
   fail(Status::Kind::crash, end->text() + during + why);
@@ -236,7 +236,7 @@ std::string Connection::take(std::size_t bytes) {
 void Connection::send(const std::string& line, std::string_view bytes) {
   if (!process_.unread().empty())
     fail(Status::Kind::protocol,
-         "said more than it was asked for, after '" + op_ + "': " + excerpt(process_.unread()));
+         "sent output that was not requested, after '" + op_ + "': " + excerpt(process_.unread()));
   for (const std::string_view part : {std::string_view(line), bytes})
     if (!process_.write(part, command_.seconds)) {
       if (process_.poll()) ended();
@@ -251,17 +251,17 @@ Json parse_answer(const std::string& line) {
     if (answer.is_object()) return answer;
   } catch (const Json::exception&) {
   }
-  throw InputError("no JSON object: " + excerpt(line));
+  throw InputError("not a JSON object: " + excerpt(line));
 }
 
 Json Connection::answer() {
   const std::string said = take_line();
-  // Counted from here: a script may exec the program.
+  // Counted from the first answer, because a script may exec the program before it.
   if (ticks_at_start_ < 0) ticks_at_start_ = children_ticks();
   try {
     return parse_answer(said);
   } catch (const InputError& error) {
-    fail(Status::Kind::protocol, "answered '" + op_ + "' with what is " + error.what());
+    fail(Status::Kind::protocol, "answer to '" + op_ + "': " + error.what());
   }
 }
 

@@ -15,7 +15,7 @@ struct Check {
   enum class Verdict { passed, failed, skipped };
   std::string name;
   Verdict verdict = Verdict::passed;
-  std::string said;  ///< a sentence that says what was observed or what is wrong
+  std::string said;                           ///< what was observed or what is wrong, as a sentence
   Status::Kind status = Status::Kind::error;  ///< of a case whose program fails this check
 };
 Cell cell_of(Check::Verdict);

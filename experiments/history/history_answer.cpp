@@ -236,7 +236,7 @@ Answer answer_of(const History& history, const std::string& value) {
   const auto values = std::ranges::count_if(
       history.steps, [](const HistoryStep& step) { return !step.what.is_cost(); });
   answer.add({"builds"}, history.builds.size());
-  answer.add({"gaps", "builds without all results"}, gaps);
+  answer.add({"gaps", "builds that lack results"}, gaps);
   answer.add({"cases"}, history.rows.size());
   answer.add({"compared", "pairs of neighbouring results"}, history.compared);
   answer.add({"steps", "steps of values and costs"}, history.steps.size());

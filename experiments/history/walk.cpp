@@ -92,8 +92,8 @@ class Walker {
 
   // ---- one commit
 
-  /// A solver that is timed needs two checkouts side by side; of taut, a copy of the program is
-  /// kept.
+  /// Checkout n. Timing a solver takes two checkouts side by side. taut itself needs only one,
+  /// since a copy of each built program is kept.
   Slot& slot(std::size_t n) {
     if (!of_solver()) n = 0;
 
@@ -156,8 +156,8 @@ class Walker {
     const std::string why = asked_.silence(*parse_solver(solver).entry);
     return why.empty() ? "" : "its solver does not answer: " + why;
   }
-  /// Whether an error is not the commit's fault: it lies in the study, or the study is gone, and no
-  /// commit has run it so far.
+  /// Whether an error is not the commit's fault: no commit has run the study so far, and the error
+  /// lies in the study or the study is gone.
   bool of_study(const InputError& error) const {
     const auto lies_there = [&](const Diagnostic& d) { return d.file == file_.string(); };
     return !any_ran_ &&
@@ -193,9 +193,9 @@ class Walker {
     return at->second.gap.empty() ? has_all_results(store_, name_, commit.id) : !asked_.again;
   }
 
-  /// Makes sure that the store has the commit's results, and uses the checkout `where` if it needs
-  /// one. With `stands`, builds the commit even if its results are known. Returns whether it has
-  /// results.
+  /// Makes sure that the store has the commit's results; checkout `where` is used if a build is
+  /// needed. With `stands`, builds the commit even if its results are known. Returns whether the
+  /// commit has results.
   bool ensure(Build& commit, std::size_t where, bool stands = false) {
     const bool known = is_known(commit);
     if (known) commit.gap = known_.at(commit.id).gap;
@@ -298,7 +298,7 @@ class Walker {
     }
     walked_.found = high - low == 1;
     const std::string from = short_build(line_[low].id), to = short_build(line_[high].id);
-    walked_.named = asked_.bisect + " of " + timed_ + " changed first at " + to + " (" +
+    walked_.named = asked_.bisect + " of " + timed_ + " first changed at " + to + " (" +
                     line_[high].made.substr(0, 10) + ") " + line_[high].subject +
                     (walked_.found ? ""
                                    : ", or at one of the " + std::to_string(high - low - 1) +

@@ -131,7 +131,7 @@ class Drape final : public Metric {
     return sum * width;
   }
 
-  /// Adds to each line, `width` apart from `low` on, the part that a face covers.
+  /// Adds to each line the part that a face covers. Line n is at low + (n + 1/2) width.
   static void cover(const Triangle& t, const std::vector<std::pair<double, double>>& p, double low,
                     double width, std::vector<std::vector<std::pair<double, double>>>& covered) {
     const auto [first, last] =

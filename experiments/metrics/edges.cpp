@@ -15,8 +15,8 @@ struct StraightEdge {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< m
 };
 
-/// The edges of a solid in its own frame. To get through the solid between two of its vertices, a
-/// thread must pass through one of them.
+/// The edges of a solid in its own frame; the edge of a capsule is its axis. If a thread gets
+/// through the solid between two of the thread's vertices, it passes through one of these edges.
 std::vector<StraightEdge> solid_edges(const Shape& shape) {
   if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return {{capsule->from, capsule->to}};
   std::vector<StraightEdge> edges;
@@ -42,8 +42,9 @@ std::vector<StraightEdge> solid_edges(const Shape& shape) {
   return edges;
 }
 
-/// Whether the nearest points of the lines of two edges lie on both edges, first ends included. `a`
-/// leads from the first end of one edge, along `along`, to the first end of the other, along `b`.
+/// Whether the nearest points of the lines of two edges lie on both edges, first ends included. The
+/// edges have the vectors `along` and `b`; `a` leads from the first end of the former to the first
+/// end of the latter.
 bool meet(const Vec3& along, const Vec3& a, const Vec3& b) {
   const Vec3 normal = along.cross(b);
   const double twice_area2 = normal.squaredNorm();
@@ -73,7 +74,7 @@ int times_through(const StraightEdge& before, const StraightEdge& now, const Str
   return meet_at(half / e) + (half == 0 ? 0 : meet_at(c / half));
 }
 
-/// How often an edge passes through another one that moves, too.
+/// How often an edge of the cloth passes through an edge of a body when both move.
 int times_through(const MovingEdge& cloth, const MovingEdge& body) {
   int times = 0;
   for (const auto& [share, rises] : passes(cloth, body)) {

@@ -19,7 +19,7 @@ Scene SourcedScene::read(const SceneSettings& with) const {
 
 SourcedScene SourcedScene::replaced(const SceneSettings& more) const {
   if (file.empty())
-    throw InputError("this scene is a solver's: make other ones of the scene that you gave");
+    throw InputError("this scene belongs to a solver: call replace() of the scene that you gave");
   SourcedScene other = *this;
   other.settings = taut::replaced(std::move(other.settings), more);
   const py::gil_scoped_release others_run;
@@ -203,8 +203,9 @@ void define_scene(py::module_& m) {
           "The type of each collider; surface() says where it is.")
       .def_property_readonly(
           "effects", [](const SourcedScene& s) { return effects(*s.scene); },
-          "What it has beside gravity, rigid links and pins that stay: 'colliders', 'moving "
-          "pins', 'wind', 'bending', 'self-collision', 'damping', 'elastic links'.")
+          "What it has besides gravity, rigid links and pins that stay: 'colliders', 'moving "
+          "pins', 'pins that let go', 'wind', 'bending', 'self-collision', 'damping', 'elastic "
+          "links'.")
       .def_property_readonly("damping", value_in<&Scene::damping>(),
                              "1/s: a free vertex's velocity decays as exp(-damping t).")
       .def_property_readonly("thickness", value_in<&Scene::thickness>(),

@@ -109,7 +109,7 @@ Record IsolatedCase::wait() {
 }
 
 void IsolatedCase::fail_from_outside(const std::string& how) const {
-  throw EndedFromOutside(case_.id + ": was " + how + " from outside; nothing is stored of it");
+  throw EndedFromOutside(case_.id + ": was " + how + " from outside; no result is stored");
 }
 
 Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {

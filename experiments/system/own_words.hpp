@@ -1,7 +1,7 @@
 #pragma once
 
-/// Words of the command line with which this program starts itself, and in part other builds of
-/// itself: lower layers write them, and the verbs in experiments/cli read them.
+/// Command-line words with which this program starts itself (some also start other builds of it).
+/// Lower layers write them, and the verbs in experiments/cli read them.
 namespace taut::own_words {
 
 // `taut case SCENE SOLVER --into FOLDER`: a case in a process of its own

@@ -16,7 +16,7 @@
 namespace taut {
 
 /// Wall seconds that a process may take for each second of CPU time that it may use: a busy machine
-/// has others to run.
+/// also runs other processes.
 inline constexpr double kWallPerCpu = 5;
 
 /// Limits on a process; 0: the same as this process.

@@ -112,7 +112,7 @@ void install_handler() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
       struct sigaction old {};
       sigaction(signal, nullptr, &old);
-      // Keeps a signal ignored that nohup ignores.
+      // A signal that nohup ignores stays ignored.
       if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
     }
   });

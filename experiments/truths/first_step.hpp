@@ -30,7 +30,7 @@ inline Scene swinging_sheet(int side) {
   return s;
 }
 
-/// The first step of a scene, and how far iterations stay from its exact end.
+/// The first step of a scene, and how far its end after some iterations is from its exact end.
 class FirstStep {
  public:
   explicit FirstStep(const Scene& s)

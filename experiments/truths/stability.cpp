@@ -43,7 +43,7 @@ TAUT_TRUTH(sweep_eigenvalue, 5, 1,
            "a mode that the sweeps multiply by mu obeys z^2 - 2 mu z + mu = 0: stable iff "
            "-1/3 <= mu <= 1",
            "e' = G^k (2e - e'')") {
-  // Starts in the eigenvector of every real eigenvalue of a sweep: e'' = 2 mu e' - mu e.
+  // Starts in the eigenvector of every real eigenvalue mu of a sweep: e' = 2 mu e - mu e''.
   const int n = 7;
   for (const bool jacobi : {false, true}) {
     const std::string solver = with(jakobsen(1), jacobi ? "method=jacobi" : "");

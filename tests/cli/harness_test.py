@@ -103,7 +103,7 @@ class FaultySolvers(CommandLine):
     def test_what_is_stopped_or_ended_from_outside_has_no_result_and_runs_again(self):
         study = self.study(solvers=["jakobsen:precision=double", "faulty:mode=stop"])
         run = self.taut("run", study, "--timeout", 0.2, "-j", 2, program="taut-faulty", expect=3)
-        self.assertIn("was stopped from outside; nothing is stored of it", run.err)
+        self.assertIn("was stopped from outside; no result is stored", run.err)
         self.assertEqual([r["solver"] for r in self.records()], ["jakobsen"])
         for end in (signal.SIGKILL, signal.SIGTERM):
             study = self.study(solvers=["faulty:mode=held", "faulty:mode=stable"])
@@ -115,7 +115,7 @@ class FaultySolvers(CommandLine):
             os.kill(cases[0][0], end)
             said = process.communicate(timeout=60)[1]
             self.assertEqual(process.returncode, 3, said)
-            self.assertIn("from outside; nothing is stored of it", said)
+            self.assertIn("from outside; no result is stored", said)
             self.assertNotIn("held", [r["params"].get("mode") for r in self.records()])
         (self.folder / "go-on").touch()
         self.assertRegex(self.taut("run", study, program="taut-faulty").err, r"2/2 cases: .* 2 \(1 were stored already\)")

@@ -1,4 +1,5 @@
-// Preloaded library that makes every file system look like NFS and the host be called $HOST_NAME.
+// Preloaded library that makes every file system look like NFS and gives the host $HOST_NAME's
+// name.
 #include <sys/vfs.h>
 
 #include <cstdlib>

@@ -507,7 +507,7 @@ TEST(Connections, SayHowAProgramFailed) {
         Failure{"read x; echo std::bad_alloc >&2; exit 1", "oom",
                 "out of memory during 'go': std::bad_alloc", "std::bad_alloc\n"},
         Failure{"read x; echo '[1]'; sleep 1000", "protocol",
-                "answered 'go' with what is no JSON object: '[1]'", ""},
+                "answer to 'go': not a JSON object: '[1]'", ""},
         Failure{"exec >&-; sleep 1000", "protocol", "closed its standard output during 'go'", ""},
         Failure{"read x; printf abc; sleep 1000", "timeout",
                 "no answer to 'go' within 0.5 s, only 3 bytes", ""}}) {

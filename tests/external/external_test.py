@@ -343,14 +343,14 @@ class Hostile(Programs):
 
     def test_each_costs_its_own_case_and_leaves_no_process(self):
         expected = {"hang": ("timeout", "no answer to 'step' within 3 s"), "flood": ("protocol", "without a line feed"),
-                    "lines": ("protocol", "said more than it was asked for"), "exit": ("crash", "exit code 3 during 'step': enough of this"),
+                    "lines": ("protocol", "sent output that was not requested"), "exit": ("crash", "exit code 3 during 'step': enough of this"),
                     "abort": ("crash", "SIGABRT during 'step'"),
-                    "garbage": ("protocol", "no JSON object: 'step 5 done, residual 1e-3'"),
+                    "garbage": ("protocol", "not a JSON object: 'step 5 done, residual 1e-3'"),
                     "close": ("protocol", "closed its standard output during 'step'"),
                     "error": ("error", "refused 'step': the matrix is singular"),
                     "half": ("timeout", "only 600 bytes"), "size": ("protocol", "a state of 25 vertices has 1200 bytes, not 48"),
                     "nan": ("exploded", "nonfinite"), "fork": ("extreme", "stretch"), "hello-hang": ("timeout", "no answer to 'hello' within 3 s"),
-                    "hello-garbage": ("protocol", "no JSON object: 'Loading model...'")}
+                    "hello-garbage": ("protocol", "not a JSON object: 'Loading model...'")}
         study = self.study(scenes=["./five.toml"], solvers=["jakobsen:precision=double"] + [hostile(mode) for mode in expected])
         run = self.taut("run", study, "-j", 2)
         self.assertIn(f"{len(expected) + 1}/{len(expected) + 1} cases", run.err)

@@ -176,7 +176,7 @@ class Costs(Repository):
     def test_a_dearer_commit_is_bisected(self):
         made = self.repository({3: [("SPIN = 0", "SPIN = 400000")]}, commits=6)
         answer = self.found("--bisect", "cpu.per_step", commits="HEAD~5..HEAD", expect=None)
-        self.assertIn(f"changed first at {made[3][:10]}", facts_of(answer)["named"])
+        self.assertIn(f"first changed at {made[3][:10]}", facts_of(answer)["named"])
 
     def test_a_machine_under_load_is_no_step(self):
         self.repository({}, commits=4)

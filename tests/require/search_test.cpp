@@ -44,8 +44,8 @@ class Requirements : public testing::Test {
   Store store_{scratch_.path() / "results"};
 };
 
-// Strip on one pin in a wind without effect. Its last vertex is pinned by number, so that no
-// coarser grid contains it.
+// Strip pinned at two opposite corners, in a wind without effect. Its last vertex is pinned by
+// number, so that no coarser grid contains it.
 const std::string kStrip =
     "[cloth]\ngrid = [8, 3]\nsize = [1, 0.3]\nmass = 0.1\npins = [0, 23]\n[wind]\nvelocity = [3, "
     "0, 1]\nstrength = 0\n"

@@ -1,4 +1,4 @@
-// Damaged files that taut reads back: either an InputError that names the file or a whole value.
+// Reading a damaged file of taut gives either an InputError that names the file or a whole value.
 #include <gtest/gtest.h>
 
 #include <functional>

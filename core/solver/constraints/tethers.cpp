@@ -9,10 +9,10 @@ namespace taut {
 
 namespace {
 
-/// Most tethers of one vertex.
+/// Most tethers of one vertex, each to another group of pins.
 constexpr int kMostGroups = 4;
 
-/// Pins, grouped by whether links join them.
+/// Pins in groups; links between pins put them in one group.
 std::vector<std::vector<int>> pin_groups(const Scene& scene, const Adjacency& neighbours) {
   std::vector<bool> open(to_index(scene.mesh.size()));
   for (const int pin : scene.pins) open[to_index(pin)] = true;

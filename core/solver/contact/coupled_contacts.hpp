@@ -16,22 +16,23 @@ namespace taut {
 ///
 ///     x_i = free_i + sum_j G_ij f_j,      G [m/N] the same for x, y and z (the Delassus operator)
 ///
-/// Each round of a semi-smooth Newton method takes every contact as open, sticking or sliding, by
-/// the force with which it alone would close its gap and slip, and solves the linear system that
-/// remains (Alart, Curnier 1991, where a contact's own compliance is the parameter). Sweeps contact
-/// by contact end the solution (projected Gauss-Seidel; Jean, Moreau 1992), so forces are within
-/// their friction cones whatever the rounds have left.
+/// Each round of a semi-smooth Newton method takes every contact as open, sticking or sliding. The
+/// force with which a contact alone would close its gap and slip decides which. The round then
+/// solves the linear system that remains (Alart, Curnier 1991, where a contact's own compliance is
+/// the parameter). If the rounds do not converge, sweeps from contact to contact follow (projected
+/// Gauss-Seidel; Jean, Moreau 1992), so that forces are within their friction cones.
 class CoupledContacts {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
   /// Begins a substep.
   void begin() { factored_in_substep_ = 0; }
-  /// The compliance is another matrix from now on.
+  /// To be called when the compliance matrix has changed.
   void compliance_changed() { factored_.reset(); }
 
   /// Resolves the contacts `at`; contact c is at vertex `place[c]` of G and has the force force(c).
-  /// Changes the forces and moves x [places] m. Returns the sums of the changes [places] N.
+  /// Changes the forces and moves x [places] m. Returns the change of the force at each place
+  /// [places] N.
   Rows resolve(const Eigen::MatrixXd& compliance, std::span<const TouchingVertex> at,
                std::span<const Eigen::Index> place,
                const std::function<ContactForce&(std::size_t)>& force, Rows& x);

@@ -10,7 +10,7 @@ namespace taut {
 template <class T, class Slot, class Real>
 void sweep_vertices(const VertexSweep<Real>& sweep, const Slot* slots, std::size_t begin,
                     std::size_t end) {
-  const VertexSweep<Real> v = sweep;  // a copy, which no store changes
+  const VertexSweep<Real> v = sweep;  // a copy, whose members no store can change
   for (std::size_t g = begin; g < end; ++g)
     for (int l = 0; l < kLanes; l += kWidth<T>) {
       const PackedSlot* const at = v.groups[g].particle + l;
@@ -20,8 +20,8 @@ void sweep_vertices(const VertexSweep<Real>& sweep, const Slot* slots, std::size
     }
 }
 
-/// Calls f(slot, l, length) for lanes l, l + 1, .. of every slot of groups [begin, end). length: of
-/// these links at `x`.
+/// Calls f(slot, l, length) for lanes l, l + 1, .. of every slot of groups [begin, end). `length`
+/// has the lengths of these links at `x`.
 template <class T, class Real, class F>
 [[gnu::always_inline]] inline void visit_slots(const AugmentedStep<Real>& step, const Real* x,
                                                std::size_t begin, std::size_t end, const F& f) {

@@ -11,7 +11,7 @@ namespace taut::verb::effects {
 
 namespace {
 
-/// The scene with only links to which the others are compared.
+/// The scene of links alone with which the others are compared.
 constexpr const char* kUnit = "hang";
 
 struct Options {
@@ -25,7 +25,7 @@ struct Options {
 
 constexpr Unit kNs = kNanoseconds;
 
-/// Result of `interval()` for these samples; empty without samples.
+/// The cell of interval(); empty without samples.
 template <class MakeInterval>
 Cell of(const std::vector<double>& samples, const MakeInterval& interval) {
   return samples.empty() ? Cell() : Cell(interval());
@@ -108,13 +108,13 @@ void add_options(CLI::App& app, Options& o) {
                  std::string("Scenes beside ") + kUnit + " (default: all that are shipped)");
   app.add_option("--solver", o.solver, "The solver (default: " + o.solver + ")");
   app.add_option("--sizes", o.sizes,
-                 "Sheets of so many vertices along each side; 0: as they are (default: " +
+                 "Sheets with this many vertices along each side; 0: as shipped (default: " +
                      join(o.sizes, ",", [](int side) { return std::to_string(side); }) + ")")
       ->delimiter(',')
       ->check(CLI::Range(0, 1024));
   add_samples(app, o.rounds, o.seconds);
   app.add_option("--copies", o.copies,
-                 "Also run so many sheets of each scene at once on two threads, in wall time")
+                 "Also run this many sheets of each scene at once on two threads, in wall time")
       ->check(CLI::Range(1, 4096));
   add_format(app, o.format, "Print every sample, too");
 }

@@ -15,7 +15,7 @@ struct Options : BaselineOptions {
   Format format;
 };
 
-/// Adds the cost of each study relative to the kept build. Returns whether anything is slower.
+/// Adds the cost of each case relative to the kept build. Returns whether any case is slower.
 bool add_speed(Answer& answer, const std::vector<std::string>& studies, const Options& options) {
   const std::filesystem::path folder = folder_of_build(options.out, options.against);
   Store store(options.out);

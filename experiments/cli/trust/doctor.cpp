@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct Check {
   std::string name, value;
   bool good = true;
-  bool of_timing = false;  ///< whether timing cannot be trusted unless it is good
+  bool of_timing = false;  ///< timing can be trusted only if it is good
 };
 
 constexpr bool kOfTiming = true;
@@ -99,8 +99,8 @@ std::vector<Check> examine() {
   return all;
 }
 
-/// A table of the digests of each solver that keys of stored results contain. A solver that is a
-/// program of its own belongs to no layer of this one.
+/// The digests of each solver that keys of stored results contain. A solver that is a program of
+/// its own belongs to no layer of this one.
 Table fingerprints() {
   Table table{"fingerprints",
               "what solvers are made of",

@@ -35,7 +35,8 @@ std::string picture(const std::filesystem::path& file, const JsonReader& digest)
   return bytes;
 }
 
-/// Over what is a file or can go: a pipe would be waited for.
+/// Writes the file, over a regular file only; anything else is removed first or refused, because
+/// writing to a pipe would wait for its reader.
 void write_regular(const std::filesystem::path& file, const std::string& bytes) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(file, none)) std::filesystem::remove(file, none);
@@ -44,7 +45,7 @@ void write_regular(const std::filesystem::path& file, const std::string& bytes) 
   write_file(file, bytes);
 }
 
-/// Of all numbers and names of a film, which are a file beside its pictures.
+/// Digest of all numbers and names of a film, which are kept in a file beside its pictures.
 std::string digest_of(Json numbers) {
   numbers.erase("digest");
   return sha256(to_text(numbers));

@@ -10,8 +10,8 @@
 
 namespace taut::report {
 
-/// A solver with the settings under which it is compared. Of several choices of settings it is the
-/// one with most cases, so that the name means the same in every table.
+/// A solver with the settings under which it is compared. If several choices of settings were run,
+/// the choice with most cases is taken, so that the name means the same in every table.
 struct ComparedSolver {
   std::string name;
   std::string label;  ///< "Bullet", or "Bullet float" if other choices were run too
