@@ -11,7 +11,7 @@ namespace taut {
 
 namespace {
 
-/// As a share of the longest side's square: a turn below it is only rounding.
+/// Largest turn that is only rounding, as a share of the square of the longest side.
 constexpr double kFlat = 1e-12;
 
 bool precedes(const Vec3& a, const Vec3& b) {

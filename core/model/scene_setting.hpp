@@ -7,8 +7,8 @@
 
 namespace taut {
 
-/// "key=value" of a scene, in place of what its file says: a dotted key and a value in TOML, such
-/// as cloth.grid=[16, 16] or time.dt="1/120". A text without "=" is a key without a value; whoever
+/// "key=value" that replaces a value of the scene's file: a dotted key and a value in TOML, such as
+/// cloth.grid=[16, 16] or time.dt="1/120". A text without "=" is a key without a value; whoever
 /// reads the scene refuses it (core/io/document.hpp).
 class SceneSetting {
  public:
@@ -35,7 +35,7 @@ class SceneSetting {
 /// is the fabric.
 bool is_of_scene(std::string_view name);
 
-/// In the order in which they are applied.
+/// Settings of a scene in the order in which they are applied.
 using SceneSettings = std::vector<SceneSetting>;
 
 SceneSettings scene_settings(const std::vector<std::string>& texts);

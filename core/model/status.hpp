@@ -12,7 +12,7 @@ enum class Reason { nonfinite, energy, box, stretch, stretch_and_unsettled, unse
 /// The text that is stored: "energy", "moves after five settling times".
 std::string_view to_string(Reason);
 
-/// A run that is `unsettled` lasted at least so many settling times.
+/// Least number of settling times that a run must last to be `unsettled`.
 inline constexpr int kSettlingTimes = 5;
 
 /// Why a status is not ok: a Reason, or words of a solver or of the system, which decide nothing.
@@ -22,8 +22,8 @@ class StatusReason {
   StatusReason(Reason own) : own_(own), text_(to_string(own)) {}
   StatusReason(std::string words) : text_(std::move(words)) {}
   StatusReason(const char* words) : text_(words) {}
-  /// What a stored record calls by this text: a Reason if one has that text. Only what reads stored
-  /// records needs it.
+  /// The reason that a stored record has as this text: a Reason if one has that text. Only code
+  /// that reads stored records needs this function.
   static StatusReason stored(const std::string& text);
 
   const std::string& text() const { return text_; }

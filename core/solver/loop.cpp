@@ -327,8 +327,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   };
   if (!params.is("faces", "off") && std::ranges::any_of(scene.colliders, is_thin))
     return {"faces=" + std::string(params.choice("faces")) +
-            ": on which side of a thin body a face is, is known of its vertices "
-            "alone"};
+            ": the side of a thin body is known for vertices only, not for faces and edges"};
   if (!in_float(params)) return {};
   const double h = scene.dt / params.integer("substeps");
   const double farthest = coordinates(scene).first;

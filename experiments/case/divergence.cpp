@@ -80,8 +80,8 @@ Softest softest(const Scene& scene, const Hanging& hanging, double dt) {
   return all;
 }
 
-/// Of a link that is no seam, not between two pins, and that the cloth is to keep in its plane; 0
-/// of others.
+/// Strain of a structural or shear link that is no seam and not between two pins; 0 for other
+/// links.
 double strain_in_plane(const Scene& scene, const Link& link, const std::vector<Vec3>& x) {
   if (link.family == Family::bend || is_seam(link) ||
       (is_pinned(scene, link.a) && is_pinned(scene, link.b)))

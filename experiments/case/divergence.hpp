@@ -84,7 +84,7 @@ std::optional<double> settling_time(const Scene&, const std::vector<PassCost>& s
 ///   exploded{box}        a coordinate beyond EnergyBudget::farthest
 ///   extreme{stretch}     a structural or shear link with at least one free end exceeded
 ///                        legitimate_strain(); the run goes on, and its values are kept.
-///                        "stretch, moves after five settling times": it would be unsettled, too
+///                        "stretch, moves after five settling times": it is also unsettled
 ///   unsettled            the run lasted at least five settling times and yet, in its last settling
 ///                        time, a vertex is faster than 1e-3 sqrt(|g| L) (L: extent) and than the
 ///                        fastest ever seen times exp(-t/T)
@@ -94,7 +94,7 @@ class DivergenceDetector {
   DivergenceDetector(const Scene&, const std::vector<PassCost>& step_cost, int substeps = 1);
   /// False if the run has exploded at this boundary; status() says how.
   bool observe(int step, double t, const State&);
-  /// At the end of a run that was seen to the end.
+  /// To be called at the end of a run that was observed to its end.
   void finish();
   const Status& status() const { return status_; }
 

@@ -15,7 +15,7 @@ std::string_view layer_digest(std::string_view solver);
 /// Digest of what turns states into numbers: metrics, divergence, run_case, references, and all
 /// that these use.
 std::string_view measurement();
-/// Digest of what runs programs of others as solvers and reads motions that they computed.
+/// Digest of the sources that run external programs as solvers and read the motions of others.
 std::string_view external_client();
 /// Digest of what draws pictures and films.
 std::string_view pictures();

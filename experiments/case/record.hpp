@@ -28,7 +28,8 @@ struct Record {
   std::string scene;                          ///< its name
   std::string solver;                         ///< the entry's name
   std::map<std::string, std::string> params;  ///< all of the solver's
-  /// Of a step, and of a substep, by the solver's AccuracyParameters; -1: it has no such parameter.
+  /// Substeps of a step and sweeps of a substep, by the solver's AccuracyParameters; -1: it has no
+  /// such parameter.
   int substeps = -1, sweeps = -1;
   std::vector<std::string> work_parameters;  ///< which of the parameters these are
   double dt = 0;                             ///< s

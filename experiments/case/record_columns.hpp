@@ -45,14 +45,15 @@ struct RecordColumn {
   bool may_be_null() const { return may_lack && type() == "whole number"; }
   bool may_be_absent() const { return may_lack && type() == "text"; }
 };
-/// In the order of the documents.
+/// All columns, in the order of the documents.
 std::span<const RecordColumn> record_columns();
 /// The column of this JSON key that may be an axis of a chart; null: there is none.
 const RecordColumn* find_axis(std::string_view json);
 /// The record's number in this column; NaN if the record lacks it.
 double number_in(const Record&, const RecordColumn&);
 
-/// What a record that was read back cannot be. Its JSON and a results file give the field one name.
+/// A field of a record that was read back with an impossible value. The field has the same name in
+/// JSON and in a results file.
 struct ImpossibleField {
   const char *name, *why;
 };

@@ -61,7 +61,8 @@ class SceneMetrics {
     return row;
   }
 
-  /// Of a run that was seen to its end; without one, every value is NaN.
+  /// The values of all metrics. They are NaN unless the run is `complete`, which means that it was
+  /// observed to its end.
   std::map<std::string, double> values(bool complete) {
     std::map<std::string, double> all;
     for (auto& [entry, metric] : watching_) {

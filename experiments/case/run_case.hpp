@@ -23,7 +23,7 @@ inline constexpr int kSeriesRows = 120;
 
 struct RunOptions {
   int series_rows = 0;  ///< about this many rows, evenly spaced, first and last included; 0: none
-  int every = 0;        ///< a row each so many steps instead, first and last included; 0: as above
+  int every = 0;  ///< a row every so many steps instead, first and last included; 0: series_rows
   bool timed = false;   ///< note the cost of the steps: CaseRun::cpu_seconds
   bool measure = true;  ///< let all metrics() observe; without them `values` stays empty
   std::function<void(const Snapshot&)>

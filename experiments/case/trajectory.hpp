@@ -26,8 +26,9 @@ struct Trajectory {
 /// np.frombuffer(motion, [("t", "<f8"), ("x", "<f4", (n, 3))]).
 std::string frame_bytes(const Frame&);
 
-/// Frames of so many vertices, one after the other; a part of one at the end, of a writer that was
-/// killed, is left out. Throws InputError: no whole frame, or times that decrease.
+/// Reads frames with this number of vertices, one after the other. An incomplete frame at the end,
+/// left by a writer that was killed, is dropped. Throws InputError if there is no whole frame or if
+/// times decrease.
 std::vector<Frame> frames_in(std::string_view bytes, int vertices);
 
 }  // namespace taut

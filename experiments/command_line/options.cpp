@@ -88,7 +88,7 @@ CLI::Option* add_settings(CLI::App& app, SceneSettings& settings) {
   return app
       .add_option_function<std::vector<std::string>>(
           own_words::kSet,
-          // In addition to what --fabric has set.
+          // added to the setting of --fabric
           [&settings](const std::vector<std::string>& all) {
             settings.insert(settings.end(), all.begin(), all.end());
             refuse_same_key(settings);

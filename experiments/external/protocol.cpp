@@ -202,9 +202,9 @@ Json stiffness(const Scene& scene) {
   return all;
 }
 
-/// What of a scene the first version did not have, a few words each.
+/// A part of a scene that the first version of the protocol lacks, in a few words.
 struct Later {
-  int since;  ///< the version with which it came
+  int since;  ///< the version that introduced it
   std::string words;
 };
 
@@ -214,7 +214,7 @@ bool is_there(const Scene& scene) {
                              [](const Collider& c) { return std::holds_alternative<T>(c.shape); });
 }
 
-/// By version.
+/// Such parts of the scene, sorted by version.
 std::vector<Later> later_parts(const Scene& scene) {
   std::vector<Later> all;
   for (std::string& links : elastic_links(scene)) all.push_back({2, std::move(links)});

@@ -20,11 +20,11 @@ using Kind = Changing::Kind;
 
 constexpr std::size_t kNone = std::string::npos;
 
-/// Names of what is no metric's value; of costs the same as in reports of `taut bench`.
+/// Names of changes that are not of a metric's value; costs have the names that `taut bench` uses.
 constexpr std::pair<Kind, std::string_view> kNamed[] = {
     {Kind::status, "status"}, {Kind::cpu, "cpu.per_step"}, {Kind::wall, "wall.per_step"}};
 
-/// The cost that a stored ratio is of.
+/// The kind of cost of a stored ratio.
 Kind kind_of(const BuildRatio& ratio) { return ratio.clock == "cpu" ? Kind::cpu : Kind::wall; }
 
 MetricValues values_of(Database& database, std::int64_t case_id,

@@ -30,18 +30,19 @@ struct Changing {
   std::string metric = {};  ///< name of the value, "stretch.rms"; "" for other kinds
 
   bool is_cost() const { return kind == Kind::cpu || kind == Kind::wall; }
-  /// As tables and `--bisect` name it: "stretch.rms", "status", "cpu.per_step", "wall.per_step".
+  /// Its name in tables and in `--bisect`: "stretch.rms", "status", "cpu.per_step",
+  /// "wall.per_step".
   std::string name() const;
   auto operator<=>(const Changing&) const = default;
 };
-/// Inverse of Changing::name(); every other name is taken for a value's.
+/// Inverse of Changing::name(); any other name counts as that of a value.
 Changing changing(std::string_view name);
 
 /// A case of a study, across builds.
 struct HistoryRow {
   std::string id;             ///< "hang jakobsen:iterations=8"
   std::string scene, solver;  ///< their names
-  /// By build; nullptr: the build has no result for this case.
+  /// Results by build; nullptr: the build has no result for this case.
   std::vector<std::shared_ptr<const HistoryPoint>> points;
   std::vector<std::string> keys;  ///< by build; "": the build did not plan this case
 };

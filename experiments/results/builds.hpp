@@ -15,7 +15,7 @@ struct Build {
   std::string made;  ///< "2026-05-04T10:11:12Z" or the first part of it; builds are ordered by it
   std::int64_t place = 0;    ///< order among builds of the same time
   std::string subject = {};  ///< subject line of the commit
-  /// Digest of what `taut history --git` asked of it; "" if it asked nothing.
+  /// Digest of the request of `taut history --git`; "" if there was none.
   std::string asked = {};
   std::string gap = {};  ///< why it ran nothing; "" if it ran
 };

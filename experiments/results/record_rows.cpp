@@ -32,7 +32,7 @@ Database::Value kept(const Value& value) {
 
 void read(const Database::Rows& row, int column, std::string& text) { text = row.text(column); }
 void read(const Database::Rows& row, int column, double& number) { number = row.number(column); }
-/// As from JSON, at least what an empty record has; NULL only where that is kNone.
+/// The number is at least that of an empty record, as in JSON; NULL only where that is kNone.
 void read(const Database::Rows& row, int column, int& number) {
   if (number != kNone || !row.null(column)) number = row.whole(column, number);
 }

@@ -57,7 +57,7 @@ struct JudgedScene {
   std::optional<std::size_t> best(const Target&, const std::string& solver = "") const;
   /// The same of each solver that meets it, in order of appearance.
   std::vector<std::size_t> best_of_each(const Target&) const;
-  /// Of the solver's settings that reach the error and do not count, the cheapest.
+  /// The cheapest of the solver's settings that reach the error and do not count.
   std::optional<std::size_t> uncounted(const std::string& solver, double error) const;
   /// Whether the case's cost is only an upper bound: no cheaper setting of the same solver was
   /// tried, though there is one (the case does more than one sweep in one substep).

@@ -9,7 +9,7 @@ namespace taut {
 
 struct Rounds {
   int count = 1;
-  /// No round is started that would end after this if it took 1.5 times as long as the longest.
+  /// A round starts only if it would end by then even at 1.5 times the longest round so far.
   SteadyClock::time_point deadline = SteadyClock::time_point::max();
   /// Called after each round, if set.
   std::function<void(std::size_t done, std::size_t all)> progress;

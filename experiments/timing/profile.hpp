@@ -13,8 +13,8 @@ namespace taut {
 /// The cost of a solver for it is that of its cheapest setting that reaches the error.
 struct PerformanceProfile {
   std::string solver;
-  /// By problem: its cost relative to the best solver's, at least 1; infinite if none of its
-  /// settings reaches the error, for whatever reason.
+  /// The solver's cost relative to the best solver's, at least 1, by problem; infinite if none of
+  /// its settings reaches the error, for whatever reason.
   std::vector<double> ratios;
 
   /// Share of the problems for which its cost is within this factor of the best; 0 without

@@ -23,8 +23,8 @@ struct Recommendation {
   std::optional<std::size_t> best;            ///< index of the case; nothing: none meets the target
   std::optional<std::size_t> runner_up;  ///< the best of another solver, else the next of the same
   std::optional<Interval> ratio;         ///< cost of the runner-up over that of the best
-  /// Of an error, judge() of that ratio; a budget is clear if the whole interval of the cost meets
-  /// it, else likely.
+  /// For a target error: judge() of that ratio. For a budget: clear if the whole interval of the
+  /// cost meets it, else likely.
   Certainty certainty = Certainty::unopposed;
   double tolerance = kTolerance;  ///< the smallest difference that matters
 };
@@ -38,11 +38,11 @@ Interval cost_expected_again(const SceneBench&, std::size_t at);
 /// "stretch.rms <= 1 %" or "least stretch.rms within 4 ms a frame of 1/60 s".
 std::string text(const Target&, const std::string& metric, double fps = 1 / kFrame);
 
-/// How sure the best is, and of what: "clearly within the budget", "likely cheaper than bullet",
+/// The certainty of the best in words: "clearly within the budget", "likely cheaper than bullet",
 /// "costs the same as bullet within 5 %". Precondition: there is a best.
 std::string verdict(const Recommendation&, const SceneBench&);
 
-/// Of a solver that missed the target: how near it came, and whether it could have reached it.
+/// How near a solver came that missed the target, and whether it could have reached the target.
 std::string nearest(const SolverRecommendation&, const SceneBench&, const Recommendation&,
                     const std::string& metric, double fps = 1 / kFrame);
 
@@ -51,8 +51,8 @@ std::string nearest(const SolverRecommendation&, const SceneBench&, const Recomm
 Table recommendations(const std::string& metric);
 void add(Table&, const Recommendation&, const SceneBench&, const std::string& metric);
 
-/// Which settings to time: of every solver that meets the target the best by quick cost, at most
-/// `most`, then the next best of the leader. Indices into `tried`, best first.
+/// Which settings to time: the best setting, by quick cost, of every solver that meets the target,
+/// at most `most`; then the next best of the leader. Indices into `tried`, best first.
 std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target&,
                                    std::size_t most);
 

@@ -63,8 +63,8 @@ struct Crossing {
   LinesApart first, end;
   double share = 0;  ///< of the path, at the first crossing
 };
-/// With an edge that does not move. Solves for the share of the path at which the volume spanned by
-/// the two edges is 0: a polynomial of second degree.
+/// First crossing with an edge that does not move. Solves for the share of the path at which the
+/// volume spanned by the two edges is 0: a polynomial of second degree.
 inline std::optional<Crossing> first_crossing(const Corners& before, const Corners& now,
                                               const FixedEdge& edge) {
   const auto at = [&](double share, std::size_t c) {
@@ -99,7 +99,7 @@ inline std::optional<Crossing> first_crossing(const Corners& before, const Corne
   }
   return {};
 }
-/// With an edge of a body whose ends move straight, too.
+/// First crossing with an edge of a body whose ends also move straight.
 inline std::optional<Crossing> first_crossing(const MovingEdge& cloth, const MovingEdge& body) {
   for (const auto& [share, rises] : passes(cloth, body)) {
     if (share == 0) return {};

@@ -50,13 +50,14 @@ struct MatrixCompliance {
   Eigen::Matrix3d value, inverse;
   Vec3 operator*(const Vec3& force) const { return value * force; }
   Vec3 force_for(const Vec3& way) const { return inverse * way; }
-  /// At least the largest eigenvalue across the normal.
+  /// Upper bound of the largest eigenvalue across the normal.
   double across(const Vec3& normal) const { return value.trace() - normal.dot(value * normal); }
 };
 
 /// Changes the force so that x, which it moves by `compliance`, keeps out of the half-space and
-/// obeys Coulomb: no force where it is outside without one; else it sticks while friction is at
-/// most mu times the push, and slips against it beyond. Moves x and returns the change [N].
+/// obeys Coulomb. There is no force if x is outside without one. Otherwise x sticks while friction
+/// is at most mu times the push, and beyond that slips against it. Moves x and returns the change
+/// [N].
 template <class Compliance>
 Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce& force, Vec3& x) {
   const Vec3 before = at.total(force);

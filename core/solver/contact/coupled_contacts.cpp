@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Most rounds; sweeps after successful rounds, and sweeps if no round led anywhere.
+/// Most rounds; sweeps after rounds that helped, and sweeps if no round did.
 constexpr int kRounds = 4, kSweeps = 2, kSweepsAlone = 30;
 constexpr double kEnough = 1e-12;  ///< tolerance of gaps and slips, as a share of coordinates
 /// Beyond kMany contacts the factor of a matrix, which costs their cube, takes longer than many

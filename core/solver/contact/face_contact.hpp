@@ -28,8 +28,8 @@ namespace taut {
 /// With a solver that has a target y, a piece keeps the force F at its point from sweep to sweep
 /// and from substep to substep, while Signorini and Coulomb require it for free corners (settle()
 /// in contacts.hpp). Its changes move y as they move x, so that links feel b F. A solver that
-/// includes pieces in its solve (TouchingPieces) is told which of them touch, and nothing is moved
-/// here.
+/// includes pieces in its solve (TouchingPieces) gets the list of those that touch, and nothing is
+/// moved here.
 template <class Real>
 class FaceContactPass final : public Pass<Real> {
  public:
@@ -470,7 +470,7 @@ class FaceContactPass final : public Pass<Real> {
   TouchingPieces* pieces_;       ///< null unless the solver includes pieces in its solve
   std::vector<Held> held_;       ///< [pieces]; empty without a solver
   std::vector<Corners> safe_;    ///< [pieces] m, for edges; see remember_sides()
-  /// At the end of the step, enlarged by the thickness unless it is a body.
+  /// The collider at the end of the step, enlarged by the thickness unless it is a body.
   Shape shape_;
   Vec3 center_ = Vec3::Zero();
   double reach_ = 0;                      ///< m, from the centre to the farthest point

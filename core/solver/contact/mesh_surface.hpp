@@ -61,7 +61,8 @@ struct MeshSurface {
   bool clear(const Vector& x, Real thickness) const {
     return distance_at_least(x, static_cast<double>(thickness)) >= static_cast<double>(thickness);
   }
-  /// With a margin of twice the rounding of distances in Real.
+  /// Whether a way of this squared length cannot bring x closer than `thickness`, with a margin for
+  /// rounding.
   bool beyond(const Vector& x, Real way2, Real thickness) const {
     const double reach =
         static_cast<double>(thickness) + 1.001 * std::sqrt(static_cast<double>(way2));

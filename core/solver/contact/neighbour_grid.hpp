@@ -307,7 +307,7 @@ class NeighbourGrid {
   std::vector<std::uint32_t> particles_;       ///< bucket after bucket
   std::vector<std::uint32_t> buckets_;         ///< bucket of each particle
   std::vector<std::uint32_t> sorted_buckets_;  ///< in the order of particles_
-  /// In the order of particles_, with room for kSearchLanes more.
+  /// Coordinates in the order of particles_, with room for kSearchLanes more.
   Coordinates now_, moved_, at_rest_;
   std::vector<Vec4T<Real>> rest_;           ///< [particles] m; empty: no pair is ignored
   Real ignored_ = 0;                        ///< m
@@ -316,7 +316,7 @@ class NeighbourGrid {
   Vec4T<Real> origin_{};
   Real per_metre_ = 1;
   std::vector<std::uint32_t> starts_;  ///< [bucket_count + 1]
-  /// Of every kSample-th particle; empty if there is one part.
+  /// Number of comparisons of every kSample-th particle; empty if there is one part.
   std::vector<std::uint32_t> comparisons_;
   FindPairs<Real> find_pairs_;
   std::vector<Part> parts_;

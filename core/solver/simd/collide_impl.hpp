@@ -29,7 +29,7 @@ template <class T, int lanes, class Real, class F>
     for (std::size_t i = begin * kLanes; i < end * kLanes; i += kWidth<T>)
       f(4 * i, lanes_below<T>(0, static_cast<Real>(span.particles) - static_cast<Real>(i)));
   } else {
-    // In the first vectors of a row, one lane more has a column than in the others.
+    // The first vectors of a row have a column in one lane more than the others.
     const SheetRows& sheet = span.sheet;
     const int others = (sheet.columns - 1) / sheet.vectors;
     const int first = sheet.columns - others * sheet.vectors;

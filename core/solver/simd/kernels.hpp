@@ -268,7 +268,7 @@ struct MotionBoxes {
 /// Most particles that a search looks at together.
 inline constexpr std::uint32_t kSearchLanes = 8;
 
-/// As many particles from `first` on as there are lanes, with a bit in `mask` for each that counts.
+/// A particle for each lane, from `first` on, with a bit in `mask` for each that counts.
 struct SearchBlock {
   std::uint32_t first, mask;
 };

@@ -21,7 +21,7 @@ template <class T>
 }
 
 /// Force of lanes l, l + 1, .. of a slot on its vertices [N]; way: from there to the other end.
-/// Both ends compute the same bits of it, and of what they keep.
+/// Both ends of a link compute the same bits of the force and of the values that they keep.
 ///
 ///     k (n - r) u
 template <class T, class Real>

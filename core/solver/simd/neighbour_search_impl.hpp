@@ -30,8 +30,8 @@ template <class T, class Real>
   return to;
 }
 
-/// Writes blocks of what all particles of a cell are compared with, besides those of the cell
-/// itself and of the next, which mostly follow directly. Returns the end of these.
+/// Writes the blocks of particles with which all particles of a cell are compared, except those of
+/// the cell itself and of the next, which mostly follow directly. Returns the end of the blocks.
 template <class T, class Real>
 [[gnu::always_inline]] inline std::uint32_t write_surroundings(const NeighbourSearch<Real>& q,
                                                                std::uint32_t bucket,

@@ -384,7 +384,7 @@ struct AnyBoxSurface {
     const Tangent<T> xy = select(past.y > past.x, face(1, sign(at.y)), face(0, sign(at.x)));
     return select(past.z > greater(past.x, past.y), face(2, sign(at.z)), xy);
   }
-  /// From outside, the half-space at the nearest point of an edge or corner.
+  /// The half-space at the nearest point of an edge or corner, for a point outside.
   template <class T>
   [[gnu::always_inline]] Tangent<T> over_corner(const Vec3T<T>& at) const {
     const Vec3T<T> h = spread_out<T>(half);

@@ -64,7 +64,7 @@ struct Chart {
   std::vector<double> ticks = {};       ///< of x: the values of a study's setting, SI, ascending
   bool join = true;                     ///< the points of a curve by a line
   std::optional<double> slope = {};     ///< the theory's exponent
-  /// Below it a value says nothing: why, and how much.
+  /// The value below which y says nothing, and the reason.
   struct Floor {
     double y = 0;
     std::string text;  ///< "the reference's own error"
@@ -72,7 +72,7 @@ struct Chart {
   std::optional<Floor> floor = {};
   bool front = false;                         ///< with the Pareto front
   std::map<std::string, Interval> cost = {};  ///< by case key: the interval of x
-  /// By case key, what was timed and does not count: why. It is on no front.
+  /// Why a timed case does not count, by case key. Such a case is on no front.
   std::map<std::string, std::string> not_counted = {};
 };
 

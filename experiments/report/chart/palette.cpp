@@ -39,7 +39,7 @@ constexpr std::array kOthers{
 };
 
 constexpr Colour kWhite{"#FFFFFE", "#FFFFFE"}, kBlack{"#1A1A19", "#1A1A19"};
-/// In the order of the enumeration, up to the last status that is stored.
+/// Styles in the order of the enumeration, up to the last status that is stored.
 constexpr StatusStyle kStatuses[] = {
     {{"#2F9E77", "#2C8F6C"}, "✓", "settled or ran to the end", kWhite},
     {{"#C9423B", "#C9473F"},

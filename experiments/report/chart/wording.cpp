@@ -376,7 +376,7 @@ std::optional<std::string> setting_of(const Record& r, const std::string& name) 
   return at->second;
 }
 
-/// In canonical form; "" for a solver or a parameter that this program lacks.
+/// The default in canonical form; "" for a solver or a parameter that this program lacks.
 std::string default_of(const std::string& solver, const std::string& name) {
   const SolverEntry* entry = find_entry(solver);
   if (!entry) return "";

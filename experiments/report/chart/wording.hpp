@@ -21,7 +21,7 @@ namespace taut::report {
 /// Plain text with the signs that a keyboard lacks: "dt^2 >= 2e-5, mu x 2" ->
 /// "dt² ≥ 2×10⁻⁵, μ × 2".
 std::string typeset(std::string_view);
-/// With a capital first letter, if it is a plain one: for headings.
+/// The text with a capital first letter if that is an ASCII letter, for headings.
 std::string capitalised(std::string);
 
 /// "ball, box and plane"
@@ -37,8 +37,8 @@ inline constexpr const char *kSweeps = "iterations", *kSubsteps = "substeps";
 /// NaN if it holds no such thing.
 double value_of(const Record&, std::string_view name);
 
-/// The parameter that an axis of this solver alone varies, "structural" of "xpbd:structural"; the
-/// name itself of any other.
+/// The parameter that an axis of this solver alone varies: "structural" for "xpbd:structural". Any
+/// other name is returned unchanged.
 std::string own_parameter(std::string_view solver, std::string_view name);
 
 /// A quantity in words for people.
@@ -53,14 +53,14 @@ struct Quantity {
   std::string label() const;
   std::string text(double si, int digits = 2) const { return taut::shown(unit, si, digits); }
 };
-/// As the metric's own file declares it, or the row of a parameter: that of `solver`, or what the
-/// rows of all solvers agree on. Unknown names are shown as they are.
+/// The quantity of this name, as the metric's file or the row of a parameter declares it: the row
+/// of `solver`, or what the rows of all solvers agree on. Unknown names are shown unchanged.
 Quantity quantity(std::string_view name, std::string_view solver = "");
 
-/// "4 ms" of one value, "4 ms to 17 ms" of several; of at least one.
+/// "4 ms" for one value, "4 ms to 17 ms" for several. Precondition: at least one value.
 std::string range_text(const std::set<double>& values, const Quantity&);
 
-/// What quantity() has a title for, beside the axes of a study.
+/// Names for which quantity() has a title, besides the axes of a study.
 std::vector<std::string> quantity_names();
 
 /// Records that live elsewhere, in the order of the study.

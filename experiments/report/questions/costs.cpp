@@ -70,7 +70,7 @@ Cell head_of(const SceneBench& bench) {
 
 using Chosen = std::vector<std::optional<std::size_t>>;  ///< case of each solver
 
-/// Marks the cheapest of these columns if it is told from all others.
+/// Marks the cheapest of these columns if all others are dearer (Cheapest::is_told).
 void mark_cheapest(std::vector<Cell>& row, const std::vector<Cost>& costs, const RatioOf& ratio,
                    const Interval& control) {
   if (costs.empty()) return;

@@ -23,7 +23,7 @@ std::string links_text(const Record& r) {
   return links && std::isfinite(links->number) ? shortest(links->number) + " N/m" : "";
 }
 
-/// Of one scene: what is timed, and what of it counts.
+/// The winners of one scene.
 class SceneWinners {
  public:
   SceneWinners(const SceneBench& bench, const ReportInput& input, CaseList& list)
@@ -40,7 +40,8 @@ class SceneWinners {
   }
 
  private:
-  /// Its arithmetic and the stiffness of its links stand beside its setting.
+  /// The contender of a case. Its setting leaves out precision and stiffness, which have fields of
+  /// their own.
   Contender contender(std::size_t at) {
     const Record& r = scene_.bench.cases[at].record;
     const std::string links = links_text(r);
@@ -79,7 +80,7 @@ class SceneWinners {
     return cell;
   }
 
-  /// Solvers whose cheaper settings reach the error by what does not count.
+  /// Adds the solvers that reach the error at less cost with a setting that does not count.
   void pass_over(WinnerCell& cell, double level, double cost) const {
     for (const std::string& solver : solvers_of(scene_.bench))
       if (const auto at = scene_.uncounted(solver, level);

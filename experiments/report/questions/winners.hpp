@@ -27,11 +27,12 @@ struct Contender {
 
 /// Who reaches an error on a scene at the least cost.
 struct WinnerCell {
-  /// The cheapest, and those of other solvers that cannot be told from it; empty: none reaches it.
+  /// The cheapest contender, and those of other solvers that noise cannot tell from it; empty: no
+  /// solver reaches the error.
   std::vector<Contender> cheapest;
-  std::optional<Contender> next;  ///< the cheapest of the others, of another solver
-  Interval times;                 ///< its cost over that of the cheapest; if there is a next
-  std::string why;                ///< where none reaches it
+  std::optional<Contender> next;  ///< the cheapest other contender, of another solver
+  Interval times;                 ///< cost of `next`, if there is one, over that of the cheapest
+  std::string why;                ///< why no solver reaches the error
   /// Solvers that reach the error at less cost, and why that does not count.
   std::vector<std::pair<std::string, std::string>> passed_over;
 
@@ -40,11 +41,11 @@ struct WinnerCell {
 
 struct WinnerRow {
   std::string scene, title;
-  WayGone::By way = WayGone::By::nothing;  ///< by what it is known who goes its way
+  WayGone::By way = WayGone::By::nothing;  ///< how the motion was judged
   std::vector<WinnerCell> cells;           ///< of each of kErrorLevels
 };
 
-/// A piece of a sentence: what a number leads to.
+/// A piece of a sentence, and the case or map that it leads to.
 struct Said {
   std::string text;
   std::string key = {};  ///< of a case; "": it leads nowhere

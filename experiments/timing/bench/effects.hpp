@@ -19,7 +19,7 @@ struct EffectRow {
   /// states without wind, colliders and self-collision.
   std::vector<double> whole, links_alone;
   std::vector<double> copies;  ///< for all copies together on two threads, one step of each
-  /// With the colliders so far away that nothing touches them. Empty if there are no colliders.
+  /// The same with colliders so far away that nothing touches them. Empty if there are none.
   std::vector<double> touching_nothing;
 
   Interval cost() const { return bootstrap_median(whole); }
