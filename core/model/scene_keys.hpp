@@ -143,8 +143,8 @@ struct SceneKey {
 std::span<const SceneKey> scene_keys();
 
 /// The key of this dotted path, which may contain indices of elements ("collider.0.radius");
-/// nullptr if there is no such key. Shapes share paths: of rows with one path it is the first, and
-/// all have its type, unit, range, choices and example.
+/// nullptr if there is no such key. Shapes share paths: if several rows have this path, it is the
+/// first of them, and the others have the same type, unit, range, choices and example.
 const SceneKey* find_scene_key(std::string_view path);
 
 /// content() and later_keys() with another table of keys.

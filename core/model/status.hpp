@@ -28,7 +28,7 @@ class StatusReason {
 
   const std::string& text() const { return text_; }
   bool empty() const { return text_.empty(); }
-  /// Not so for words that merely read the same.
+  /// Whether this is that Reason; false for words that merely read the same.
   bool operator==(Reason own) const { return own_ == own; }
 
  private:
@@ -43,7 +43,7 @@ struct Status {
     ok,           ///< ran to the end
     exploded,     ///< non-finite, or kinetic energy above ten times the available potential drop
     unsettled,    ///< ran to the end, still moving after kSettlingTimes theoretical settling times
-    extreme,      ///< ran to the end, but stretched as no mean should include
+    extreme,      ///< ran to the end, but stretched too far to count in a mean
     unsupported,  ///< the solver says that it would misread the scene
     // failures, kept and re-runnable
     timeout,

@@ -54,7 +54,7 @@
 /// links one by one.
 namespace taut::loop {
 
-/// What a solver makes its passes from.
+/// The inputs from which a solver makes its passes.
 struct Setup {
   const Scene& scene;
   const Params& params;

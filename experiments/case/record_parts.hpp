@@ -7,8 +7,8 @@
 
 namespace taut {
 
-// What a record's columns hold beside numbers and texts, as JSON and back. The JSON library finds
-// to_json by its name; read_into throws InputError.
+// Conversions between JSON and the values of a record's columns that are neither numbers nor texts.
+// The JSON library finds to_json by its name; read_into throws InputError.
 void to_json(Json&, const PassCost&);
 void to_json(Json&, const SceneSetting&);
 void to_json(Json&, const ResolvedSetting&);

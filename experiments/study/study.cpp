@@ -128,7 +128,7 @@ class StudyReader {
         };
         if (const auto [at, fresh] = text_of.try_emplace(scene.name, text);
             !fresh && at->second != text)
-          report("scene '" + scene.name + "' stands twice: vary a setting by an axis");
+          report("scene '" + scene.name + "' is listed twice: vary a setting by an axis");
         for (const StudyAxis& axis : study_.axes)
           if (find_setting(scene.settings, axis.name))
             report("'" + axis.name + "' of scene '" + scene.name + "' is an axis of the study");

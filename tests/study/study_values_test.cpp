@@ -235,7 +235,7 @@ TEST_F(StudyFile, ASceneMayHaveSettingsOfItsOwn) {
   EXPECT_EQ(wrong(asked("\"all:cloth.span=0.7\"")),
             "2:11: 'all' has no settings of its own: `set` holds for every scene\n");
   EXPECT_EQ(wrong(asked("\"drape\", \"drape:cloth.span=0.7\"")),
-            "2:20: scene 'drape' stands twice: vary a setting by an axis\n");
+            "2:20: scene 'drape' is listed twice: vary a setting by an axis\n");
   EXPECT_EQ(wrong(asked("\"drape:cloth.span=0.7\"") + "axes.\"cloth.span\" = [0.8, 0.9]\n"),
             "2:11: 'cloth.span' of scene 'drape' is an axis of the study\n");
   // The hem of `hang` has no collider; the ball has one with the same setting.

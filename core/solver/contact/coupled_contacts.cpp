@@ -113,7 +113,8 @@ CoupledContacts::Sets CoupledContacts::sets_of(const std::vector<Trial>& trials)
   return sets;
 }
 
-// With G of the sticking S and the sliding L, whose forces are d f, and u what is without them:
+// The system for the forces F_S of the sticking contacts S and d f of the sliding contacts L, where
+// u is x without these forces:
 //
 //     G_SS F_S + G_SL d f = target_S - u_S,        n . (G_LS F_S + G_LL d f) = offset_L - n . u_L
 

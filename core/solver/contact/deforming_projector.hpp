@@ -85,7 +85,8 @@ class DeformingProjector final : public Projector<Real> {
     }
   }
 
-  /// Coulomb: against its slip by at most mu times its depth, and no more than the slip itself.
+  /// Pushes x out of the surface. Friction is Coulomb's: it takes back at most the slip, and at
+  /// most mu times the depth.
   bool push(const DeformingContact::Touch& touch, Vec3& x) const {
     const double depth = touch.offset + contact_.thickness() - touch.normal.dot(x);
     if (!(depth > 0)) return false;

@@ -134,8 +134,8 @@ struct BodyContact {
   }
 
  private:
-  /// Keeps a vertex that was pushed out of one triangle from lying behind another one: it goes on
-  /// from there, and if that does not end, half of its path to the last one.
+  /// Pushes a vertex that was pushed out of one triangle out of another one behind which it lies,
+  /// and so on. If that does not end, the vertex goes half of its path to the last triangle.
   void keep_from_others(Vec3T<Real>& x, const Vec3T<Real>& previous) const {
     const Vec3T<Real> from = contact.motion(previous);
     constexpr int kOthers = 4;
@@ -151,7 +151,7 @@ struct BodyContact {
         x = from + height(from) / (2 * (height(from) - height(x))) * (x - from);
     }
   }
-  /// The same numbers, for a particle that has hardly moved and cannot have passed through.
+  /// Gives the same numbers for a particle that has hardly moved and cannot have passed through.
   std::optional<bool> project_where_known(Vec3T<Real>& x, const Vec3T<Real>& previous) {
     const auto distance = contact.surface.distance_if_known(x);
     if (!distance) return {};
@@ -240,7 +240,7 @@ class MeshProjector final : public Projector<Real> {
   mutable ThreadPool* queued_in_ = nullptr;
 };
 
-/// Makes what puts particles out of a shape.
+/// Makes the projector of a shape.
 template <class Real>
 struct ProjectorMaker {
   using Made = std::unique_ptr<Projector<Real>>;

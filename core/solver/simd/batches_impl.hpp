@@ -68,8 +68,8 @@ template <class T, bool equal, class Real, class Number, class Shares, class Exc
 }
 
 /// Calls f(batch, n, x) for the n-th batch of a run; x: the particle from which its ends count.
-/// Prefetches later batches and the next tile's particles: no machine foresees that these will be
-/// needed (0.66 of the time at 1024 x 1024, no effect in cache).
+/// Prefetches later batches and the next tile's particles, which no processor prefetches by itself
+/// (0.66 of the time at 1024 x 1024, no effect in cache).
 template <class Real, class F>
 [[gnu::always_inline]] inline void visit_batches(const BatchRun<Real> run, Real* x, const F& f) {
   constexpr std::size_t kBatchesAhead = 8;

@@ -13,8 +13,8 @@ struct FrictionCone {
 
   /// Whether the tangent is within the cone.
   [[gnu::always_inline]] auto sticks() const { return length <= most; }
-  /// How much of the tangent is within it: all, or what is as long as the bound. 1 also where the
-  /// answer is `unused`, for the length may be 0 there.
+  /// Share of the tangent that is within the cone: 1, or the bound over the length. Also 1 where
+  /// the answer is `unused`, since the length may be 0 there.
   template <class Mask = bool>
   [[gnu::always_inline]] T share(const Mask& unused = {}) const {
     const auto whole = sticks() || unused;

@@ -11,7 +11,8 @@ namespace taut {
 /// without ffmpeg). Throws InputError if the disk refuses.
 void keep_film(const std::filesystem::path& file, const FilmResult&);
 
-/// What keep_film() wrote; nothing if it did not, or if a file is damaged: it is made again.
+/// The film that keep_film() wrote. Nothing if there is none, or if a file is damaged, so that the
+/// film is made again.
 std::optional<FilmResult> kept_film(const std::filesystem::path& file);
 
 }  // namespace taut

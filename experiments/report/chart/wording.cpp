@@ -80,7 +80,7 @@ const SolverEntry* find_entry(std::string_view solver) {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Unit kCost{Unit::Kind::time, "s", "ms", 1e3, true, true};
 
-/// What is neither a record's field nor a metric's value: settings and costs.
+/// Quantities that are neither a record's field nor a metric's value: settings and costs.
 struct Titled {
   std::string_view name, title;
   Unit unit;
@@ -97,7 +97,7 @@ constexpr std::array kTitles{
     Titled{kWallPerStep, "wall time per step", kCost, "median of the same samples"},
     Titled{kPeakMemory, "peak memory of the process", kMegabytes},
     Titled{"step.distance", "distance from the exact step", kErrorLength,
-           "root mean square over the vertices, after so many iterations of one step"},
+           "root mean square over the vertices, after this many iterations of one step"},
     Titled{"step.gap",
            "share of the gap that is left",
            {Unit::Kind::other, "1", "", 1, true, true},
@@ -108,7 +108,7 @@ constexpr std::array kTitles{
     Titled{"cloth.weights.0.factor", "mass ratio", kNumber},
 };
 
-/// The number that makes up all of the text; NaN if none does.
+/// The text as a number; NaN if it is not exactly one number.
 double number(const std::string& text) {
   double value = kNaN;
   const char* end = text.data() + text.size();

@@ -66,7 +66,7 @@ class Grid {
   const std::vector<Row>& rows() const { return rows_; }
   std::size_t columns() const { return columns_.size(); }
 
-  /// "swing, structural = 1e3", with what else a scene's columns differ in.
+  /// "swing, structural = 1e3", with whatever else distinguishes the columns of a scene.
   std::string heading(std::size_t column) const {
     std::set<Task> tasks;
     for (const Column& one : columns_) tasks.insert(one.key.task);
@@ -161,7 +161,8 @@ Table failure_map(const Records& records, const std::vector<Record>& timed, Case
           " of the way (of a reference in motion, else of exact steps, else by what steps miss); "
           "late: less than " +
           shown(kShare, kLate, 2) + "; gains energy: above " + shown(kShare, kGained, 1) +
-          " of m g L more than at the start; else right. The first of these that holds."};
+          " of m g L more than at the start; else right. A cell has the first of these that "
+          "holds."};
   Records here;
   for (const Record* r : records) {
     if (stiffness_of(*r).empty()) continue;
