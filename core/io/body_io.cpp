@@ -28,7 +28,7 @@ std::optional<BodySurface> read_file(Section& section, const std::filesystem::pa
 
 /// A sentence about skipped lines of the file: how many, and which.
 std::string remark_on(const std::string& file, const BodySurface& surface) {
-  return file + ": lines that say nothing of a body are skipped: " +
+  return file + ": skipped lines that mean nothing for a body: " +
          join(surface.skipped, ", ",
               [](const auto& one) { return one.first + " " + std::to_string(one.second); });
 }

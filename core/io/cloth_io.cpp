@@ -141,14 +141,15 @@ bool read_sheet(Section& cloth, const Fabric* fabric, const FileKeys& said, Scen
   return true;
 }
 
-/// A sentence: "sheet.obj: 14 lines skipped, for no cloth has what they say: adje 1, vv 4".
+/// A sentence: "sheet.obj: 5 lines skipped, which mean nothing for a cloth: adje 1, vv 4".
 std::string remark_on(const Polygons& surface) {
   int lines = 0;
   for (const auto& [word, count] : surface.skipped) lines += count;
   return surface.file + ": " + std::to_string(lines) + (lines == 1 ? " line" : " lines") +
-         " skipped, for no cloth here has what they say: " +
-         join(surface.skipped, ", ",
-              [](const auto& one) { return one.first + " " + std::to_string(one.second); });
+         (lines == 1 ? " skipped, which means" : " skipped, which mean") +
+         " nothing for a cloth: " + join(surface.skipped, ", ", [](const auto& one) {
+           return one.first + " " + std::to_string(one.second);
+         });
 }
 
 /// Reads the surface in an OBJ file, scaled, turned and moved. Returns false if the file has

@@ -75,7 +75,7 @@ Stiffness stiffness_of(const Scene& scene, const Params& params) {
 
 DeclaredStep implicit_euler_of_a_frame(const Scene& scene, const Params&) {
   DeclaredStep step{.stiffness = scene.stiffness, .of = "a frame"};
-  if (scene.self_collision) step.none = "self-collision is no part of it";
+  if (scene.self_collision) step.none = "the exact step leaves out self-collision";
   return step;
 }
 

@@ -343,9 +343,9 @@ DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
   DeclaredStep step{.stiffness = stiffness_of(scene, params),
                     .substeps = params.integer("substeps")};
   if (scene.self_collision && !params.is("self", "off"))
-    step.none = "self-collision is no part of it";
+    step.none = "the exact step leaves out self-collision";
   else if (!scene.colliders.empty() && !params.is("faces", "off"))
-    step.none = "contact of faces is no part of it";
+    step.none = "the exact step leaves out contact of faces";
   return step;
 }
 

@@ -89,7 +89,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
 
 DeclaredStep declared_step(const Scene& scene, const Params& params) {
   DeclaredStep step = loop::implicit_euler(scene, params);
-  if (params.real("damping") > 0) step.none = "its damping is no part of it";
+  if (params.real("damping") > 0) step.none = "the exact step leaves out its damping";
   return step;
 }
 

@@ -78,8 +78,8 @@ class Advisor {
     return slowdown() * all;
   }
 
-  /// Ratio of wall time to CPU time, as others use the machine. It is the median over all pilots,
-  /// since a pilot is so short that a single wait can make it a hundred times as long.
+  /// Ratio of wall time to CPU time, which others on the machine raise. It is the median over all
+  /// pilots, since a pilot is so short that a single wait can make it a hundred times as long.
   double slowdown() const { return slowdowns_.empty() ? 1 : std::max(1.0, median(slowdowns_)); }
 
   /// Time at which the search has to end to leave time for the final [s]. If a full final would

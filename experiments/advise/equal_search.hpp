@@ -10,7 +10,7 @@
 
 namespace taut {
 
-/// What a search tried of one solver on one scene of a study, within its CPU time.
+/// What a search of one solver on one scene of a study tried within its CPU time.
 struct EqualSearch {
   std::string scene;  ///< as in Study::scenes
   std::string solver;

@@ -56,8 +56,8 @@ inline double cpu_seconds() {
 
 constexpr int kFew = 2, kMany = 18, kSteps = 4;
 
-/// ns an iteration and vertex: the difference between steps of many and of few iterations, the
-/// least of each of `rounds`, in turns. A step advances a motion of its own, from rest.
+/// ns an iteration and vertex: the difference between the least times of a step of many and of a
+/// step of few iterations, timed in turns in `rounds`. Each of the two advances its own motion.
 inline double iteration(const std::function<void()>& few, const std::function<void()>& many,
                         int rounds = 40) {
   const auto time_of = [](const std::function<void()>& step) {
@@ -73,8 +73,8 @@ inline double iteration(const std::function<void()>& few, const std::function<vo
   return 1e9 * (least_many - least_few) / (kMany - kFew) / (Net::kSide * Net::kSide);
 }
 
-/// Answers each line of standard input with a measurement of a net that starts from rest, until it
-/// ends: whoever asks takes turns.
+/// Answers each line of standard input, until that ends, with a measurement of a net that starts
+/// from rest. So the reader can measure several programs in turns.
 /// `Sheet(net).step(iterations)` is a step of the code that is measured; `lowest()` [m] is how far
 /// down it is, which shows that it simulates the net.
 template <class Sheet>

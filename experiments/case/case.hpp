@@ -45,7 +45,7 @@ class CaseMaker {
   std::map<std::pair<std::string, SceneSettings>, Loaded> scenes_;
 };
 
-/// A case of a scene that was read already: of `spec` come its name and settings.
+/// A case of a scene that was read before; `spec` gives the case its names and settings.
 Case case_of(const CaseSpec& spec, std::shared_ptr<const Scene>, SolverChoice);
 
 /// One case on its own.

@@ -11,7 +11,7 @@
 namespace taut {
 
 namespace {
-/// Part of every key. Another number makes every stored result be computed again.
+/// Part of every key. If this number changes, every stored result is computed again.
 constexpr int kKeySchema = 2;
 }  // namespace
 

@@ -16,7 +16,7 @@ struct Goal {
   bool replace = false;
 };
 
-/// Why a reference of this kind need not be computed; "" if it does.
+/// Why a reference of this kind need not be computed; "" if it must be.
 std::string kept(const Scene& scene, const std::string& kind, double t, const Goal& goal) {
   const std::filesystem::path file = reference_file(
       {scene.name, reference_digest(scene, kind), kind, t, "", 0, {}}, goal.folder / scene.name);
@@ -80,8 +80,8 @@ std::vector<ReferenceOutcome> write_motion(const Scene& scene, const Goal& goal)
       outcomes.push_back({scene.name, "motion", "",
                           "chaotic: with dt = 1/" + shortest(1 / motion.dt) +
                               " s and half of it places differ by this floor, more than 1e-4 of "
-                              "the cloth's size, and half the steps are no cure: statistics alone "
-                              "have a meaning",
+                              "the cloth's size, and halving the step does not help: only "
+                              "statistics have a meaning",
                           times[k], motion.floor[k]});
       break;
     }

@@ -101,7 +101,7 @@ State after(const Scene& s, const std::string& solver) {
 }  // namespace
 
 TAUT_TRUTH(body_in_a_moving_frame, 7, 15,
-           "a body that a velocity moves is one at rest, seen from a frame that moves, also if it "
+           "a body with a velocity acts like one at rest seen from a moving frame, even if it "
            "deforms",
            "Galileo; without damping and wind") {
   const Vec3 speed(0.7, -0.3, 0.4);
@@ -117,17 +117,17 @@ TAUT_TRUTH(body_in_a_moving_frame, 7, 15,
       const int steps = swells && solver_name(solver) == "implicit" ? 3 : kQuarterSecond;
       State seen = Simulation(moves, solver, steps).state();
       for (Vec3& x : seen.x) x -= steps * moves.dt * speed;
-      findings.below(solver,
-                     std::string("distance of a vertex from where it is seen, on a ring that ") +
-                         (swells ? "swells" : "is rigid") + ", after " + std::to_string(steps) +
-                         " steps",
-                     "m", farthest(seen, Simulation(at_rest, solver, steps).state()), 1e-9);
+      findings.below(
+          solver,
+          std::string("distance of a vertex from its place in that frame, on a ring that ") +
+              (swells ? "swells" : "is rigid") + ", after " + std::to_string(steps) + " steps",
+          "m", farthest(seen, Simulation(at_rest, solver, steps).state()), 1e-9);
     }
 }
 
 TAUT_TRUTH(frames_of_a_rigid_motion, 7, 16,
-           "a body whose frames move and turn it as a whole does what a rigid one does",
-           "the motion, told in another way") {
+           "a body whose frames move and turn it as a whole acts like a rigid one",
+           "two descriptions of one motion") {
   struct Told {
     const char* how;
     Motion motion;

@@ -375,13 +375,13 @@ TEST(StepErrorMetric, SaysWhyThereIsNone) {
   Scene scene = swinging();
   for (const auto& [solver, why] :
        {std::pair<const char*, const char*>{"mass-spring", "no value: it is explicit"},
-        {"vbd:damping=0.1", "no value: its damping is no part of it"}}) {
+        {"vbd:damping=0.1", "no value: the exact step leaves out its damping"}}) {
     const Measured of = measured(scene, solver);
     EXPECT_EQ(of.remark, why);
     EXPECT_TRUE(std::isnan(of.values.at("step.error"))) << solver;
   }
   scene.self_collision = SelfCollision{.radius = 0.001};
-  EXPECT_EQ(measured(scene, "pd").remark, "no value: self-collision is no part of it");
+  EXPECT_EQ(measured(scene, "pd").remark, "no value: the exact step leaves out self-collision");
   EXPECT_EQ(measured(scene, "pd:self=off").remark, "from one implicit Euler step of a substep");
   Scene large = hanging_sheet(52, 52);
   large.steps = 1;
