@@ -18,12 +18,12 @@ struct State {
   std::vector<Vec3> v;  ///< [n] m/s
 };
 
-/// Moving air, with Vasilovici's face law (section 3): F = c (n . d) n.
+/// Moving air. The force on a face is F = c (n . d) n A, Vasilovici's law (section 3) times the
+/// area.
 struct Wind {
   enum class Law {
-    /// D = wind velocity - face velocity, F per m^2: c (n . d) n A; has a terminal speed.
-    relative,
-    literal  ///< d = wind velocity alone, as printed; accelerates without end
+    relative,  ///< d = wind velocity - face velocity; has a terminal speed
+    literal    ///< d = wind velocity alone, as printed; accelerates without end
   };
   Vec3 velocity = Vec3::Zero();  ///< m/s
   /// c [N s/m^3]; n is the unit normal, A the face's area; each corner takes F/3.
@@ -87,7 +87,7 @@ struct Scene {
   double duration() const { return dt * steps; }  ///< s
 };
 
-/// Whether the vertex is pinned from start to end: the scene says where it is, and no solver.
+/// Whether the vertex is pinned from start to end, so that the scene alone decides where it is.
 bool is_pinned(const Scene&, int vertex);
 
 /// The vertices that are pinned at time t [s], including those that are released at that time.

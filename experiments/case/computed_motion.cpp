@@ -34,7 +34,7 @@ int decimals(const std::vector<Vec3>& x) {
   return digits;
 }
 
-/// Between neighbouring numbers that the file can hold at c, in the file's unit.
+/// Distance between neighbouring numbers that the file can hold at c, in the file's unit.
 double spacing(double c, Rounding rounding, int digits) {
   if (rounding == Rounding::decimal && digits < 16) return std::pow(10, -digits);
   const double size = std::abs(c), infinity = std::numeric_limits<double>::infinity();
@@ -44,11 +44,11 @@ double spacing(double c, Rounding rounding, int digits) {
                              single);
 }
 
-/// Which vertex of a file is which of the scene.
+/// Pairs of a file's vertices and the scene's.
 struct VertexMatch {
   std::vector<std::size_t> of_scene;  ///< [n] the file's vertex that is the scene's i-th
-  double farthest = 0;                ///< m, between two that are the same
-  std::string mismatch;               ///< what does not agree, a sentence; "": all do
+  double farthest = 0;                ///< m, largest distance of a pair
+  std::string mismatch;               ///< why there are no pairs, one sentence; "": there are
   bool same_order() const { return std::ranges::is_sorted(of_scene); }
 };
 
@@ -66,7 +66,7 @@ class Neighbours {
     std::ranges::sort(order_, {}, [&](std::size_t i) { return all_[i].x(); });
   }
 
-  /// The nearest within `radius`; kNoVertex: there is no such vertex.
+  /// The nearest vertex within `radius`; kNoVertex: there is none.
   std::size_t within(const Vec3& x, double radius) const {
     std::size_t best = kNoVertex;
     auto at = std::ranges::lower_bound(order_, x.x() - radius, {},
@@ -84,9 +84,8 @@ class Neighbours {
   std::vector<std::size_t> order_;
 };
 
-/// Pairs the vertices that lie within `tolerance` [m] of each other: each with the one of the same
-/// number if that fits for all, else each with the nearest. O(n log n) unless many vertices share
-/// their x.
+/// Pairs vertices that lie within `tolerance` [m] of each other: those of the same number if this
+/// fits for all, else the nearest ones. O(n log n) unless many vertices share their x.
 VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3>& scene,
                            double tolerance) {
   VertexMatch match;

@@ -10,12 +10,13 @@ namespace taut {
 /// Writes pretty JSON with shortest round-trip numbers; throws InputError if that fails.
 void write_reference(const Reference&, const std::filesystem::path& folder);
 
-/// Where write_reference() puts it: a file of its kind that belongs to another digest stays, and
-/// the name has the digest's beginning. Throws InputError if what is there is no reference.
+/// The file that write_reference() writes. If the file of this kind belongs to another digest, it
+/// stays, and the new name contains the beginning of the digest. Throws InputError if the existing
+/// file is no reference.
 std::filesystem::path reference_file(const Reference&, const std::filesystem::path& folder);
 
-/// SHA-256 of the scene without what a reference of this kind does not depend on: the time step
-/// and the duration; for "static" damping and velocities too.
+/// SHA-256 of the parts of the scene on which a reference of this kind depends: all but the time
+/// step and the duration, and for "static" all but damping and velocities, too.
 std::string reference_digest(const Scene&, const std::string& kind);
 
 /// The references of the scene of this name below `root` that belong to exactly this cloth: another

@@ -36,7 +36,7 @@ class SceneMetrics {
     for (auto& [entry, metric] : watching_)
       if (entry->follows_path && metric->follows(moment.step)) metric->observe_within(moment);
   }
-  /// Which are those of a run that was seen to its end.
+  /// Adds the metrics' remarks, which are those of a run that was observed to its end.
   void add_remarks(ResolvedSettings& settings) const {
     for (const auto& [entry, metric] : watching_)
       if (const std::string remark = metric->remark(); !remark.empty())
@@ -111,7 +111,7 @@ Record describe(const Scene& scene, const SolverChoice& choice) {
 
 namespace {
 
-/// `step` is the one that is being computed.
+/// Runs all steps. `step` is always the step that is being computed.
 void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions& options,
                CaseRun& run, std::unique_ptr<Solver>& solver, int& step) {
   Record& record = run.record;

@@ -230,7 +230,7 @@ void refuse_empty_values(int argc, char** argv) {
       throw InputError(std::string(word) + ": a value is missing");
 }
 
-/// Allows everything typed to be started, in whatever option it stands.
+/// Admits every program and file that the command line names, in whichever option.
 void admit_solvers(int argc, char** argv) {
   for (std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
     if (word.starts_with("--")) word.remove_prefix(std::min(word.size(), word.find('=') + 1));

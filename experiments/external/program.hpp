@@ -21,11 +21,11 @@ std::string value_in(std::string_view params, std::string_view key);
 /// An external program as a solver. Its entry lives until this program ends.
 class Program {
  public:
-  /// Starts the program and says hello. If it answers badly, its entry exists all the same, and its
-  /// cases end as the hello did: a bad program costs its own cases, not the study. An empty `name`
-  /// is replaced by one from name_for(). `leading` are parameters that come before the program's
-  /// own, `given` is the text of all parameters, and `files` belong to the program beside the files
-  /// that the command names. Throws InputError if the program cannot be started.
+  /// Starts the program and sends "hello". After a bad answer the entry exists all the same, and
+  /// its cases end as the hello did: a bad program costs its own cases, not the study. An empty
+  /// `name` is replaced by one from name_for(). `leading` are parameters that come before the
+  /// program's own, `given` is the text of all parameters, and `files` belong to the program beside
+  /// the files that the command names. Throws InputError if the program cannot be started.
   Program(std::string name, Command, std::vector<ParamSpec> leading, std::string_view given,
           const std::vector<std::string>& files);
   /// The same program as `silent`, which did not introduce itself, with other parameters.

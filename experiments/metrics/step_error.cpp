@@ -38,9 +38,9 @@ double relative_rounding(const std::vector<Vec3>& x) {
   return (all ? 0x1p-24 : 0x1p-53) / std::sqrt(3.0);
 }
 
-/// Upper bound of a cloth's displacement [m] in these seconds, by kMostFalls. Where hundreds of
-/// substeps in single precision have rounded in contact, what they seem to miss is more. Infinite
-/// without gravity, where nothing is known.
+/// Upper bound of a cloth's displacement [m] in these seconds, by kMostFalls. Hundreds of substeps
+/// in single precision round so much in contact that they may seem to miss more. Infinite without
+/// gravity, where nothing is known.
 double farthest(const Scene& scene, double seconds) {
   const double g = scene.gravity.norm();
   if (g == 0) return std::numeric_limits<double>::infinity();

@@ -112,7 +112,7 @@ class DeformingSurfaceIn final : public Contacts::Surface {
   std::vector<int> touched_;  ///< [vertices]: the triangle at which each has touched last
 };
 
-/// Makes what a shape is to contact.
+/// Makes the Contacts::Surface of a shape.
 struct SurfaceMaker {
   using Made = std::unique_ptr<Contacts::Surface>;
   const Collider& collider;

@@ -22,7 +22,7 @@
 
 namespace taut {
 
-/// s is a copy, which no store changes.
+/// s is a copy, whose members no store can change.
 template <class T, bool forces, class Real>
 [[gnu::always_inline]] inline void integrate(const VerletStep<Real> s, std::size_t begin,
                                              std::size_t end) {
