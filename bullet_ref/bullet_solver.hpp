@@ -25,7 +25,7 @@ inline Vec3 from_bullet(const btVector3& v) {
   return Eigen::Matrix<btScalar, 3, 1>(v.x(), v.y(), v.z()).cast<double>();
 }
 
-/// What a scene does not say about its cloth.
+/// Settings of the cloth that no scene has.
 struct ClothOptions {
   double stiffness = 1;  ///< kLST of every link
   double margin = 0;     ///< m, on top of the scene's thickness
@@ -42,7 +42,7 @@ std::unique_ptr<btSoftBody> build_cloth(btSoftBodyWorldInfo&, const Scene&, cons
 enum class RestLength { m_rl, m_c1 };
 
 /// Number of links that share a vertex with the link before them in the order of solution. Each of
-/// them waits for what the one before it writes.
+/// them waits for the result of the link before it.
 int waiting_links(const btSoftBody&);
 
 /// Base of both of Bullet's cloths: the scene's cloth and colliders in a Bullet world that the

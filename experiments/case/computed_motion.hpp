@@ -10,8 +10,8 @@
 #include "core/model/solver.hpp"
 #include "experiments/case/run_case.hpp"
 
-/// What another program computed, as a motion of a scene's cloth. `taut external score`, the solver
-/// `positions` and taut.score of Python all judge it here.
+/// Positions that another program computed, as a motion of a scene's cloth. `taut external score`,
+/// the solver `positions` and taut.score of Python all judge them here.
 namespace taut {
 
 /// Frames, and how to read them; what is not given is inferred.
@@ -25,7 +25,7 @@ struct ComputedFrames {
   bool z_up = false;                          ///< else y
 };
 
-/// What rounding the coordinates does to the strain of a scene's links: less says nothing.
+/// Strain of a scene's links that rounding of the coordinates causes; smaller strains mean nothing.
 struct StrainFloor {
   double rms = 0;  ///< expected, over the links
   double max = 0;  ///< no link is off by more
@@ -34,16 +34,16 @@ struct StrainFloor {
 /// Frames in m, y up, in the scene's order.
 class ComputedMotion {
  public:
-  /// What does not fit the scene is in misfits(). Throws InputError: a malformed file.
+  /// misfits() lists what does not fit the scene. Throws InputError if a file is malformed.
   ComputedMotion(const Scene&, ComputedFrames);
   const PositionsHeader& header() const { return frames_.positions->header(); }
-  /// Why it is no motion of this scene, a sentence each; empty: it is one.
+  /// Reasons, one sentence each, why it is no motion of this scene; empty: it is one.
   const std::vector<std::string>& misfits() const { return misfits_; }
   double frame_dt() const { return frame_dt_; }  ///< [s] as given, or the scene's
   /// Positions at t = k frame_dt [m]. Precondition: no misfits.
   std::vector<Vec3> frame(int k);
   StrainFloor floor(const Scene&);
-  /// What was given, read or derived, for the record and for people.
+  /// The settings that were given, read or derived, for the record and for people.
   ResolvedSettings settings(const Scene&);
 
  private:
@@ -65,12 +65,12 @@ SolverEntry player(std::function<ComputedFrames(const Params&)> open);
 using LoadScene = std::function<Scene(const SceneSettings&)>;
 
 /// The settings with which the scene has the frames' time step and, if they end earlier, their
-/// duration. Throws InputError: it cannot be read so, or there is one frame alone.
+/// duration. Throws InputError if the scene cannot be read with them or there is only one frame.
 SceneSettings fitted(const LoadScene&, SceneSettings, const ComputedFrames&);
 
 /// Runs the frames through every metric and the verdict on a run, as run_case does with a solver's;
 /// velocities are differences between frames. A coordinate that is not finite is a result
-/// (exploded). Throws InputError: the frames are no motion of this scene; it says why.
+/// (exploded). Throws InputError, with the reasons, if the frames are no motion of this scene.
 CaseRun score(const Scene&, const ComputedFrames&, const RunOptions& = {});
 
 }  // namespace taut

@@ -24,7 +24,8 @@ struct ConvergencePoint {
 /// How a solver's iterations approach the exact solution of one step.
 struct Convergence {
   std::string solver;  ///< solver text without iterations and substeps
-  /// Why it cannot be asked; the members below then have no meaning.
+  /// Why the solver cannot take the step; empty if it can, otherwise the members below have no
+  /// meaning.
   std::vector<std::string> refused;
   Stiffness stiffness{};                 ///< stiffness of its links [N/m]; infinite: rigid
   std::string problem;                   ///< why its step has no exact solution; "" if it has

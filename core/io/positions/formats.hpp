@@ -9,7 +9,7 @@
 
 #include "core/io/positions/positions.hpp"
 
-/// Code that the formats share, for the sources of this folder and for taut's own .traj.
+/// Code that the formats of this folder share.
 namespace taut {
 
 /// The number at these bytes, in the file's byte order.

@@ -84,7 +84,7 @@ struct Query {
   }
 };
 
-/// q is a copy, which nothing that is written changes.
+/// q is a copy, whose members no store can change.
 template <class T, bool moving, class Real>
 std::size_t find_pairs(const NeighbourSearch<Real> q, std::uint32_t& next, std::uint32_t last) {
   CandidatePair* found = q.found;

@@ -15,8 +15,8 @@ struct TitledCase {
   std::string title;
 };
 
-/// Draws the cloth of each at its end, under a camera of its own, side by side. Precondition: their
-/// motions are stored. Throws InputError without a renderer.
+/// Draws the cloths of the cases at their ends side by side, each under its own camera.
+/// Precondition: their motions are stored. Throws InputError without a renderer.
 void draw_side_by_side(const std::vector<TitledCase>&, const Store&,
                        const std::filesystem::path& file);
 

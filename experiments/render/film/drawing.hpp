@@ -24,7 +24,7 @@ struct Drawing {
   std::optional<RenderQuality> quality;
   View view;
   ColourBy colour_by = ColourBy::strain;
-  double range = 0;  ///< end of the colour bar, in the unit that it shows; 0: what is there
+  double range = 0;  ///< end of the colour bar, in the unit that it shows; 0: chosen from the runs
   bool dark = false;
 };
 

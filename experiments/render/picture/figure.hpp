@@ -54,7 +54,7 @@ struct BarPlace {
 /// pixel columns of the bar itself have the exact colours of the ends.
 void draw_colour_bar(Canvas&, const ColourScale&, const BarPlace&, double unit);
 
-/// Marks a panel with the news that the run ended before this moment.
+/// Marks a panel to show that the run ended before this moment.
 void mark_stop(Image& panel, const RecordedRun::Stop&, double unit);
 
 /// Marks a panel if the run ended before this moment or if its cloth is out of sight.

@@ -27,8 +27,8 @@ double distance(const RecordedRun& first, const RecordedRun& other, double t) {
   return std::sqrt(squares / static_cast<double>(a.size()));
 }
 
-/// Where the runs differ most in strain, else in place; the greatest strain of a single one; two
-/// thirds on the way if nothing differs.
+/// The moment at which the runs differ most in strain, or else in place; for a single run, that of
+/// its largest strain. Two thirds of the way through if nothing differs.
 std::size_t most_different(const Media& media, const Scene& scene,
                            const std::vector<RecordedRun>& runs) {
   constexpr double kStrain = 1e-3, kPlace = 1e-2;  // differences that are seen: 1, of the extent

@@ -73,7 +73,8 @@ struct Records : std::vector<const Record*> {
   Records(std::vector<Record>&&) = delete;  // would point to what is gone
 };
 
-/// What its entry says, or its name in words: "bullet-deformable" -> "Bullet deformable".
+/// The title in the solver's entry, or its name in words: "bullet-deformable" -> "Bullet
+/// deformable".
 std::string solver_title(std::string_view solver);
 
 /// Whether an iteration of the solver solves for all links at once, and so is no sweep.
@@ -82,17 +83,17 @@ bool solves_all_at_once(const std::string& solver);
 /// The record's parameters but for those that are its substeps and sweeps.
 std::map<std::string, std::string> other_settings(const Record&);
 
-/// The parameters that labels of this solver name beside substeps and sweeps, by its entry; empty
+/// The parameters that labels of this solver name besides substeps and sweeps, by its entry; empty
 /// for a solver that this program lacks.
 std::vector<std::string> labelled_parameters(const std::string& solver);
-/// The parameter that its link order comes of; "": there is no such parameter.
+/// The parameter that sets the solver's link order; "": there is no such parameter.
 std::string link_order_parameter(const std::string& solver);
 /// The parameters that are the stiffness of its springs.
 std::vector<std::string> stiffness_parameters(const std::string& solver);
-/// Name of the parameter with that role; of a solver that this program lacks, its usual name.
+/// Name of the parameter with that role; its usual name for a solver that this program lacks.
 std::string parameter_of(std::string_view solver, ParamSpec::Role);
-/// The term that explains a labelled parameter: its name; "method of XPBD" where it means something
-/// else in labels of another solver.
+/// The term that explains a labelled parameter: its name, or "method of XPBD" if the parameter of
+/// that name means something else in labels of another solver.
 std::string parameter_term(const std::string& solver, const std::string& name);
 /// What the term means, with the parameter's unit or its choices; "" for a solver or a parameter
 /// that this program lacks.
@@ -119,7 +120,7 @@ inline constexpr Work kQuotedWork{.substeps = 1, .sweeps = 16};
 
 /// "1 × 16, order=mesh": the work, and whatever differs from the defaults.
 std::string brief_settings(const SolverChoice&);
-/// The same of a record; for a solver that this program lacks, with all of its parameters.
+/// The same for a record, with all parameters of a solver that this program lacks.
 std::string brief_settings(const Record&);
 
 /// "Jakobsen 1 × 16, order=mesh"; the title alone if there are no settings.
@@ -129,8 +130,8 @@ std::string titled(const std::string& solver, const std::string& settings);
 /// sweeps), if they have none in common; "" if they have.
 std::string unequal_work(const Records&);
 
-/// "mesh", which speaks for itself; "levels=4" and "tethers=on", whose values do not; "8 sweeps" of
-/// kSweeps.
+/// The setting in a label: "mesh", a value that speaks for itself; "levels=4" and "tethers=on",
+/// whose values do not; "8 sweeps" for kSweeps.
 std::string named_setting(const std::string& name, const std::string& value);
 
 /// A part of a label.

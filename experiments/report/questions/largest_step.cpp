@@ -11,8 +11,8 @@ namespace taut::report {
 
 namespace {
 
-/// ^ Fewest time steps on a scene that make a largest one meaningful, and the least ratio between
-/// the largest and the smallest of them.
+/// Fewest time steps on a scene that make a largest one meaningful, and the least ratio between the
+/// largest and the smallest of them.
 constexpr std::size_t kLeastSteps = 3;
 constexpr double kLeastRange = 4;
 
@@ -25,7 +25,7 @@ std::set<double> steps_of(const Tried& tried) {
   return steps;
 }
 
-/// What all of these solvers tried.
+/// The works and time steps that all of these solvers tried.
 Tried shared_by(const std::vector<const Tried*>& solvers) {
   Tried shared = *solvers.front();
   std::erase_if(shared, [&](const auto& one) {
