@@ -12,8 +12,7 @@ class JsonReader;
 
 /// Whether it ran to its end without an extreme, so that its values may be compared and averaged.
 bool completed(const Status&);
-/// Whether the solver tried and has no value. What it says beforehand that it cannot run is no
-/// failure.
+/// Whether the solver tried and has no value. A scene that it refuses beforehand is no failure.
 bool failed(const Status&);
 
 /// "exploded (energy) at step 12, vertex 3".

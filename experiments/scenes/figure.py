@@ -101,7 +101,7 @@ def surface():
 
 
 def turned(p, pivot, angle):
-    """About the axis x: forward for a positive angle."""
+    """The point turned about the axis x; a positive angle turns it forward."""
     y, z = p[1] - pivot[1], p[2] - pivot[2]
     return [p[0], pivot[1] + math.cos(angle) * y + math.sin(angle) * z, pivot[2] - math.sin(angle) * y + math.cos(angle) * z]
 
@@ -112,7 +112,7 @@ def smooth(s):
 
 
 def pose(t):
-    """What each bone does to a point of the figure that stands, at time t."""
+    """How each bone moves a point of the standing figure, at time t."""
     size, moves = smooth(t / 0.5), {"trunk": lambda p: p}
     for side, s in SIDES.items():
         phase = 2 * math.pi * t / GAIT + (0 if s > 0 else math.pi)
@@ -133,7 +133,7 @@ def pose(t):
 
 
 def weights(p):
-    """Of each bone at a place of the figure that stands: the nearest ones count."""
+    """Share of each bone at a point of the standing figure; only the nearest bones count."""
     near = {bone: math.exp(-max(0.0, to_bone(bone, p)) / 0.02) for bone in BONES}
     whole = sum(near.values())
     return {bone: w / whole for bone, w in near.items() if w > 0.01 * whole}

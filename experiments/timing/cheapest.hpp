@@ -11,7 +11,7 @@ namespace taut {
 
 /// A cost to be compared with others.
 struct Cost {
-  std::size_t at = 0;     ///< whose: the index of a case, of a column
+  std::size_t at = 0;     ///< index of the case or column that has the cost
   double mid = 0;         ///< any unit
   bool is_bound = false;  ///< the cost is at most that
 };
@@ -23,8 +23,8 @@ struct Rival {
   Certainty certainty = Certainty::none;  ///< of these times
   bool is_bound = false;
 
-  /// Whether it is more than the other one: noise cannot make the difference, nor can a setting
-  /// that nobody tried.
+  /// Whether it is surely the higher cost: neither noise nor an untried setting can make the
+  /// difference.
   bool is_dearer() const;
 };
 
@@ -40,13 +40,13 @@ struct Cheapest {
 /// Cost i over cost j; nothing: not both were timed in turns.
 using RatioOf = std::function<std::optional<Interval>(std::size_t i, std::size_t j)>;
 
-/// Which of these costs is the least, and who cannot be told from it: everything that calls a
-/// setting the cheapest asks here. Precondition: there is one.
+/// Finds the least of these costs and compares the others with it. All code that calls a setting
+/// the cheapest uses this function. Precondition: there is a cost.
 Cheapest cheapest_of(std::vector<Cost>, const RatioOf&, const Interval& control,
                      double tolerance = kTolerance);
 
-/// A scene of a bench with its cases judged by their error: once, for each of their intervals is a
-/// bootstrap.
+/// A scene of a bench with its cases judged by their error. They are judged only once, because each
+/// of their intervals takes a bootstrap.
 struct JudgedScene {
   SceneBench bench;
   std::vector<Candidate> candidates;  ///< of its cases, in their order
@@ -64,7 +64,7 @@ struct JudgedScene {
   bool is_upper_bound(std::size_t at) const;
   /// A case beside another one.
   Rival beside(std::size_t at, std::size_t other, double tolerance = kTolerance) const;
-  /// Which of these cases is the cheapest. Precondition: there is one.
+  /// Which of these cases is the cheapest. Precondition: there is a case.
   Cheapest cheapest(const std::vector<std::size_t>& cases) const;
 };
 

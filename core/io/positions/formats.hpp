@@ -9,7 +9,8 @@
 
 #include "core/io/positions/positions.hpp"
 
-/// Code that the formats of this folder share.
+/// Code that the formats share, for the sources of this folder and for the frames of a results
+/// file.
 namespace taut {
 
 /// The number at these bytes, in the file's byte order.

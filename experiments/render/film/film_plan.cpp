@@ -18,7 +18,7 @@ namespace taut {
 
 namespace {
 
-constexpr std::size_t kMostOthers = 3;  ///< who is filmed on a scene that no study ran
+constexpr std::size_t kMostOthers = 3;  ///< solvers filmed on a scene that no study ran
 
 /// A film, and what the page says beside it.
 struct PlannedFilm {
@@ -27,7 +27,7 @@ struct PlannedFilm {
   std::vector<std::string> labels;  ///< of the runs: "Bullet float"
   bool studied = true;
 
-  /// One more who runs it, with the solver of this record; `key` of its case, "" of a scene that no
+  /// Adds a run with the solver of this record. `key` is that of its case, "" on a scene that no
   /// study ran.
   void add(const Record& one, const std::string& label, const std::string& key) {
     film.request.solvers.push_back(one.spec.solver);
@@ -55,8 +55,8 @@ PlannedFilm of_studied(const report::ComparedSolvers& compared, const report::Qu
   return planned;
 }
 
-/// A thrown sheet is gone before anybody has seen it: it takes half a second to cross its own size,
-/// at no less than an eighth of real time.
+/// Speed of a film at which a thrown sheet can be watched: in half a second of video it moves by at
+/// most the scene's extent, unless that takes less than an eighth of real time.
 double watchable_speed(const Scene& scene) {
   double fastest = 0;
   for (const Vec3& v : scene.start.v) fastest = std::max(fastest, v.norm());

@@ -17,13 +17,13 @@ namespace taut {
 std::vector<double> frame_times(const Scene&, const std::vector<RecordedRun>&, double wanted,
                                 double duration);
 
-/// Draws and encodes a frame for each of these times; `speed` and `crf` as in MediaOptions. "": the
-/// file is there; otherwise why not (VideoWriter::finish).
+/// Draws and encodes a frame for each of these times; `speed` and `crf` as in MediaOptions. Returns
+/// "", or the reason why there is no file (VideoWriter::finish).
 std::string write_video(const std::filesystem::path& mp4, const SceneRenderer&, const PageLayout&,
                         const std::vector<double>& times, double speed, int crf,
                         const std::function<void(std::size_t done, std::size_t all)>& progress);
 
-/// What a report wants of a scene: panels alone (PageLayout::bare) on the dark background; the page
+/// How a report draws a scene: panels alone (PageLayout::bare) on the dark background; the page
 /// writes captions and the colour bar itself, in its own fonts and themes.
 struct MediaOptions {
   int width = 960, height = 400;  ///< of all panels together; even

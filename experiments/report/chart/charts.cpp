@@ -19,7 +19,7 @@ namespace {
 
 using Settings = std::map<std::string, std::string>;
 
-/// Everything that tells two cases of one solver apart, by name, but for what is free.
+/// All settings by which two cases of one solver may differ, by name, except those that are free.
 Settings settings(const Record& record, const std::vector<std::string>& free) {
   Settings all = other_settings(record);
   if (record.substeps >= 0) all[kSubsteps] = std::to_string(record.substeps);
@@ -95,7 +95,7 @@ void draw_levels(Chart& chart) {
   }
 }
 
-/// What the chart of a value is called in its scene; where several have the role, after the value.
+/// Id of a value's chart within its scene: by the value's role, or by the value if several have it.
 std::string id_of(const ValueSpec& value) {
   constexpr Names<Role::contact_error> kNames{
       "", "convergence", "motion", "vertices", "faces", "passages", "reference", "step", "slip"};

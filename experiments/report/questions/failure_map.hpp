@@ -12,8 +12,8 @@ namespace taut::report {
 inline constexpr const char* kFailureMap = "failure_map";
 
 /// Verdicts on cases whose links differ in stiffness: who is right, freezes, strains or explodes.
-/// Each solver with its parameters has a row, each task and stiffness a column, whatever their
-/// words are; a second result for the same cell gets a row of its own. A cell is the first verdict
+/// Each solver with its parameters has a row, each task and stiffness a column, however they are
+/// written; a second result for the same cell gets a row of its own. A cell is the first verdict
 /// of this list that applies:
 ///
 ///     its status    where the case did not complete: exploded, extreme, cannot

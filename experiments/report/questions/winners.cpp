@@ -102,12 +102,12 @@ class SceneWinners {
   CaseList& list_;
 };
 
-/// Who wins, by solver, and where.
+/// The cells that a solver wins.
 struct Wins {
   std::string solver;
   std::vector<const WinnerCell*> cells;
 
-  /// Those with the least and the most over the next.
+  /// The cells with the least and the largest lead over the next solver.
   std::vector<const WinnerCell*> ends() const {
     std::vector<const WinnerCell*> opposed = cells;
     std::erase_if(opposed, [](const WinnerCell* cell) { return !cell->next; });
