@@ -335,8 +335,8 @@ Equilibrium refused(const std::string& reason) {
 
 std::vector<std::string> refuse_static(const Scene& scene) {
   std::vector<std::string> reasons;
-  const auto refuse = [&](bool refused, const char* why) {
-    if (refused) reasons.emplace_back(why);
+  const auto refuse = [&](bool applies, const char* why) {
+    if (applies) reasons.emplace_back(why);
   };
   refuse(!scene.colliders.empty(), "contact: where the cloth comes to rest depends on its history");
   refuse(scene.self_collision.has_value(), "self-collision: it depends on its history");

@@ -47,8 +47,7 @@ class Clock {
 StepTime operator/(const StepTime& t, int steps) { return {t.cpu / steps, t.wall / steps}; }
 
 // A timing worker sends kReady, then an answer to each line of a request.
-constexpr std::string_view kReady =
-    "ready 2";  ///< the number is the version of requests and answers
+constexpr std::string_view kReady = "ready 2";  ///< with the version of these lines
 constexpr std::string_view kPilotRun = "pilot_run", kSample = "time", kRemark = "remark",
                            kMemory = "memory";
 /// Start of a worker's answer that is an error instead of a time.
