@@ -175,7 +175,6 @@ class Edges final : public Metric {
   };
 
   void count(const Followed& collider, const std::vector<Vec3>& now) {
-    std::vector<int> near;
     for (const auto& [a, b] : edges_) {
       const StraightEdge is{now[to_index(a)], now[to_index(b)]},
           was{collider.last[to_index(a)], collider.last[to_index(b)]};
