@@ -13,6 +13,7 @@
 
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/params.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
@@ -42,7 +43,9 @@ std::string in_solver_quotes(const std::string& text) {
 /// The solver text that runs a checkout in `folder` under this build's name.
 std::string solver_in(const std::string& solver, const fs::path& folder, const std::string& build) {
   const std::size_t colon = solver.find(':');
-  const bool named = colon != solver.npos && solver.find("cmd=", colon) != solver.npos &&
+  const std::vector<ParamItem> items =
+      param_items(colon == solver.npos ? "" : std::string_view(solver).substr(colon + 1));
+  const bool named = std::ranges::find(items, "cmd", &ParamItem::key) != items.end() &&
                      solver.find_first_of(" '\"/") > colon;
   return (named ? solver : "solver:cmd=" + in_solver_quotes(solver)) +
          ",folder=" + in_solver_quotes(folder.string()) + ",build=" + build;

@@ -153,7 +153,7 @@ class Commits(Repository):
 
     def test_a_solver_that_no_longer_introduces_itself_is_a_gap(self):
         self.repository({3: [("# START", "sys.exit('no more')")]}, commits=5)
-        answer = self.found(commits="HEAD~4..HEAD", expect=3)
+        answer = self.found(commits="HEAD~4..HEAD", solver="mine:cmd='python3 mine.py'", expect=3)
         gaps = {row["subject"]: row["gap"] for row in rows_of(answer, "builds") if row["gap"]}
         self.assertEqual(list(gaps), ["change 3", "change 4"])
         self.assertIn("its solver does not answer: exit code 1 during 'hello': no more", gaps["change 3"])
