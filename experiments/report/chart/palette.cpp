@@ -38,7 +38,7 @@ constexpr std::array kOthers{
     SolverStyle{{"#56606F", "#A9B4C2"}, "post", "'▮' ps 1.2", "6 2"},      // slate
 };
 
-constexpr Colour kWhite{"#FFFFFE", "#FFFFFE"}, kBlack{"#1A1A19", "#1A1A19"};
+constexpr Colour kWhite{"#FFFFFE", "#FFFFFE"};
 /// Styles in the order of the enumeration, up to the last status that is stored.
 constexpr StatusStyle kStatuses[] = {
     {{"#2F9E77", "#2C8F6C"}, "✓", "settled or ran to the end", kWhite},
@@ -46,12 +46,12 @@ constexpr StatusStyle kStatuses[] = {
      "×",
      "not finite, far outside the scene, or moving with 10 × the energy that the scene supplies",
      kWhite},
-    {{"#F2BF4B", "#DDA83A"}, "~", "still moving at the end", kBlack},
+    {{"#F2BF4B", "#DDA83A"}, "~", "still moving at the end", kDarkInk},
     {{"#E8894A", "#D97B3C"},
      "^",
      "ran to the end, stretched beyond what the scene accounts for",
-     kBlack},
-    {{"#9AA3AF", "#5F6977"}, "–", "the solver cannot represent the scene", kBlack},
+     kDarkInk},
+    {{"#9AA3AF", "#5F6977"}, "–", "the solver cannot represent the scene", kDarkInk},
     {{"#7A5BB5", "#7F62B8"}, "T", "hit the time limit", kWhite},
     {{"#5A3E8E", "#5C4291"}, "M", "hit the memory limit", kWhite},
     {{"#1F2430", "#05070A"}, "!", "killed by a signal", kWhite},

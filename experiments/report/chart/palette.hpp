@@ -29,6 +29,8 @@ SolverStyle solver_style(std::string_view solver);
 /// Lengths of strokes and gaps of a solver's line, different for each choice of its settings.
 std::string_view dash_of(std::string_view solver, int variant);
 
+inline constexpr Colour kDarkInk{"#1A1A19", "#1A1A19"};  ///< text on light shades
+
 /// Style of a status in maps, and the glyph that represents it everywhere.
 struct StatusStyle {
   Colour colour;

@@ -30,8 +30,6 @@ double error_of(const Record& r) {
   return ended ? value_of(r, kErrorMetric) : std::nan("");
 }
 
-constexpr std::string_view kInk = "#1A1A19";  ///< text on light shades
-
 /// Mixture of two colours "#RRGGBB".
 std::string mixed(std::string_view colour, double share, std::string_view background) {
   const auto part = [](std::string_view of, std::size_t k) {
@@ -96,7 +94,8 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
                      mixed(ok.colour.light, shade.share, "#FFFFFF") + "'",
                  std::string(shade.text));
       sheet.draw(cells + "(strcol(8) eq 'ok' ? '✓' : '~')",
-                 "with labels tc rgb '" + std::string(shade.share == 1 ? ok.ink.light : kInk) + "'",
+                 "with labels tc rgb '" +
+                     std::string(shade.share == 1 ? ok.ink.light : kDarkInk.light) + "'",
                  "");
     }
   }
