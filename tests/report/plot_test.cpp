@@ -340,6 +340,7 @@ TEST_F(Plots, AMapHasTicksColoursAndGlyphsInEachPanel) {
     EXPECT_EQ(count(gp, " title '" + std::string(shade) + "'"), 1u) << shade;
   EXPECT_EQ(count(gp, "up to 10 %"), 0u);
   EXPECT_EQ(count(gp, " && column(11) > "), 4u) << "a box and a glyph of each of two shades";
+  EXPECT_EQ(count(gp, "(strcol(8) eq 'ok' ? '✓' : '~') with labels tc rgb '#1A1A19' notitle"), 1u);
 }
 
 // A key beside the figure is as wide as its longest text.

@@ -93,7 +93,9 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
                  "with boxxyerror fs solid 1 noborder lc rgb '" +
                      mixed(ok.colour.light, shade.share, "#FFFFFF") + "'",
                  std::string(shade.text));
-      sheet.draw(cells + "(strcol(8) eq 'ok' ? '✓' : '~')",
+      sheet.draw(cells + "(strcol(8) eq '" + std::string(to_string(Status::Kind::ok)) + "' ? " +
+                     gnuplot_string(ok.glyph) + " : " +
+                     gnuplot_string(status_style(Status::Kind::unsettled).glyph) + ")",
                  "with labels tc rgb '" +
                      std::string(shade.share == 1 ? ok.ink.light : kDarkInk.light) + "'",
                  "");
