@@ -216,7 +216,7 @@ float substep_length(const Scene& scene, const Params& params) {
 }
 
 std::string_view program(const Params& params) {
-  return params.is("precision", "double") ? "taut" : "taut-f32";
+  return params.is("precision", "double") ? kProgram : kFloatProgram;
 }
 
 void require_program(const std::string& solver, const Params& params) {

@@ -198,6 +198,9 @@ class MakeSolver {
   bool whole_ = false;
 };
 
+/// The programs that run solvers; kFloatProgram holds the float build of Bullet.
+inline constexpr std::string_view kProgram = "taut", kFloatProgram = "taut-f32";
+
 /// Description of a solver: one per file, found by its TAUT_SOLVER line. Its functions may throw
 /// SolverFailure.
 struct SolverEntry {
@@ -213,7 +216,7 @@ struct SolverEntry {
   std::function<ResolvedSettings(const Scene&, const Params&)> resolved_settings;
   /// Null: it declares none.
   DeclaredStep (*declared_step)(const Scene&, const Params&) = nullptr;
-  /// The program that can run this choice: "taut", "taut-f32", or "" for either. Null: either.
+  /// The program that can run this choice: kProgram, kFloatProgram, or "" for either. Null: either.
   /// Bullet's float and double builds share their symbols, so each has a program of its own; in the
   /// other program, make() throws InputError.
   std::string_view (*program)(const Params&) = nullptr;

@@ -14,6 +14,7 @@
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/params.hpp"
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/record_io.hpp"
@@ -90,7 +91,7 @@ class Walker {
   bool of_cost() const { return bisected_.is_cost(); }
   bool timed() const { return asked_.speed || of_cost(); }
   fs::path kept_program(const Build& commit) const {
-    return store_.root() / "builds" / commit.id / "taut";
+    return store_.root() / "builds" / commit.id / kProgram;
   }
 
   // ---- one commit

@@ -84,8 +84,9 @@ std::vector<TwoBuilds> time_two_builds(const std::vector<CaseOfTwo>& cases,
 fs::path keep_build(const fs::path& results, const std::string& id, const fs::path& taut) {
   const fs::path folder = results / "builds" / slug(build_named(id).id);
   make_folder(folder);
-  for (const char* name : {"taut", "taut-f32"}) {
-    const fs::path program = taut.empty() ? sibling_program(name) : taut.parent_path() / name;
+  for (const std::string_view name : {kProgram, kFloatProgram}) {
+    const fs::path program =
+        taut.empty() ? sibling_program(std::string(name)) : taut.parent_path() / name;
     std::error_code error;
     if (!is_program(program)) continue;
     fs::copy_file(program, folder / (std::string(name) + ".new"),
@@ -99,7 +100,7 @@ fs::path keep_build(const fs::path& results, const std::string& id, const fs::pa
 fs::path folder_of_build(const fs::path& results, const std::string& text) {
   const fs::path kept = results / "builds" / slug(text);
   for (const fs::path& folder : {fs::path(text), kept})
-    if (is_program(folder / "taut")) return fs::absolute(folder);
+    if (is_program(folder / kProgram)) return fs::absolute(folder);
   std::vector<std::string> known;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(results / "builds", none))

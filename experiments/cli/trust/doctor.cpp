@@ -83,7 +83,8 @@ std::vector<Check> examine() {
       arithmetic(),
       {"scenes and studies", data_folder().string(), !shipped("scenes").empty()},
       writable(default_results())};
-  for (const char* program : {"taut", "taut-f32"}) {
+  for (const std::string_view name : {kProgram, kFloatProgram}) {
+    const std::string program(name);
     const bool there = access(sibling_program(program).c_str(), X_OK) == 0;
     all.push_back({program, there ? "beside this program" : "missing beside this program", there});
   }
