@@ -56,18 +56,34 @@ SourcedScene timed_scene(py::handle given, const py::object& dt, const py::objec
 
 namespace {
 
-/// Demands of a scene on a solver, beyond gravity, links and fixed pins.
+/// A demand of a scene on a solver, beyond gravity, links and fixed pins.
+struct Effect {
+  const char* name;
+  bool (*is_in)(const Scene&);
+};
+constexpr Effect kEffects[] = {
+    {"colliders", [](const Scene& s) { return !s.colliders.empty(); }},
+    {"moving pins", [](const Scene& s) { return !s.pin_motions.empty(); }},
+    {"pins that let go", [](const Scene& s) { return !s.releases.empty(); }},
+    {"wind", [](const Scene& s) { return s.wind.has_value(); }},
+    {"bending", [](const Scene& s) { return s.bending.has_value(); }},
+    {"self-collision", [](const Scene& s) { return s.self_collision.has_value(); }},
+    {"damping", [](const Scene& s) { return s.damping > 0; }},
+    {"elastic links", [](const Scene& s) { return s.stiffness != kRigid; }},
+};
+
 std::vector<std::string> effects(const Scene& scene) {
   std::vector<std::string> all;
-  if (!scene.colliders.empty()) all.emplace_back("colliders");
-  if (!scene.pin_motions.empty()) all.emplace_back("moving pins");
-  if (!scene.releases.empty()) all.emplace_back("pins that let go");
-  if (scene.wind) all.emplace_back("wind");
-  if (scene.bending) all.emplace_back("bending");
-  if (scene.self_collision) all.emplace_back("self-collision");
-  if (scene.damping > 0) all.emplace_back("damping");
-  if (scene.stiffness != kRigid) all.emplace_back("elastic links");
+  for (const Effect& effect : kEffects)
+    if (effect.is_in(scene)) all.emplace_back(effect.name);
   return all;
+}
+
+std::string about_effects() {
+  return "What it has besides gravity, rigid links and pins that stay: " +
+         join(kEffects, ", ",
+              [](const Effect& effect) { return "'" + std::string(effect.name) + "'"; }) +
+         ".";
 }
 
 py::array places_of_pins(const Scene& scene, double t) {
@@ -203,9 +219,7 @@ void define_scene(py::module_& m) {
           "The type of each collider; surface() says where it is.")
       .def_property_readonly(
           "effects", [](const SourcedScene& s) { return effects(*s.scene); },
-          "What it has besides gravity, rigid links and pins that stay: 'colliders', 'moving "
-          "pins', 'pins that let go', 'wind', 'bending', 'self-collision', 'damping', 'elastic "
-          "links'.")
+          about_effects().c_str())
       .def_property_readonly("damping", value_in<&Scene::damping>(),
                              "1/s: a free vertex's velocity decays as exp(-damping t).")
       .def_property_readonly("thickness", value_in<&Scene::thickness>(),
