@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -253,9 +254,12 @@ ResolvedSettings contact_settings(const Scene& scene, const Params& params,
                              default_voxel + ")"}};
   if (std::ranges::any_of(scene.colliders, is_met_by_triangles))
     lines.emplace_back("body of triangles",
-                       "each triangle a hull 0.06 m thick on both of its sides "
-                       "(BT_SOFTBODY_TRIANGLE_EXTRUSION), and a margin of 0.04 m around it: cloth "
-                       "rests 0.06 to 0.1 m above");
+                       "each triangle a hull " + as_typed(kTriangleExtrusion) +
+                           " m thick on both of its sides (BT_SOFTBODY_TRIANGLE_EXTRUSION), and a "
+                           "margin of " +
+                           as_typed(kTriangleMargin) + " m around it: cloth rests " +
+                           as_typed(kTriangleExtrusion) + " to " +
+                           as_typed(kTriangleExtrusion + kTriangleMargin) + " m above");
   if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.frames != nullptr; }))
     lines.emplace_back("body that deforms",
                        "each contact gets the velocity of the surface where it touches");

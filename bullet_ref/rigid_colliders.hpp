@@ -12,10 +12,14 @@ class btVector3;
 
 namespace taut {
 
+/// Thickness of the hull that Bullet makes of a triangle, on each of its sides, and the hull's
+/// margin [m]. No caller can set them; the former is Bullet's BT_SOFTBODY_TRIANGLE_EXTRUSION.
+inline constexpr double kTriangleExtrusion = 0.06, kTriangleMargin = 0.04;
+
 /// Whether Bullet collides with the body triangle by triangle. It does so unless the body is
-/// convex, "out" and does not deform. Each triangle is then a hull, 0.06 m thick on both sides
-/// (BT_SOFTBODY_TRIANGLE_EXTRUSION) with a margin of 0.04 m, whatever the body's sides are: cloth
-/// rests 0.06 to 0.1 m above it.
+/// convex, "out" and does not deform. Each triangle is then a hull of kTriangleExtrusion and
+/// kTriangleMargin, whatever the body's sides are, and cloth rests above it by at least the former
+/// and at most the sum of both.
 bool is_met_by_triangles(const Collider&);
 
 /// A scene's colliders as Bullet's rigid bodies, in the scene's order. A ball is a btSphereShape, a
