@@ -45,17 +45,18 @@ std::string hold_other(const PlotSpec& spec, Records& records, const std::string
 
 /// Panel of one scene. A setting that is neither on an axis nor orders the curves is held at its
 /// commonest value.
-PlotPanel panel_of(const FigureRequest& want, const StudyResult& study, const std::string& scene,
-                   const Store& store, const Remark& remark) {
+PlotPanel panel_of(const FigureRequest& want, const PlotKind& kind, const StudyResult& study,
+                   const std::string& scene, const Store& store, const Remark& remark) {
+  using Content = PlotKind::Content;
   const PlotSpec& spec = want.spec;
   PlotPanel panel{scene, study.records, {}, want.slope};
   std::erase_if(panel.records, [&](const Record* r) { return r->scene != scene; });
-  if (spec.kind == "scaling") panel.slope = 1;
-  if (spec.kind != "stability") panel.title += hold_other(spec, panel.records, scene, remark);
-  if (spec.kind == "series") panel.series = stored_series(panel.records, spec.y, store);
+  if (kind.slope == PlotKind::Slope::one) panel.slope = 1;
+  if (kind.content != Content::maps) panel.title += hold_other(spec, panel.records, scene, remark);
+  if (kind.content == Content::series) panel.series = stored_series(panel.records, spec.y, store);
   const ValueSpec* value = find_value(spec.y).second;
   if (const auto slope = study.slopes.find(scene);
-      slope != study.slopes.end() && spec.kind == "convergence" && spec.x == kSweeps &&
+      slope != study.slopes.end() && kind.slope == PlotKind::Slope::of_scene && spec.x == kSweeps &&
       !panel.slope && value && value->falls_with_sweeps)
     panel.slope = slope->second;
   return panel;
@@ -71,7 +72,7 @@ PlotFiles draw(FigureRequest want, const StudyResult& study, const std::vector<s
   if (spec.y.empty()) spec.y = kind.y;
   std::vector<PlotPanel> panels;
   for (const std::string& scene : scenes)
-    panels.push_back(panel_of(want, study, scene, store, remark));
+    panels.push_back(panel_of(want, kind, study, scene, store, remark));
   if (spec.title.empty())
     spec.title = capitalised(quantity(spec.y).title) + " over " + quantity(spec.x).title;
   if (panels.size() == 1) spec.title += ", " + panels.front().title;
@@ -90,11 +91,11 @@ PlotFiles draw(FigureRequest want, const StudyResult& study, const std::vector<s
 }
 
 /// Scenes of each figure: all in one figure, but a map has a figure for each scene.
-std::vector<std::vector<std::string>> panels_of(const std::string& kind,
+std::vector<std::vector<std::string>> panels_of(const PlotKind& kind,
                                                 const std::vector<Record>& records) {
   std::vector<std::string> scenes;
   for (const Record& r : records) push_unique(scenes, r.scene);
-  if (kind != "stability") return {scenes};
+  if (kind.content != PlotKind::Content::maps) return {scenes};
   std::vector<std::vector<std::string>> sets;
   for (const std::string& scene : scenes) sets.push_back({scene});
   return sets;
@@ -159,11 +160,12 @@ StudyFigures draw_figures(const std::vector<FigureRequest>& wanted, const Report
   const StudyResult& study = input.studies.front();
   StudyFigures figures;
   for (const FigureRequest& want : wanted) {
-    if (want.spec.kind == "profile") {
+    const PlotKind& kind = find_plot_kind(want.spec.kind);
+    if (kind.content == PlotKind::Content::profile) {
       figures.files.push_back(draw_profile(want.spec, want, input, folder));
       continue;
     }
-    for (const std::vector<std::string>& scenes : panels_of(want.spec.kind, study.records)) try {
+    for (const std::vector<std::string>& scenes : panels_of(kind, study.records)) try {
         figures.files.push_back(draw(want, study, scenes, store, folder, remark));
       } catch (const FigureNotWritten&) {
         throw;

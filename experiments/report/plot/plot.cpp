@@ -192,14 +192,16 @@ PlotFiles write_plot(const PlotSpec& spec, const Sheet& sheet,
 }  // namespace
 
 std::span<const PlotKind> plot_kinds() {
+  using enum PlotKind::Content;
+  using enum PlotKind::Slope;
   static const std::array kKinds{
       PlotKind{"contact", kSweeps, value_with(Role::vertex_depth), kSweeps},
-      PlotKind{"convergence", kSweeps, kErrorMetric, kSweeps},
-      PlotKind{"profile", kCpuPerSecond, kErrorMetric, "setting"},  // Dolan and More
-      PlotKind{"scaling", "vertices", kCpuPerStep, "vertices"},
-      PlotKind{"series", "t", kErrorMetric, "t"},
-      PlotKind{"stability", "dt", kSweeps, "dt"},
-      PlotKind{"work-precision", "projections", kErrorMetric, "setting"},
+      PlotKind{"convergence", kSweeps, kErrorMetric, kSweeps, curves, of_scene},
+      PlotKind{"profile", kCpuPerSecond, kErrorMetric, "setting", profile},  // Dolan and More
+      PlotKind{"scaling", "vertices", kCpuPerStep, "vertices", curves, one},
+      PlotKind{"series", "t", kErrorMetric, "t", series},
+      PlotKind{"stability", "dt", kSweeps, "dt", maps},
+      PlotKind{"work-precision", "projections", kErrorMetric, "setting", curves_with_front},
   };
   return kKinds;
 }
@@ -251,17 +253,18 @@ namespace {
 
 /// The sheet of everything that can be drawn. Adds to `without` why other panels cannot. Throws
 /// InputError if none can.
-Sheet sheet_of(const PlotSpec& spec, const std::vector<PlotPanel>& panels,
+Sheet sheet_of(const PlotSpec& spec, const PlotKind& kind, const std::vector<PlotPanel>& panels,
                std::vector<std::string>& without) {
+  using Content = PlotKind::Content;
   std::vector<Chart> charts;
   std::vector<StatusMap> maps;
   std::vector<PlotPanel> series;
   for (const PlotPanel& panel : panels) try {
-      if (spec.kind == "series") {
+      if (kind.content == Content::series) {
         if (std::ranges::find(panel.series, spec.y, &TimeSeries::value) == panel.series.end())
           throw InputError("no series of '" + spec.y + "' was recorded");
         series.push_back(panel);
-      } else if (spec.kind == "stability") {
+      } else if (kind.content == Content::maps) {
         if (panel.records.empty()) throw InputError("there is no case to draw");
         std::ranges::move(make_maps(panel.records, panel.records.front()->scene, spec.x, spec.y),
                           std::back_inserter(maps));
@@ -270,7 +273,7 @@ Sheet sheet_of(const PlotSpec& spec, const std::vector<PlotPanel>& panels,
         add_floor(chart);
         chart.title = panel.title;
         chart.slope = panel.slope;
-        chart.front = spec.kind == "work-precision";
+        chart.front = kind.content == Content::curves_with_front;
         charts.push_back(std::move(chart));
       }
     } catch (const InputError& error) {
@@ -301,7 +304,7 @@ PlotFiles make_plot(PlotSpec spec, const std::vector<PlotPanel>& panels,
   for (const std::string& name : {spec.x, spec.y}) check_value_name(name, all);
   if (spec.file.empty()) spec.file = slug(spec.kind + "-" + spec.y + "-over-" + spec.x);
   std::vector<std::string> without;
-  const Sheet sheet = sheet_of(spec, panels, without);
+  const Sheet sheet = sheet_of(spec, kind, panels, without);
   PlotFiles files = write_plot(spec, sheet, folder);
   files.without = std::move(without);
   return files;

@@ -16,8 +16,23 @@ namespace taut::report {
 
 /// A kind of plot, and what it shows by default.
 struct PlotKind {
+  enum class Content {
+    curves,
+    curves_with_front,  ///< curves and their Pareto front
+    series,             ///< values over time
+    maps,               ///< statuses over two settings, a figure for each scene
+    profile             ///< shares of problems, measured by a bench
+  };
+  /// Exponent of the theory with which curves are compared.
+  enum class Slope {
+    none,
+    one,
+    of_scene  ///< that of each scene, over sweeps
+  };
   std::string_view name;         ///< "convergence"
   std::string_view x, y, along;  ///< defaults; `along` is the setting that orders a curve
+  Content content = Content::curves;
+  Slope slope = Slope::none;
 };
 std::span<const PlotKind> plot_kinds();
 /// Throws InputError with a suggestion if there is no such kind.
