@@ -549,6 +549,12 @@ TEST(PlotKinds, ContactShowsWhatAMetricDeclaresAsADepth) {
   EXPECT_EQ(find_value(find_plot_kind("contact").y).second->role, Role::vertex_depth);
 }
 
+TEST(PlotKinds, HaveTheSlopesOfTheirTheories) {
+  EXPECT_EQ(find_plot_kind("contact").slope, PlotKind::Slope::none);
+  EXPECT_EQ(find_plot_kind("convergence").slope, PlotKind::Slope::of_scene);
+  EXPECT_EQ(find_plot_kind("scaling").slope, PlotKind::Slope::one);
+}
+
 TEST(Curves, SolversStandAsTheRecordsHaveThem) {
   auto records = synthetic::iterations("hang");
   EXPECT_EQ(make_curves(records, "iterations", "stretch.rms", "iterations")[0].solver, "jakobsen");
