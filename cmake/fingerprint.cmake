@@ -1,6 +1,6 @@
-# What produced a number: digests of solvers, of layers and of other parts of the program, over sources, compiler, flags and
-# libraries. A small program reads the sources while building (cmake/fingerprint.cpp): which files a solver or a part consists
-# of is listed nowhere.
+# Digests that identify what produced a number: of solvers, layers and other parts of the program, over sources, compiler,
+# flags and libraries. During the build a small program (cmake/fingerprint.cpp) finds the files of each solver and part in the
+# sources; no list names them.
 #   taut_write_fingerprint(OUT LAYERS FOLDER|... ... PARTS NAME=FOLDER|... ...)
 function(taut_write_fingerprint out)
   get_target_property(options taut_flags INTERFACE_COMPILE_OPTIONS)
@@ -13,7 +13,7 @@ function(taut_write_fingerprint out)
   cmake_parse_arguments(of "" "" "LAYERS;PARTS" ${ARGN})
   string(REGEX REPLACE "[^=;|]+=" "" folders "${of_LAYERS};${of_PARTS}")
   string(REPLACE "|" ";" folders "${folders}")
-  # What a part includes may lie anywhere in core and experiments.
+  # A part may include files from anywhere in core and experiments.
   file(GLOB_RECURSE read CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/core/*.[ch]pp ${PROJECT_SOURCE_DIR}/experiments/*.[ch]pp)
   foreach(folder IN LISTS folders)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}.[ch]pp ${PROJECT_SOURCE_DIR}/${folder}/*)

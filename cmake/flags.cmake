@@ -1,5 +1,5 @@
-# What every target of ours is compiled with. Bit-identical results across compilers and SIMD widths rest on
-# -ffp-contract=off; assertions stay alive, so NDEBUG is never defined.
+# Compiler flags of all of taut's targets. Bit-identical results across compilers and SIMD widths rest on -ffp-contract=off;
+# assertions stay alive, so NDEBUG is never defined.
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)  # one build serves the programs and the Python module
@@ -10,7 +10,7 @@ set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # Without sloppiness, or without -fpch-preprocess below, it compiles everything that uses a precompiled header.
+  # Without sloppiness, or without -fpch-preprocess below, ccache recompiles everything that uses a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
@@ -21,7 +21,7 @@ target_compile_options(taut_flags INTERFACE
   -ffp-contract=off -fno-math-errno -fvisibility=hidden
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Woverloaded-virtual
   -Wno-missing-field-initializers)
-# g++ collects garbage less often: a tenth of the time of a build for a few hundred MB.
+# g++ collects garbage less often, which saves a tenth of the build time and costs a few hundred MB.
 target_compile_options(taut_flags INTERFACE
   "$<$<CXX_COMPILER_ID:GNU>:SHELL:-fpch-preprocess --param ggc-min-expand=300 --param ggc-min-heapsize=1000000>")
 if(TAUT_WERROR)
@@ -33,9 +33,9 @@ if(TAUT_SANITIZE)
   endif()
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
   target_compile_definitions(taut_flags INTERFACE TAUT_SANITIZED)
-  # Without the checks of pointers that two thirds of the time of compiling went into. The address sanitizer sees most accesses
-  # outside of an object, not one that lands in another, and accesses at null; nobody sees a misaligned one, or a pointer that is
-  # wrong and never followed.
+  # Leaves out checks of pointers that took two thirds of the compile time. The address sanitizer still detects accesses at null
+  # and most accesses outside of an object, but none that lands in another object. Nothing detects a misaligned access, or a
+  # wrong pointer that is never followed.
   target_compile_options(taut_flags INTERFACE
     -fsanitize=address,undefined,float-divide-by-zero -fno-sanitize=null,alignment,object-size,pointer-overflow
     -fno-sanitize-recover=all -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS)

@@ -1,8 +1,8 @@
-# What `cmake --install` puts where: the program with its data, and the library. `cpack -G DEB` makes a package of each.
+# Files that `cmake --install` installs: the program with its data, and the library. `cpack -G DEB` makes a package of each.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS taut taut-f32 COMPONENT program)
-# ./taut builds the programs alone.
+# ./taut builds only the programs.
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" --build \"${PROJECT_BINARY_DIR}\" --target taut_manual
                               OUTPUT_VARIABLE said ERROR_VARIABLE said RESULT_VARIABLE failed)
               if(failed)
@@ -38,7 +38,7 @@ foreach(library IN LISTS libraries)
   target_include_directories(taut_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   install(TARGETS taut_${library} EXPORT taut COMPONENT development)
 endforeach()
-# Two cycles, which CMake puts on the link line: find_solver() asks for solvers(), a metric for known_references().
+# Two cycles, which CMake puts on the link line: find_solver() calls solvers(), and a metric calls known_references().
 target_link_libraries(taut_model INTERFACE $<INSTALL_INTERFACE:taut::solver>)
 target_link_libraries(taut_metrics INTERFACE $<INSTALL_INTERFACE:taut::case>)
 
@@ -49,7 +49,7 @@ set(headers core/io/mesh_io.hpp core/io/positions/positions.hpp core/io/scene_io
             experiments/case/run_case.hpp experiments/case/trajectory.hpp)
 file(GLOB model CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} core/model/*.hpp)
 install(CODE "
-  file(REMOVE_RECURSE \"${PROJECT_BINARY_DIR}/include/taut\")  # with what has another name now
+  file(REMOVE_RECURSE \"${PROJECT_BINARY_DIR}/include/taut\")  # may have files under old names
   foreach(header IN ITEMS ${model} ${headers})
     file(READ \"${PROJECT_SOURCE_DIR}/\${header}\" text)
     string(REGEX REPLACE \"(#include \\\")(core|experiments)/\" \"\\\\1taut/\" text \"\${text}\")
@@ -66,7 +66,7 @@ install(FILES ${PROJECT_BINARY_DIR}/taut-config.cmake ${PROJECT_BINARY_DIR}/taut
         DESTINATION ${package} COMPONENT development)
 install(EXPORT taut NAMESPACE taut:: FILE taut-targets.cmake DESTINATION ${package} COMPONENT development)
 
-# taut.pc finds itself, so that an installed folder may move; an absolute folder of libraries or headers stays.
+# taut.pc finds its own folder, so that an installation may be moved; absolute paths of libraries or headers are kept.
 file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 cmake_path(APPEND pc_libdir "\${prefix}" ${CMAKE_INSTALL_LIBDIR})
 cmake_path(APPEND pc_includedir "\${prefix}" ${CMAKE_INSTALL_INCLUDEDIR})

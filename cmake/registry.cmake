@@ -1,6 +1,7 @@
-# The one place that joins the branches: every line TAUT_SOLVER(name) or TAUT_METRIC(name, in the sources becomes
-# an entry of solvers() or metrics(). Adding a file is enough; CMake re-runs when the lists of files change.
-# What is written includes none of our headers: a pointer needs to know no more than that there is such a struct.
+# Collects solvers, metrics, truths and verbs: every line TAUT_SOLVER(name) or TAUT_METRIC(name, in the sources
+# becomes an entry of solvers() or metrics(). Adding a file is enough; CMake re-runs when the lists of files
+# change. The generated file includes none of taut's headers, since a pointer needs only a declaration of its
+# struct.
 #   taut_write_registry(OUT KIND TYPE FUNCTION SOURCES...)
 function(taut_write_registry out kind type function)
   set(names)

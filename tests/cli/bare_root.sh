@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The README's two commands on a Debian 12 that has nothing else: what they install is all that they, and the tests, use.
-# In the bare system (tests/support/bare_debian.sh) stands this tree with BUILD, under an overlay:
-# it is configured anew with what the root has, and compiled anew where a file differs that the root has, or has not.
+# Runs the README's two commands on a bare Debian 12: they, and the tests, may use nothing but what they install.
+# The bare system (tests/support/bare_debian.sh) contains this tree with BUILD under an overlay, which is configured again
+# with the packages of that system and recompiled where a file of theirs differs or is missing.
 # Usage: bare_root.sh BUILD [--whole]
-#   --whole: the whole main job and all tests; otherwise one study with its report, and the tests that call programs which nothing else here needs.
-# Ends with 77, not run, where no such system can be made; says why.
+#   --whole: runs the whole main job and all tests; otherwise one study with its report, and the tests of programs that nothing else needs.
+# Exit code 77: not run, with the reason, since no such system can be made here.
 set -euo pipefail
 home=$(cd "$(dirname "$0")/../.." && pwd)
 build=$(readlink -f "$1")
@@ -15,7 +15,7 @@ else
 fi
 . "$home/tests/support/bare_debian.sh"
 mkdir -p "$scratch/changed" "$scratch/work" "$root$home"
-# The Debian packages in a root of their own: what they depend on is all that `import taut` needs.
+# Installs the Debian packages in a root of their own: `import taut` may need nothing but what they depend on.
 packages=
 if command -v dpkg-shlibdeps >/dev/null && grep -q '^TAUT_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
   (cd "$build" && cpack -G DEB -B "$scratch/packages") >"$scratch/log" 2>&1 || { tail -n 20 "$scratch/log"; exit 1; }
@@ -24,13 +24,13 @@ if command -v dpkg-shlibdeps >/dev/null && grep -q '^TAUT_PYTHON:BOOL=ON' "$buil
   cp "$scratch"/packages/{taut,python3-taut}_*.deb "$packages/tmp"
 else echo "bare_root: the Debian packages are not tried: dpkg-shlibdeps is missing, or the Python module is off"
 fi
-# Equal commands, so that what BUILD compiled stays: its -Werror, and for its compiler cache one that only calls the compiler.
+# Keeps compile commands equal, so that BUILD's objects stay valid: its -Werror, and a stand-in for its compiler cache.
 export CI=
 ! grep -q '^TAUT_WERROR:BOOL=ON' "$build/CMakeCache.txt" || CI=1
 cache=$(sed -n 's/^CCACHE:FILEPATH=\(\/.*\)/\1/p' "$build/CMakeCache.txt")
 [[ -z $cache ]] || install -Dm755 <(printf '#!/bin/sh\nexec "$@"\n') "$root$cache"
 
-# What is mounted is gone with the process.
+# All mounts disappear with the process.
 export root home build scratch study packages
 unshare --mount --pid --fork --kill-child bash -euc '
   mount -t overlay overlay -o "lowerdir=$home,upperdir=$scratch/changed,workdir=$scratch/work" "$root$home" &&
@@ -47,7 +47,7 @@ unshare --mount --pid --fork --kill-child bash -euc '
   in_root "$home/taut" run $study --out /tmp/runs
   [[ -z $study ]] || in_root "$home/taut" report $study --out /tmp/runs
   in_root "$home/taut" test "$@"
-  # of 90 s of external programs the one that needs a language of its own
+  # of the tests of external programs, which take 90 s, runs only the one that needs another language
   [[ -z $study ]] ||
     in_root python3 "$home/tests/external/external_test.py" "$build" Everywhere.test_a_solver_written_from_the_document_runs_beside_bullet
 ' bare_root "${tests[@]}" || { status=$?; [[ $status != 77 ]] || not_here "nothing can be mounted"; exit "$status"; }

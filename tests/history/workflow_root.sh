@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The workflow of experiments/external/README.md on a Debian 12 that has nothing but what the workflow installs: taut's package, made
-# of BUILD, and python3; then its steps in a repository of a solver's own (workflow_test.py).
-# Usage: workflow_root.sh BUILD. Ends with 77, not run, where no such system can be made; says why.
+# Tests the workflow of experiments/external/README.md on a bare Debian 12: installs only what the workflow installs, python3 and
+# taut's package made from BUILD, and runs the workflow's steps in a repository of a solver (workflow_test.py).
+# Usage: workflow_root.sh BUILD. Exit code 77: not run, with the reason, since no such system can be made here.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(readlink -f "$1")
@@ -10,7 +10,7 @@ cpack --config "$build/CPackConfig.cmake" -G DEB -B "$scratch/deb" >/dev/null
 cp "$scratch"/deb/taut_*.deb "$root/tmp/taut.deb"
 mkdir "$root/tmp/workflow"
 cp "$here/workflow_test.py" "$here"/../../experiments/external/{README.md,sdk/toy.py,sdk/taut_solver.py} "$root/tmp/workflow"
-in_root() {  # with /proc, by which taut finds itself
+in_root() {  # with /proc, where taut finds its own path
   unshare --mount --pid --fork --mount-proc="$root/proc" chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TMPDIR=/tmp "$@"
 }
 in_root apt-get update >/dev/null

@@ -1,5 +1,5 @@
-# To be sourced: a Debian 12 that has nothing else, in the folder $root (debootstrap, from the mirror of this machine), and a folder
-# $scratch that goes with the script. Ends with 77, not run, where no such system can be made; says why.
+# To be sourced: makes a bare Debian 12 in the folder $root (by debootstrap, from the mirror of this machine), and a folder $scratch
+# that is removed when the script ends. Exits with 77, not run, with the reason, where no such system can be made.
 not_here() { echo "$(basename "$0" .sh): not run: $1"; exit 77; }
 
 [[ $(id -u) == 0 ]] || not_here "needs root"

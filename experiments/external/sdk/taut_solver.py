@@ -76,7 +76,7 @@ def serve(solver):
             if request["op"] not in known:
                 raise ValueError(f"unknown op {request['op']!r}")
             answer = known[request["op"]](request)
-        except Exception as error:  # includes MemoryError: the answer starts with its name
+        except Exception as error:  # also MemoryError: the answer starts with its name
             answer = {"error": f"{type(error).__name__}: {error}"}
         answers.write(json.dumps(answer).encode() + b"\n" + state["bytes"])
         answers.flush()

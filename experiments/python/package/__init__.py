@@ -2,14 +2,14 @@
 
     scene = taut.scene("hang", {"cloth.grid": [16, 16]})     a shipped name, a path, or TOML text
     run = taut.simulate(scene, "jakobsen:iterations=8")      a Run: status, values, x, series
-    taut.score(scene, positions, fps=24)                     the same of arrays of another program
+    taut.score(scene, positions, fps=24)                     the same for arrays of another program
     taut.results("results/runs")                             a results file as a pandas.DataFrame
     taut.scenes(), taut.solvers(), taut.metrics()            what there is
 
     @taut.solver("mine", parameters={"iterations": 8})       a solver in Python, for trying out
     class Mine: ...
 
-help(taut.simulate) and so on say shapes, units and errors.
+help(taut.simulate) and so on give shapes, units and errors.
 """
 
 import os
@@ -20,10 +20,10 @@ from . import _taut
 
 _taut.need_main_interpreter()
 try:
-    import numpy as _numpy  # what the arrays here are made of  # noqa: F401
+    import numpy as _numpy  # for the arrays of the module  # noqa: F401
 except ModuleNotFoundError as missing:
     raise ImportError("taut needs numpy: apt install python3-numpy, or an environment that has it", name="numpy") from missing
-if (_data := pathlib.Path(__file__).parent / "data").is_dir():  # of an installed package; in a build the source tree's
+if (_data := pathlib.Path(__file__).parent / "data").is_dir():  # only an installed package has its own data
     _taut.set_data_folder(_data)
 
 from ._taut import Diagnostic, InputError, Run, Scene, metrics, scene, scenes, score, simulate, solvers  # noqa: E402
@@ -48,8 +48,8 @@ def solver(name, *, parameters=None):
         store()             returns x and v, (n, 3) each; they are copied
         unsupported(scene)  optional, a static method: why it would misread a scene, a list of texts
 
-    Raises InputError: a name that is taken, a method that is missing, a default of another type. What
-    its methods raise, taut.simulate() raises.
+    Raises InputError if the name is taken, a method is missing or a default has another type.
+    taut.simulate() raises whatever the methods raise.
     """
 
     def register(cls):
@@ -62,13 +62,13 @@ def solver(name, *, parameters=None):
 def results(folder=None):
     """The view `results` of a results file as a pandas.DataFrame: a row for each value of each case.
 
-    folder  what `taut run --out` was told, or a results.db itself; None: results/runs, in $TAUT_RESULTS
+    folder  the folder of `taut run --out`, or a results.db itself; None: results/runs, in $TAUT_RESULTS
             if that is set. It is only read.
 
-    Columns: experiments/results/README.md. Raises InputError: there is no results file.
+    Columns: experiments/results/README.md. Raises InputError if there is no results file.
     """
     try:
-        import pandas  # which costs more than all else here
+        import pandas  # here, as it takes longer than all else
     except ModuleNotFoundError as missing:
         raise ImportError("taut.results needs pandas: apt install python3-pandas", name="pandas") from missing
     path = pathlib.Path(folder or pathlib.Path(os.environ.get("TAUT_RESULTS") or "results", "runs"))

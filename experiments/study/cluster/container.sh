@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From the sources of taut to an installed program: what Containerfile and taut.def do in a bare Debian 12.
+# Builds and installs taut from its sources, as Containerfile and taut.def do in a bare Debian 12.
 # Usage: container.sh [PREFIX [BUILD]]    PREFIX: /usr/local; BUILD: a finished build to install, instead of making one
 set -euo pipefail
 home=$(cd "$(dirname "$0")/../../.." && pwd)
@@ -9,6 +9,6 @@ if [[ -z $build ]]; then
   build=$home/build/default
 fi
 cmake --install "$build" --prefix "$prefix"
-cd /  # the program is whole without its sources
+cd /  # the program works without its sources
 "$prefix/bin/taut" case hang jakobsen:iterations=4 --set time.duration=0.5 --json
 "$prefix/bin/taut" --version

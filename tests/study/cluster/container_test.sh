@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The steps of Containerfile and taut.def, run as a script: the archive of the sources holds what a build asks for, and what is
-# installed from it gives the bits of the build tree, without its sources. Only the build itself is BUILD's, for it takes minutes.
+# Runs the steps of Containerfile and taut.def as a script: the archive of the sources must contain all that a build needs, and
+# the program installed from it must give the same bits as the build tree, without its sources. Only the build itself is BUILD's,
+# since another one takes minutes.
 # Usage: container_test.sh BUILD
 set -euo pipefail
 home=$(cd "$(dirname "$0")/../../.." && pwd)

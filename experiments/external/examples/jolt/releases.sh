@@ -1,5 +1,5 @@
 #!/bin/sh
-# From release to release of npm's jolt-physics: a repository with a commit for each, and its history. Needs node, npm and git.
+# Makes a repository with a commit for each release of npm's jolt-physics, and runs its history. Needs node, npm and git.
 # Usage: releases.sh FOLDER [OPTION OF taut history ...]
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
