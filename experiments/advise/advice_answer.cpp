@@ -140,9 +140,10 @@ Table solvers_of(const AdviceWanted& wanted, const Advice& advice) {
   return table;
 }
 
-/// A table of the limits kept beside the error, and the values of the best setting.
+/// A table of the limits besides the error, and the values of the best setting.
 Table limits_of(const AdviceWanted& wanted, const Advice& advice) {
-  Table table{"kept", "kept beside the error", {{"value"}, {"limit", "at most"}, {"best", "here"}}};
+  Table table{
+      "kept", "limits besides the error", {{"value"}, {"limit", "at most"}, {"best", "here"}}};
   const bool any = advice.recommendation.best.has_value();
   for (const Limit& limit : wanted.limits) {
     const auto said = [&](double value) {

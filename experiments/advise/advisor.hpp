@@ -19,7 +19,7 @@ struct AdviceWanted {
   std::vector<std::string> solvers;  ///< parameters fixed in their texts are not searched
   Target target;
   std::string metric = kErrorMetric;
-  std::vector<Limit> limits = {};  ///< limits on values beside the error
+  std::vector<Limit> limits = {};  ///< limits on values besides the error
   double fps = 1 / kFrame;         ///< frames per second, for the unit in which costs are shown
   double patience = 120;           ///< s for everything
   int rounds = 8;                  ///< rounds in the timing of the finalists

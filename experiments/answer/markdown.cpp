@@ -5,7 +5,7 @@ namespace taut {
 
 namespace {
 
-/// Escapes whatever would end a cell, a line or begin a tag.
+/// Escapes characters that would end a cell or a line, or begin a tag.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {

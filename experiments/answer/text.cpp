@@ -15,7 +15,7 @@ std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, begins));
 }
 
-/// What is printed of a cell.
+/// A cell as it is printed.
 struct Printed {
   std::string text;
   bool command = false;

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::tuple kSpec{Field{"scene", &CaseSpec::scene}, Field{"settings", &CaseSpec::settings},
                            Field{"solver", &CaseSpec::solver}};
-/// The same in rows of an earlier taut.
+/// The same fields in rows of an earlier taut.
 constexpr const char* kEarlierSettings = "overrides";
 constexpr std::tuple kEarlierSpec{Field{"scene", &CaseSpec::scene},
                                   Field{kEarlierSettings, &CaseSpec::settings},

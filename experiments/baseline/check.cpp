@@ -145,7 +145,7 @@ class Report {
     mismatches_.most = kMostRows / 2;
   }
 
-  /// A row of the table of what moved, and what it is sorted by.
+  /// A row of the table of moved values, and the values by which it is sorted.
   struct MovedRow {
     MovedGroup::Kind kind;
     double relative;

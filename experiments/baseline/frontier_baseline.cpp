@@ -55,7 +55,7 @@ FrontierCheck check_frontiers(const Answer& now, const std::string& solver, cons
 
 Table commands_of(const std::vector<ParameterFrontier>& found) {
   Table table{"commands",
-              "what runs the case beyond",
+              "commands that run the cases beyond",
               {{"solver"}, {"parameter"}, Column("command").of_commands()}};
   for (const ParameterFrontier& one : found)
     if (!std::isnan(one.bad))

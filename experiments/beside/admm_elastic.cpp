@@ -41,7 +41,7 @@ class Link : public admm::EnergyTerm {
   double rest_;
 };
 
-/// A stiff pin: the one of the library writes three values into six.
+/// A stiff pin; the library's own pin writes three values into six.
 class Pin : public admm::EnergyTerm {
  public:
   Pin(int vertex, const Eigen::Vector3d& place) : vertex_(vertex), place_(place) {}
@@ -63,7 +63,7 @@ class Sheet {
  public:
   explicit Sheet(const beside::Net& net) : few_(net, beside::kFew), many_(net, beside::kMany) {}
 
-  /// Its number of iterations is fixed when it is made.
+  /// The solver's number of iterations is fixed at its construction.
   void step(int iterations) {
     last_ = iterations == beside::kFew ? &few_ : &many_;
     last_->step();

@@ -19,7 +19,7 @@ class Sheet {
       const auto& p = net.points[i];
       const bool held =
           std::find(net.pins.begin(), net.pins.end(), static_cast<int>(i)) != net.pins.end();
-      // Its z is up.
+      // Its z axis points up.
       bodies_.push_back(
           new Rigid(&solver_, {side, side, side}, held ? 0 : density, 0.5F,
                     {static_cast<float>(p.x), static_cast<float>(-p.z), static_cast<float>(p.y)}));

@@ -14,7 +14,7 @@ class Sheet {
 
   void step(int iterations) {
     solver_.solve(static_cast<unsigned>(iterations));
-    for (const int pin : net_.pins) {  // as its own constraints of points do, after each step
+    for (const int pin : net_.pins) {  // after each step, as its own point constraints do
       const auto i = static_cast<std::size_t>(pin);
       at_[3 * i] = static_cast<float>(net_.points[i].x);
       at_[3 * i + 1] = static_cast<float>(net_.points[i].y);

@@ -1,5 +1,5 @@
-// PositionBasedDynamics: its projection of a distance with compliance, XPBD, in a loop of ours over
-// the links in their order; its own controller needs the libraries that its build fetches.
+// PositionBasedDynamics: its XPBD projection of a distance, called in our own loop over the links
+// in their order; its own controller needs the libraries that its build fetches.
 #include <Common/Common.h>
 #include <PositionBasedDynamics/XPBD.h>
 

@@ -25,8 +25,8 @@ std::string digest(const State&);
 /// `scene_digest` is digest(scene).
 std::string case_key(const Scene& scene, const std::string& scene_digest, const SolverChoice&);
 
-/// Digest of everything in this program that makes numbers: measurement() and every solver. What
-/// one build found says nothing about another one.
+/// Digest of everything in this program that makes numbers: measurement() and every solver.
+/// Findings of one build say nothing about another one.
 std::string program_digest();
 
 }  // namespace taut

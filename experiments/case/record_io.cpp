@@ -26,7 +26,7 @@ std::pair<std::string, std::string> object_and_key(std::string_view path) {
   return {std::string(path.substr(0, dot)), std::string(path.substr(dot + 1))};
 }
 
-/// Appends what the columns say, or those alone that are part of the result.
+/// Appends the values of the columns, or only those that are part of the result.
 void append_columns(Json& json, const Record& record, bool result_alone) {
   for (const RecordColumn& column : record_columns()) {
     if (result_alone && !column.is_result) continue;

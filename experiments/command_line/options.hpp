@@ -45,8 +45,8 @@ CLI::Option* add_scene(CLI::App&, std::string& scene);
 /// STUDY: a study, by name or file.
 CLI::Option* add_study(CLI::App&, std::string& study);
 
-/// --solver of a verb that takes several. `what` says what each is for; the help adds "repeat it
-/// for each".
+/// --solver of a verb that takes several. `what` describes the purpose of each; the help adds
+/// "repeat it for each".
 CLI::Option* add_solvers(CLI::App&, std::vector<std::string>& solvers, const std::string& what);
 
 /// --record: stores what a verb finds for the report.
@@ -93,7 +93,7 @@ std::vector<Study> load_studies_to_plot(const std::vector<std::string>& names_or
 std::vector<StudyCases> cases_of_each(const std::vector<Study>&);
 
 /// Hint at presets of a study whose cases are all stored: "; preset quick has all of its results:
-/// --preset quick"; "" if no other preset has.
+/// --preset quick"; "" if there is no such preset.
 std::string where_else(const Study&, const Store&);
 /// The study as words of a command: "iterations --preset quick".
 std::string study_words(const Study&);

@@ -35,7 +35,7 @@ std::string command_of(const PageRequest& options) {
   return "./taut run" + what + (options.studies.empty() ? "" : " && ./taut report" + what + films);
 }
 
-/// Every solver, with what it cannot do on the shipped scenes at its default settings.
+/// Every solver, with the reasons for which it refuses shipped scenes at its default settings.
 std::vector<report::SolverInfo> introductions() {
   std::vector<report::SolverInfo> all;
   for (const SolverEntry* entry : solvers())
@@ -71,7 +71,7 @@ std::vector<Study> load_all(const std::vector<std::string>& names, const std::st
   return studies;
 }
 
-/// Input of `taut report A B [STUDY...]`: what differs, and the contents of B.
+/// Input of `taut report A B [STUDY...]`: the differences, and the contents of B.
 report::ReportInput compared_folders(const PageRequest& options) {
   if (options.studies.size() < 2 || !Store::is_at(options.studies[1]))
     throw InputError("report " + options.studies[0] +
@@ -101,7 +101,8 @@ report::ReportInput compared_folders(const PageRequest& options) {
   return input;
 }
 
-/// Adds what other verbs found with this build. Reports and leaves out what cannot be read.
+/// Adds the findings of other verbs with this build. Reports and leaves out answers that cannot be
+/// read.
 void add_findings(report::ReportInput& input, const Store& store, const std::string& program) {
   const auto add = [&](const char* verb, auto& to, const auto& stored) {
     try {

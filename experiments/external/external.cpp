@@ -134,7 +134,8 @@ const SolverEntry* program(const std::string& name, std::string_view params,
   return &one->entry();
 }
 
-/// What a solver text would start or open: a registered name, a command or files. Empty if nothing.
+/// Everything that a solver text would start or open: a registered name, a command or files; may be
+/// empty.
 std::set<std::string> named_by(const std::string& name, std::string_view params) {
   if (!is_solver_name(name)) return {};
   if (is_registered(name)) return {"solver " + name};

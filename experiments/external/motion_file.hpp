@@ -26,8 +26,8 @@ ComputedFrames opened(const MotionOptions&);
 /// Entry for a solver text "positions" that names no file.
 extern const SolverEntry kPositions;
 
-/// Entry of "positions:file=...", or of the same under another name. It plays back what another
-/// program computed as if it were computed now, at no cost. The entry lives until this program
+/// Entry of "positions:file=...", or of the same under another name. It plays back another
+/// program's positions as if they were computed now, at no cost. The entry lives until this program
 /// ends. Throws InputError if the file cannot be read.
 const SolverEntry* recorded(const std::string& name, std::string_view params);
 

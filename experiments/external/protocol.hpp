@@ -11,8 +11,8 @@
 
 namespace taut::external {
 
-/// Parameters that taut gives every external program, before those of the program, which may not
-/// have their names.
+/// Parameters that taut gives to every external program. They come before the program's own
+/// parameters, which may not use the same names.
 inline constexpr ParamSpec kTimeout = ParamSpec::real(
     "timeout", "s", "30", 0.01, 86400, "Longest time in which the program may answer");
 static_assert(kAnswerSeconds == 30 && kTimeout.default_value == "30");

@@ -12,7 +12,8 @@
 namespace taut::python {
 
 /// Makes parse_solver() find the class by this name. `parameters` maps names to defaults. Throws
-/// InputError if the class is no solver, the name is one of ours, or no text can express a default.
+/// InputError if the class is no solver, taut has a solver of that name, or no text can express a
+/// default.
 void register_solver(const std::string& name, const pybind11::object& type,
                      const pybind11::dict& parameters);
 

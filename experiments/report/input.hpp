@@ -47,7 +47,7 @@ struct MapResult {
 
 struct SolverInfo {
   std::string name, summary, source;
-  /// Reasons why it would misread scenes, each with the shipped scenes to which it applies.
+  /// Reasons why the solver would misread scenes, each with the shipped scenes to which it applies.
   std::vector<std::pair<std::string, std::vector<std::string>>> unsupported{};
 };
 
@@ -55,9 +55,9 @@ struct SceneInfo {
   std::string name, summary;
 };
 
-/// What was rendered of a scene.
+/// The film or picture of a scene.
 struct SceneMedia {
-  /// Who is in it, from left to right.
+  /// Its panels, from left to right.
   struct Panel {
     std::string solver, settings;
     std::string key = {};  ///< key of the case; "": no study ran it

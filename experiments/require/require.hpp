@@ -62,8 +62,8 @@ struct Requirement {
   bool verified = false;               ///< whether a second run from the file gave the same bits
   std::optional<Interval> time_ratio;  ///< CPU time of the smallest model relative to the full one
   Interval control;                    ///< the full model against itself in the same session
-  std::size_t cases = 0, ran = 0;      ///< cases looked at, and those of them that had to be run
-  std::vector<std::string> not_done;   ///< what there was no time for
+  std::size_t cases = 0, ran = 0;      ///< cases examined, and how many of them had to be run
+  std::vector<std::string> not_done;   ///< parts for which there was no time
   bool interrupted = false;
 };
 

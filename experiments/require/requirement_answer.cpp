@@ -25,7 +25,7 @@ std::string verdict(const EffectTrial& effect) {
 
 Column column_of(const KeptQuantity& answer) { return {answer.name, "", unit_of(answer)}; }
 
-/// A table of the kept answers: what they are, and by how much they may move.
+/// A table of the kept answers and by how much they may move.
 Table answers_of(const Requirement& found) {
   Table table{"answers",
               "answers that are kept",
@@ -57,7 +57,7 @@ Table answers_of(const Requirement& found) {
   return table;
 }
 
-/// A table of what every effect does to the answers, and what it costs.
+/// A table of the effects: how far the answers move without each of them, and what it costs.
 Table effects_of(const Requirement& found, std::size_t bytes) {
   Table table{"effects", "by how much the answers move without", {{"name", "effect"}, {"change"}}};
   for (const KeptQuantity& answer : found.answers) table.columns.push_back(column_of(answer));

@@ -20,7 +20,7 @@ namespace taut {
 class Database {
  public:
   enum class Access { read, write };
-  /// Time that a lock of another process is waited for [ms].
+  /// Longest wait for a lock of another process [ms].
   static constexpr int kPatience = 60000;
 
   /// `write` creates the file if it does not exist. Opening it to read also rolls back what a

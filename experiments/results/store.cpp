@@ -41,7 +41,7 @@ std::string text_if_there(const fs::path& file) {
   return fs::exists(file) ? read_text(file) : std::string();
 }
 
-/// What to do with a record, given the stored one, if any.
+/// Decides what to do with a record, given the stored one, if any.
 Store::Commit beside(const std::optional<Record>& old, const Record& record, bool adds_frames) {
   using Commit = Store::Commit;
   if (!old) return Commit::stored;

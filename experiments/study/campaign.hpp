@@ -25,7 +25,7 @@ struct CampaignProgress {
   std::size_t reused = 0;              ///< already stored
   std::size_t ran = 0;                 ///< run by this campaign
   std::size_t conflicts = 0;           ///< gave another result than the stored one
-  std::size_t ended_from_outside = 0;  ///< something outside ended them; nothing of them is stored
+  std::size_t ended_from_outside = 0;  ///< ended by something outside and not stored
   std::map<Status::Kind, std::size_t> by_status;
   double work = 0, work_done = 0;  ///< estimated work of the cases to run, in any unit
   bool interrupted = false;

@@ -55,8 +55,8 @@ const std::string& descent();
 /// Whether the environment of the process has a variable that begins with `mark`.
 bool has_mark(pid_t process, const std::string& mark);
 
-/// Ends what a started process left behind, also outside its group and session. Kills and reaps,
-/// until none is left, those children of this process that it did not start itself and whose
+/// Ends all processes that a started process left behind, also outside its group and session. Until
+/// none is left, kills and reaps children of this process that it did not start itself and whose
 /// environment has a variable that begins with `mark`.
 void end_orphans(const std::string& mark);
 

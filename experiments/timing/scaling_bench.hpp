@@ -12,10 +12,10 @@
 namespace taut {
 
 struct ScalingOptions {
-  /// Give each solver as many sweeps, or substeps if it has one sweep in each, as this RMS stretch
-  /// requires; nothing: as the case says.
+  /// RMS stretch for which each solver gets as many sweeps as it needs, or substeps if it has one
+  /// sweep in each; nothing: as many as the case has.
   std::optional<double> error;
-  /// S; cases that would take longer in total (physics, search and timing) are skipped.
+  /// Longest time of a case in all [s], for physics, search and timing; longer cases are skipped.
   double limit = 20;
   int samples = 6;                              ///< samples of each case
   std::function<void(const std::string&)> say;  ///< receives the name of each case that starts

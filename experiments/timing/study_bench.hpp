@@ -116,7 +116,7 @@ struct StudyBench {
   std::string machine;  ///< processor and number of cores
   std::vector<SceneBench> scenes;
   std::string host = {};   ///< name of the machine; times of two machines are never pooled
-  std::string build = {};  ///< program_digest of the timed program: no Build of a history
+  std::string build = {};  ///< program_digest of the timed program; not a Build of a history
 
   /// An empty bench of this machine and this program.
   static StudyBench here(const std::string& study);

@@ -1,7 +1,8 @@
 #pragma once
 
 /// Quantities of truths whose numbers assertions quote (Assertion::figure). The truth that measures
-/// one and the assertion that quotes it both name the constant, so that new words lose no number.
+/// a quantity and the assertion that quotes it both use its constant, so that a new wording loses
+/// no number.
 namespace taut::quoted {
 
 inline constexpr const char* kIterationsSavedSwinging =

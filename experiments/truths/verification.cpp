@@ -14,7 +14,7 @@ std::string value(double v) {
   return number_text(v, std::abs(v) > 0.01 && std::abs(v) < 1e4 ? 7 : 3);
 }
 
-/// A finding as text: its number and what that must be.
+/// A finding as text: its number, and the expected one.
 std::string text_of(const Finding& f) {
   if (f.verdict == TruthVerdict::not_applicable) return f.subject + ": " + f.why;
   std::string text = f.subject + ": " + f.quantity + " " + value(f.measured);

@@ -74,8 +74,8 @@ report::Footage footage_of(const RunSet& set, const Media& media, double speed) 
   return footage;
 }
 
-/// The digest of all that its pictures depend on: cases, size, speed, how much of the beginning is
-/// shown, this program.
+/// Digest of everything on which a film's pictures depend: cases, size, speed, how much of the
+/// beginning is shown, this program.
 std::string key_of(const Film& film) {
   const MediaOptions options = options_of(film);
   std::string all = program_digest() + "\n" + std::string(pictures()) + "\n" + film.request.scene;

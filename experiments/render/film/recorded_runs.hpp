@@ -9,7 +9,7 @@
 
 namespace taut {
 
-/// What is to be drawn: one scene, several solvers.
+/// Runs to be drawn: one scene under several solvers.
 struct RunRequest {
   std::string scene;  ///< name or path
   SceneSettings settings;
@@ -23,9 +23,9 @@ struct RunSet {
 };
 
 /// Runs every solver on the scene, each in a process of its own and all at once, and keeps every
-/// step. A run that explodes, crashes or hangs is kept up to its last stable state. Calls
-/// `say` with what is being run. Throws InputError: unknown scene or solver, a solver that cannot
-/// represent the scene.
+/// step. A run that explodes, crashes or hangs is kept up to its last stable state. Calls `say`
+/// with what is being run. Throws InputError if the scene or a solver is unknown, or a solver
+/// cannot represent the scene.
 RunSet record_runs(const RunRequest&, const std::function<void(const std::string&)>& say);
 
 }  // namespace taut

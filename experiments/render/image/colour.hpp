@@ -38,7 +38,7 @@ enum class ColourBy {
 ColourBy parse_colour_by(const std::string&);  ///< throws InputError
 
 /// Maps numbers to colours. [low, high] is the range of the colour bar; values beyond it get the
-/// colour of the nearer end, which the arrows of the bar stand for.
+/// colour of the nearer end, as the arrows of the bar show.
 struct ColourScale {
   ColourBy colour_by = ColourBy::strain;
   double high = 1;  ///< SI units, > 0; low is -high for strain, 0 otherwise

@@ -42,7 +42,7 @@ Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& 
               "Settings each solver used for this scene",
               {Column("setting")},
               {},
-              "What differs between solvers says so."};
+              "Settings that differ between solvers are marked."};
   std::vector<const Record*> cases;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < quoted.cases.size(); ++i) {

@@ -25,7 +25,7 @@ Json json_of_point(const HistoryPoint* point, const std::map<std::string, const 
   return one;
 }
 
-/// What changed in a step, as the page shows it.
+/// The changes in a step, as the page shows them.
 Json json_of_change(const History& history, const HistoryStep& step, CaseList& refs) {
   const std::string name = step.what.name();
   Json value{{"value", name}, {"title", name}};

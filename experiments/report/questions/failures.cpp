@@ -77,7 +77,7 @@ std::string on_whole_page(const CaseList& list) {
 
 void add_failures(Answer& answer, const ComparedSolvers& compared,
                   const std::vector<Column>& solvers, CaseList& list) {
-  // The number of failures among cases that are not shared depends on what each solver was asked.
+  // The number of failures among cases that are not shared depends on which cases each solver ran.
   Table table{"failures",
               "Cases that failed",
               columns_of(solvers, kErrorCount),

@@ -41,7 +41,7 @@ inline constexpr double kBracketWidth = 0.02;
 /// Throws InputError if there is no such solver.
 std::vector<FrontierSetting> frontier_settings(const std::string& solver);
 
-/// What a run is judged by.
+/// The data by which a run is judged.
 struct JudgedRun {
   Case one;
   Record record;

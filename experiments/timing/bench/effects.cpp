@@ -53,7 +53,8 @@ Scene without_effects(Scene scene) {
   return scene;
 }
 
-/// The scene with its colliders far away: every particle still looks for them, in vain.
+/// The scene with its colliders far away: every particle still tests for contact with them, in
+/// vain.
 Scene touching_nothing(Scene scene) {
   constexpr double kAway = 1000;  // m
   for (Collider& c : scene.colliders) {

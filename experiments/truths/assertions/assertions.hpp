@@ -13,7 +13,7 @@ enum class AssertionVerdict {
   holds_if,
   does_not_hold,
   cannot_be_tested,
-  overturned  ///< its truth is broken; no Assertion says so
+  overturned  ///< its truth is broken; never the verdict of an Assertion
 };
 std::string_view to_string(AssertionVerdict);
 Cell cell_of(AssertionVerdict);
@@ -23,7 +23,7 @@ AssertionVerdict assertion_verdict_of(std::string_view);
 /// An assertion of a publication about a solver, and its verdict here.
 struct Assertion {
   std::string_view source;  ///< "Macklin et al., Small Steps in Physics Simulation, SCA 2019"
-  /// Where the publication says so, as far as its text was seen: "6.1", "Fig. 4".
+  /// Place in the publication, as far as its text was available: "6.1", "Fig. 4".
   std::string_view place;
   std::string_view assertion;  ///< the assertion, with its numbers as printed
   AssertionVerdict verdict;
