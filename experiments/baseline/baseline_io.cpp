@@ -108,7 +108,7 @@ Baseline read_baseline(const fs::path& folder) {
           found.push_back({file.string(), number, 1, "this row belongs to " + row.solver()});
       } catch (const InputError& error) {
         for (const Diagnostic& d : error.diagnostics())
-          found.push_back({file.string(), number, 1, "no baseline row: " + d.message});
+          found.push_back({file.string(), number, 1, "not a baseline row: " + d.message});
       }
     }
   }

@@ -68,7 +68,7 @@ Case CaseMaker::make(const CaseSpec& spec) {
     choice = parse_solver(spec.solver);
     if (!choice.entry->make)
       throw InputError(spec.solver +
-                       ": is not started, for neither the command line nor a study names it");
+                       ": is not started, since neither the command line nor a study names it");
   });
   if (!wrong.empty()) throw InputError(wrong);
   Case one = addressed(spec, found->scene, std::move(choice), found->digest);

@@ -91,7 +91,7 @@ std::vector<std::string> registered_names() {
       throw InputError(file.path().string() + ": there is already a solver '" + name + "'");
     if (!is_solver_name(name))
       throw InputError(file.path().string() + ": '" + name +
-                       "' is no name of a solver: a letter, then letters, digits, _ and -, at most "
+                       "' is not a solver name: a letter, then letters, digits, _ and -, at most "
                        "40 characters");
     if (!file.is_regular_file(none))
       throw InputError(file.path().string() + ": is not a regular file");
@@ -189,7 +189,7 @@ class Unstarted {
               .unsupported =
                   [](const Scene&, const Params&) {
                     return std::vector<std::string>{
-                        "it is not started, for neither the command line nor a study names it"};
+                        "it is not started, since neither the command line nor a study names it"};
                   },
               .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
   }

@@ -21,7 +21,7 @@ inline constexpr ParamSpec kBuildName{
     .kind = ParamSpec::Kind::text,
     .help = "Name of the state of its sources, in place of command, files and version"};
 inline constexpr ParamSpec kLeading[] = {
-    {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program that is called"},
+    {.name = "cmd", .kind = ParamSpec::Kind::text, .help = "The program to be called"},
     kTimeout,
     {.name = "folder",
      .kind = ParamSpec::Kind::text,

@@ -7,7 +7,7 @@ namespace taut::python::doc {
 inline constexpr const char* kInputError =
     R"(Bad input: a scene, a solver's text, an array, a class. Nothing was run.
 
-Its text says all that is wrong, a line each; `diagnostics` is a list of taut.Diagnostic with file,
+Its text has a line for every error; `diagnostics` is a list of taut.Diagnostic with file,
 line, column and message. A numerical failure is no exception: Run.status.)";
 
 inline constexpr const char* kDiagnostic = "One thing that is wrong with an input.";
@@ -18,7 +18,7 @@ inline constexpr const char* kScene =
 Immutable. n vertices, m links, f faces, p pins; each array is a copy, so keep what a loop needs.)";
 
 inline constexpr const char* kRun =
-    R"(What became of a scene and a solver, or of another program's positions.
+    R"(The run of a scene under a solver, or of another program's positions.
 
 T frames of n vertices. A run that explodes ends there: its frames are the stable ones before, its
 values NaN, and `verdict` says what happened. A scene that the solver would misread is 'unsupported'
@@ -31,19 +31,19 @@ inline constexpr const char* kReplace =
 The same scene with other settings: scene.replace({"cloth.grid": [8, 8]}).
 
 settings: keys of scene files (`taut list keys`) with numbers, texts, lists or dicts of them.
-Returns a new taut.Scene. Raises taut.InputError with all that is wrong.)";
+Returns a new taut.Scene. Raises taut.InputError with all errors.)";
 
 inline constexpr const char* kPinPositions =
     R"(pin_positions($self, /, t)
 --
 
-Where the pins have to be at time t [s]: (p, 3) m, in the order of `pins`.)";
+Positions that the pins must have at time t [s]: (p, 3) m, in the order of `pins`.)";
 
 inline constexpr const char* kSurface =
     R"(surface($self, /, collider, x, t)
 --
 
-Where points are with respect to a collider.
+Distances and normals of points with respect to a collider.
 
 collider: its place in `colliders`, from 0. x: (n, 3) m. t: s.
 Returns distances (n,) m to its surface, negative inside, and unit normals (n, 3).)";
@@ -55,12 +55,12 @@ inline constexpr const char* kSceneFunction =
 Reads a scene.
 
 source    a shipped name ("hang": taut.scenes()), a path, TOML text (it has a line break), or a
-          taut.Scene. Which keys there are: experiments/scenes/README.md, `taut list keys`.
+          taut.Scene. Its keys: experiments/scenes/README.md, `taut list keys`.
 settings  values that replace those of the source: {"cloth.grid": [16, 16], "time.dt": "1/60"}.
           Numbers, texts, bools, lists, arrays and dicts of them.
-name      what messages call a text: "<name>.toml:3:1: ..."; a mesh is looked for in this folder.
+name      of a text, in messages: "<name>.toml:3:1: ..."; its mesh is looked for in this folder.
 
-Returns a taut.Scene. Raises taut.InputError with file, line, column and key of all that is wrong.
+Returns a taut.Scene. Raises taut.InputError with file, line, column and key of every error.
 
     scene = taut.scene("hang", {"cloth.grid": [16, 16]}))";
 
@@ -79,9 +79,9 @@ dt        s, time step: a number or a text such as "1/60"; None: the scene's.
 duration  s; None: the scene's.
 every     steps between two frames of Run.x and Run.series, the start and the end included; 0: none.
 
-Returns a taut.Run; a numerical failure is its status. Raises taut.InputError: bad input; what a
-solver of taut.solver() raises, with a note that says where. Other threads run meanwhile; Ctrl-C
-ends it after the step.
+Returns a taut.Run; a numerical failure is its status. Raises taut.InputError for bad input,
+and whatever a solver of taut.solver() raises, with a note that says where. Other threads run
+meanwhile; Ctrl-C ends it after the step.
 
     run = taut.simulate("hang", "jakobsen:iterations=8", duration=2)
     run.status, run.values["stretch.rms"], run.x.shape)";
@@ -90,7 +90,7 @@ inline constexpr const char* kScore =
     R"(score(scene, positions, *, fps=None, scale=1.0, up='y', rest=None, every=1, allow_nan=False)
 --
 
-Every metric of positions that another program computed: what `taut external score` finds.
+Every metric of positions that another program computed, as `taut external score` finds them.
 
 scene      a taut.Scene, or what taut.scene() takes; it gets the frames' time step, and their
            duration if they end earlier.
@@ -104,10 +104,10 @@ rest       (n, 3): the cloth at rest in the order of `positions`, if they do not
 every      frames between two of Run.x and Run.series; 0: none.
 allow_nan  a coordinate that is not finite ends the run as 'exploded' there; False: it raises.
 
-Returns a taut.Run whose x is in m, y up, in the scene's order; what was made of the array is in
-Run.record["resolved_settings"]. Velocities are differences between frames. Raises taut.InputError:
+Returns a taut.Run whose x is in m, y up, in the scene's order; how the array was read is in
+Run.record["resolved_settings"]. Velocities are differences between frames. Raises taut.InputError for
 another shape or type, a coordinate that is not finite, a first frame that is not the scene's start,
-a pin that is not where the scene holds it.
+and a pin that is not where the scene holds it.
 
     taut.score("hang", numpy.load("mine.npy"), fps=24).values["stretch.rms"])";
 

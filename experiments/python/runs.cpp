@@ -202,14 +202,14 @@ void define_run(py::module_& m) {
           "v_end", [](const RunResult& r) { return array_of(r.last.v); },
           "(n, 3) m/s: velocities after the last stable step. A copy.")
       .def_readonly("cpu_seconds", &RunResult::cpu_seconds,
-                    "s: CPU time of this process during all steps, other threads of it included: "
-                    "a first impression; `taut bench` measures. NaN of positions.")
+                    "s: CPU time of all threads of this process during all steps: a first "
+                    "impression; `taut bench` measures. NaN for positions.")
       .def_property_readonly(
           "record",
           [](const RunResult& r) {
             return py::module_::import("json").attr("loads")(text_of(to_json(r.record)));
           },
-          "What a results file keeps of it, as `taut case --json` prints it: a dict.");
+          "The record that a results file keeps, as `taut case --json` prints it: a dict.");
 
   m.def("simulate", simulate, py::arg("scene"), py::arg("solver") = "jakobsen", py::kw_only(),
         py::arg("dt") = py::none(), py::arg("duration") = py::none(), py::arg("every") = 1,

@@ -15,7 +15,7 @@ namespace taut::python {
 /// A scene together with its source, so that it can be read again with other settings.
 struct SourcedScene {
   std::string source;               ///< as given: a name or a path; for a text, its name
-  std::filesystem::path file;       ///< for a text, what messages call it
+  std::filesystem::path file;       ///< for a text, its name in messages
   std::optional<std::string> text;  ///< if empty, the text is in the file
   SceneSettings settings;
   std::shared_ptr<const Scene> scene;

@@ -42,7 +42,7 @@ std::string verdict(const Recommendation& recommendation, const SceneBench& benc
     return same_within(recommendation.tolerance, *recommendation.ratio)
                ? "costs the same as " + rest + " within " +
                      number_text(100 * recommendation.tolerance) + " %"
-               : "no cheaper than " + rest + " that can be told";
+               : "not measurably cheaper than " + rest;
   return sure + "cheaper than " + rest;
 }
 

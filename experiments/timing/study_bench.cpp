@@ -24,7 +24,7 @@ namespace taut {
 namespace {
 
 /// Reason why a case wins nothing if the limits of its scene were never determined.
-constexpr const char* kNobodyAsked = "nobody asked what its scene accepts";
+constexpr const char* kNobodyAsked = "the limits of its scene are unknown";
 
 /// Digest over everything that the file holds about a scene's bench.
 class DigestedBench {

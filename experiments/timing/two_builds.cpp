@@ -45,8 +45,7 @@ TwoBuilds time_once(const CaseOfTwo& one, TimingOptions options) {
 std::string verdict_of(const TwoBuilds& one) {
   if (!one.failure.empty()) return "not timed: " + one.failure;
   if (!one.differs())
-    return spread(one.cpu_control) > kTolerance ? "no difference that can be told"
-                                                : "no difference";
+    return spread(one.cpu_control) > kTolerance ? "no measurable difference" : "no difference";
   const Interval& ratio = one.by_wall() ? one.wall : one.cpu;
   return std::string(ratio.mid > 1 ? "dearer" : "cheaper") +
          (one.by_wall() ? " in wall time alone" : "");
@@ -163,7 +162,7 @@ Table table_of(const std::vector<TwoBuilds>& all, const std::string& name,
                Column("wall", "wall time, now over before").in_detail(),
                Column("wall_control", "wall time, before over itself").in_detail()},
               {},
-              "In turns in one session; what looked like a difference was timed twice."};
+              "Timed in turns in one session; apparent differences were timed twice."};
   for (const TwoBuilds& one : all)
     if (one.failure.empty())
       table.rows.push_back(

@@ -238,7 +238,7 @@ TEST_F(BaselineFiles, CorruptRowsAreNamedByLine) {
     FAIL();
   } catch (const InputError& error) {
     const std::string what = error.what();
-    EXPECT_NE(what.find("bullet.jsonl:2:1: no baseline row"), what.npos) << what;
+    EXPECT_NE(what.find("bullet.jsonl:2:1: not a baseline row"), what.npos) << what;
     EXPECT_NE(what.find("bullet.jsonl:3:1: this row belongs to jakobsen"), what.npos) << what;
     EXPECT_NE(what.find("two rows are called"), what.npos) << what;
   }

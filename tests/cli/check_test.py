@@ -246,7 +246,7 @@ tolerance = 0.1
         self.update()
         (self.baseline / "bullet.jsonl").write_text("{\n")
         process = self.taut("check", "./study.toml", expect=2)
-        self.assertIn("bullet.jsonl:1:1: no baseline row", process.err)
+        self.assertIn("bullet.jsonl:1:1: not a baseline row", process.err)
         (self.baseline / "tolerances.toml").write_text("[default]\nrelativ = 1\n")
         process = self.taut("check", "./study.toml", expect=2)
         self.assertIn("did you mean 'relative'?", process.err)

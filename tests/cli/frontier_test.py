@@ -73,7 +73,7 @@ class AllFrontiers(CommandLine):
         self.assertEqual(model["limits"]["tables"], ["required", "frontiers"])
         self.assertEqual([row[0] for row in tables["frontiers"]], PARAMETERS)
         for one, row in zip(found, tables["frontiers"]):
-            self.assertIn(one["lacks"] or one["symptom"] or "as far as was asked", row[1])
+            self.assertIn(one["lacks"] or one["symptom"] or "the end of the range", row[1])
         (row,) = tables["required"]
         self.assertEqual(row[0], "small")
         for effect in rows_of(required, "effects"):

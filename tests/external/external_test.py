@@ -176,7 +176,7 @@ class Everywhere(Programs):
             file.write_text(f"cmd = '{TOYS['cpp']}'\n")
             for words in (["list", "solvers"], ["plan", "hang", "nosuch"], ["advise", "hang", "--error", "1%"]):
                 said = self.taut(*words, expect=2).err
-                self.assertIn(f"{name}.toml: '{name}' is no name of a solver", said)
+                self.assertIn(f"{name}.toml: '{name}' is not a solver name", said)
             file.unlink()
         os.mkfifo(self.solvers / "pipe.toml")
         self.assertIn("pipe.toml: is not a regular file", self.taut("list", "solvers", expect=2).err)

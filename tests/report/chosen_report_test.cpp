@@ -226,7 +226,7 @@ TEST(Chosen, TablesHaveWhatWasFoundRowByRow) {
                   {"ball", "Bullet", "after 0.4 s", "depth", "none", "all", "–"}}));
   EXPECT_EQ(tables["frontiers"]["rows"],
             (Json{{"time step", "0.0612\u00A0s, then explodes (theory: 0.0700\u00A0s)",
-                   "1.00\u00A0s, as far as was asked"},
+                   "1.00\u00A0s, the end of the range"},
                   {"drag", "–: it has none", nullptr},
                   {"mass", nullptr, "none, then explodes"}}));
   const Json& values = tables["differences-values"];

@@ -78,7 +78,7 @@ TEST(FrontierPlot, BarsAreHowMuchHarderAParameterMayBeMade) {
   }
   EXPECT_LE(rows[0][1] + rows[0][2], rows[1][1] - rows[1][2]);
   EXPECT_EQ(ends[0], "explodes");
-  EXPECT_EQ(ends[3], "as far as was asked");
+  EXPECT_EQ(ends[3], "the end of the range");
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(BenchedCases, BeyondTheLimitsOfTheirSceneWinNothing) {
   EXPECT_EQ(judged[1].failure, "");
   bench.limits.reset();
   for (const Candidate& one : bench.candidates("e"))
-    EXPECT_EQ(one.failure, "nobody asked what its scene accepts");
+    EXPECT_EQ(one.failure, "the limits of its scene are unknown");
 }
 
 TEST(BenchedCases, AreComparedWithinASessionAlone) {

@@ -70,7 +70,7 @@ TEST(Recommendation, NothingIsToldFromAWideIntervalOrUnderNoise) {
     return "; " + verdict(recommend(b, {0.01, {}}, "e"), b);
   };
   EXPECT_TRUE(said(bench({finalist("jakobsen", 1, 0.01), wide}))
-                  .ends_with("; no cheaper than bullet that can be told"));
+                  .ends_with("; not measurably cheaper than bullet"));
   EXPECT_TRUE(said(bench({finalist("jakobsen", 1, 0.01), finalist("bullet", 1.2, 0.01)}, 0.3))
                   .ends_with("; too noisy to compare with bullet"));
 }

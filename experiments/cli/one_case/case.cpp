@@ -101,7 +101,7 @@ void add_options(CLI::App& app, Options& options) {
                  "Write every step's positions: .npy, .pc2, or .obj, a file a step");
   app.add_option("--series", options.series, "Write values over time (CSV)");
   app.add_flag("--verbose", options.verbose,
-               "Say on stderr how far it is and what the solver made of its settings");
+               "Show progress and the solver's resolved settings on stderr");
   app.add_option(own_words::kInto, options.into, "Used by taut run")->group("");
   app.add_option(own_words::kFrames, options.frames, "Used with --into")->group("");
 }

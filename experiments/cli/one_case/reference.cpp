@@ -61,8 +61,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--all", options.all, "Every shipped scene");
   add_settings(app, options.settings);
   add_output(app, options.output, "Where references are kept (default: " + options.output + ")");
-  app.add_flag("--replace", options.replace, "Compute again what is there of the same scene");
-  add_json(app, options.format.json, "what became of each scene");
+  app.add_flag("--replace", options.replace, "Compute existing references of the same scene again");
+  add_json(app, options.format.json, "the references, or why there are none,");
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ int update(Options options) {
   if (data || !study.before.empty()) tell(study, changes, options.format);
   std::ostream& news = data ? progress() : std::cout;
   if (changes.findings.empty())
-    news << study.name << ": " << changes.cases << " cases are as the baseline says; nothing "
+    news << study.name << ": " << changes.cases << " cases agree with the baseline; nothing "
          << "was written\n";
   else
     news << study.name << ": " << study.now.size() << " cases in " << study.folder.string() << '\n';
@@ -103,7 +103,7 @@ TAUT_VERB(baseline) = {.name = "baseline",
 
 TAUT_VERB(baseline_update) = {
     .name = "baseline update",
-    .summary = "Takes what differs as the new baseline",
+    .summary = "Takes differing results as the new baseline",
     .example = "taut baseline update regression --why \"contacts are continuous\"",
     .answer = {{"facts", "cases"},
                {"findings", "study kind case change command solver scene value before now"}},

@@ -93,7 +93,7 @@ void add_options(CLI::App& app, Options& o) {
                         "Run only what it takes to name the first commit at which this value "
                         "changed; cpu.per_step and wall.per_step: the cost"));
   of_git(app.add_flag("--speed", o.speed, "Also time each build in turns with the one before"));
-  of_git(app.add_flag("--again", o.again, "Try again what could not be built"));
+  of_git(app.add_flag("--again", o.again, "Try commits again that could not be built"));
   of_git(app.add_option("--build-timeout", o.limits.seconds, "Seconds that a build may take")
              ->check(above_zero_seconds())
              ->capture_default_str());

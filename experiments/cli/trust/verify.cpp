@@ -125,13 +125,13 @@ void add_options(CLI::App& app, Options& options) {
 TAUT_VERB(verify) = {
     .name = own_words::kVerify,
     .group = VerbGroup::trust,
-    .summary = "Holds solvers and metrics to closed forms and published numbers",
+    .summary = "Compares solvers and metrics with closed forms and published numbers",
     .example =
         "taut verify --section 4 --solver jakobsen\n"
         "  taut verify hanging-chain-sweeps --all\n"
         "  taut verify --assertions\n"
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
-        "did; 4 nothing was held to anything",
+        "did; 4 nothing was compared",
     .answer =
         {{"truths",
           "verdict place name numbers nearest section section_title statement source seconds"},

@@ -17,7 +17,7 @@ std::string limit_text(double value, const ParameterFrontier& one) {
 
 std::string end_text(const ParameterFrontier& one) {
   if (!one.lacks.empty()) return "–: " + one.lacks;
-  if (std::isnan(one.bad)) return limit_text(one.to, one) + ", as far as was asked";
+  if (std::isnan(one.bad)) return limit_text(one.to, one) + ", the end of the range";
   return (std::isnan(one.good) ? "none" : limit_text(one.good, one)) + ", then " + one.symptom +
          (std::isnan(one.theory) ? "" : " (theory: " + limit_text(one.theory, one) + ")");
 }

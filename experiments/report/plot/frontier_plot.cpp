@@ -16,7 +16,7 @@ namespace {
 
 std::string symptom_text(const ParameterFrontier& one) {
   if (!one.lacks.empty()) return "";
-  return std::isnan(one.bad) ? "as far as was asked" : one.symptom;
+  return std::isnan(one.bad) ? "the end of the range" : one.symptom;
 }
 
 double theory_headroom(const ParameterFrontier& one) {

@@ -47,7 +47,7 @@ options=(--env TAUT --env ONLY --jobs "${JOBS:-100%}" --termseq TERM,20000,KILL,
 [[ ! -f nodes ]] || options+=(--sshloginfile ./nodes --workdir "$PWD")
 [[ $# -gt 0 ]] || { set -- {1..@SHARDS@}; options+=(--joblog joblog --resume --resume-failed); }
 shards=($(printf '%04d ' "$@"))
-for shard in "${shards[@]}"; do rm -f "shards/$shard/results.db.writer"; done  # who left these marks is gone
+for shard in "${shards[@]}"; do rm -f "shards/$shard/results.db.writer"; done  # the processes that left these marks are gone
 exec parallel "${options[@]}" bash ./job.sh --shard {} ::: "${shards[@]}"
 )SH";
 
@@ -99,10 +99,11 @@ std::string readme(const Plan& plan, Scheduler on) {
        << " (`taut --version`; $TAUT names it if it is not in the PATH).\n"
        << "Start, or go on where it stopped: " << (slurm ? "sbatch job.sh" : "./job.sh")
        << " in this folder.\n"
-       << "How far it is, what failed, what to start again: taut cluster status .\n"
+       << "Progress, failures and what to start again: taut cluster status .\n"
        << "All results into one file, if none is missing: taut cluster merge . --out results/runs\n"
-       << "results.db: what is planned; " << plan.study << ".toml: the study; shards/: results; "
-       << (slurm ? "log/: what the jobs said.\n" : "joblog: GNU parallel's list of what ended.\n");
+       << "results.db: the plan; " << plan.study << ".toml: the study; shards/: results; "
+       << (slurm ? "log/: output of the jobs.\n"
+                 : "joblog: GNU parallel's list of ended shards.\n");
   return text.str();
 }
 

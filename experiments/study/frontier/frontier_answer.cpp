@@ -41,12 +41,12 @@ void add_theory(Answer& answer, const std::optional<Prediction>& theory, const F
     answer.add({"growth", "growth per step, theory", kNumber, 5}, theory->growth);
 }
 
-/// What ends the acceptable range at a value that was tried: "stretch.rms 31 %, more than 10 %".
+/// Why the acceptable range ends at a value that was tried: "stretch.rms 31 %, more than 10 %".
 std::string ends_with(const Frontier& found) {
   const bool none = found.kind == Frontier::Kind::none_stable;
   const Probed* probe =
       found.kind == Frontier::Kind::all_stable ? nullptr : found.at(found.unstable);
-  if (!probe) return none ? "" : "as far as was looked (--to)";
+  if (!probe) return none ? "" : "to the end of the range (--to)";
   return probe->symptom.empty() ? describe(probe->status) : probe->symptom;
 }
 
@@ -95,7 +95,7 @@ Answer answer_of(const FrontierQuestion& question, const BothFrontiers& both,
   answer.add(Column("kind").in_detail(), to_string(found.kind));
   if (found.kind == Frontier::Kind::all_stable)
     answer.add({"stable", "stable", unit, 7},
-               Cell(found.stable).with("as far as was looked (--to); stable is not accurate"));
+               Cell(found.stable).with("to the end of the range (--to); stable is not accurate"));
   else if (found.kind != Frontier::Kind::none_stable)
     end("stable", "stable up to", found.stable);
   if (found.kind != Frontier::Kind::all_stable) end("unstable", "unstable from", found.unstable);
