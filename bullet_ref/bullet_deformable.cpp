@@ -1,6 +1,6 @@
 // Bullet's newer cloth: btSoftBody in a btDeformableMultiBodyDynamicsWorld, with Hooke springs as
-// links and an implicit Euler step (one Newton step with conjugate gradients unless told
-// otherwise). bullet_ref/README.md explains statements that look odd.
+// links and an implicit Euler step (by default one Newton step with conjugate gradients).
+// bullet_ref/README.md explains statements that look odd.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableGravityForce.h>

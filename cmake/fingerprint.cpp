@@ -1,15 +1,15 @@
-// Writes the file that says what produced a number: a digest for each solver, for each layer that
-// has solvers, and for parts of the program such as what measures. Keys of stored results contain
-// them, so that a result is never taken for that of other code.
+// Writes the file that identifies what produced a number: a digest for each solver, for each layer
+// that has solvers, and for parts of the program such as the measurement. Keys of stored results
+// contain these digests, so that a result is never taken for that of other code.
 //
 //   fingerprint OUT ROOT TOOLS FOLDER|... ... -- PART=FOLDER|... ...
 //
-// What stands before `--` are layers. A solver's digest is over its closure: its file, what that
-// includes by `#include "`, and the sources of its layer that implement a header of these. A
-// layer's digest is over all of its files. A part's digest is over the closure of its files, with
+// The folders before `--` are layers. A solver's digest is over its closure: its file, the files
+// that it includes by `#include "`, and the sources of its layer that implement a header of these.
+// A layer's digest is over all of its files. A part's digest is over the closure of its files, with
 // the sources of ROOT/core that implement a header of these. TOOLS names compiler, flags and
-// libraries. Comments and blank lines count for nothing; paths are relative to ROOT, so that clones
-// agree. cmake/fingerprint.cmake calls this while building.
+// libraries. Comments and blank lines do not count; paths are relative to ROOT, so that clones
+// agree. The build calls this program (cmake/fingerprint.cmake).
 #include <openssl/evp.h>
 
 #include <algorithm>
@@ -189,7 +189,7 @@ class Sources {
   std::map<std::string, Source> read_;
 };
 
-/// Adds a file and what it includes, be it through others.
+/// Adds a file and all files that it includes, directly or through others.
 void add_with_includes(Sources& sources, const std::string& file, Names& files) {
   if (!files.insert(file).second) return;
   for (const std::string& header : sources.of(file).includes)
@@ -232,18 +232,18 @@ std::string digest_of(Sources& sources, const Names& files, const std::string& t
   return sha256(text);
 }
 
-/// An identifier's underscore is a name's hyphen.
+/// The name for an identifier: underscores become hyphens.
 std::string name_of(std::string identifier) {
   std::ranges::replace(identifier, '_', '-');
   return identifier;
 }
 
-/// A line of a function that is asked for a solver by its name.
+/// A line of a generated function that looks a solver up by its name.
 std::string line_of(const std::string& solver, const std::string& digest) {
   return "  if (solver == \"" + solver + "\") return \"" + digest + "\";\n";
 }
 
-/// Lines of two functions.
+/// Lines of the two functions about solvers.
 struct OfSolvers {
   std::string solvers, layers;
 };
@@ -266,7 +266,7 @@ OfSolvers print_solvers(Sources& sources, const std::string& tools,
   return made;
 }
 
-/// A function for each part, which has its name.
+/// A function for each part, named like the part.
 std::string print_parts(Sources& sources, const std::string& tools,
                         const std::vector<std::string>& parts) {
   std::string made;
@@ -311,7 +311,7 @@ int main(int count, char** words) try {
   const OfSolvers made = print_solvers(sources, tools, {given.begin() + 4, end_of_layers});
   const std::string parts = print_parts(sources, tools, {end_of_layers + 1, given.end()});
   const std::string text = generated(made, parts, tools);
-  if (has_text(out, text)) return 0;  // nothing that is made of it has to be made again
+  if (has_text(out, text)) return 0;  // what is made of it stays up to date
   std::ofstream file(out, std::ios::binary);
   file << text;
   if (!file.flush()) throw std::runtime_error("cannot write " + out);

@@ -6,8 +6,8 @@
 
 namespace taut {
 
-/// The values of a scene's document that name files. Whoever writes the scene to another folder
-/// changes them, or copies the files. A name is relative to the scene's folder.
+/// The values of a scene's document that name files, relative to the scene's folder. To write the
+/// scene to another folder, change them or copy the files.
 std::vector<Value*> file_names(Value& root);
 
 }  // namespace taut

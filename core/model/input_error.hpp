@@ -6,8 +6,8 @@
 
 namespace taut {
 
-/// One error in what the user gave. Prints as a compiler would:
-/// `scenes/x.toml:10:1: unknown key 'resolutoin' in [cloth]; did you mean 'resolution'?`
+/// One error in the user's input. It is printed as a compiler would: `scenes/x.toml:10:1: unknown
+/// key 'resolutoin' in [cloth]; did you mean 'resolution'?`
 struct Diagnostic {
   std::string file;     ///< as the user named it; empty: the command line
   int line = 0;         ///< 1-based; 0: unknown

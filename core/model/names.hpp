@@ -8,8 +8,8 @@
 
 namespace taut {
 
-/// What the values of an enumeration are called, in its order: one text for each up to the `last`,
-/// or it does not compile.
+/// Names of the values of an enumeration, in its order. It compiles only with one text for each
+/// value up to `last`.
 template <auto last>
 class Names {
  public:

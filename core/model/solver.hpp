@@ -83,7 +83,7 @@ struct SolverFailure : std::runtime_error {
   std::string log;
 };
 
-/// A setting as the solver applies it.
+/// A setting in the form in which the solver applies it.
 struct ResolvedSetting {
   std::string name;   ///< "time step"
   std::string text;   ///< for people: "1/64 s, as binary32"
@@ -271,11 +271,11 @@ void set_solver_source(SolverSource);
 /// it only for texts from the command line or a study: a stored text is only data.
 void admit_solver(std::string_view text);
 
-/// solvers() and all that the source names, which are thereby admitted.
+/// solvers() and all solvers that the source names, which this call admits.
 std::vector<const SolverEntry*> all_solvers();
 
-/// Throws InputError with a suggestion if there is no such solver. `params` is what follows the
-/// name and its colon; it tells which external program is meant.
+/// Throws InputError with a suggestion if there is no such solver. `params` is the text after the
+/// name and its colon; it decides which external program is meant.
 const SolverEntry& find_solver(std::string_view name, std::string_view params = "");
 
 /// A solver and its parameters: "name" or "name:key=value,...", where every parameter gets its

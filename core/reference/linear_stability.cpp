@@ -17,7 +17,7 @@ namespace {
 /// Most links of a dense sweep, whose eigenvalues cost n^3.
 constexpr std::size_t kMostLinks = 128;
 
-/// A link between two particles as linear theory sees it.
+/// A link between two particles in linear theory.
 struct Bar {
   int a, b;
   Eigen::Vector3d along;  ///< unit vector

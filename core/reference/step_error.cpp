@@ -29,14 +29,14 @@ constexpr double kContactHardness = 1e4;
 constexpr double kNearly = 1e-6;
 /// Most steps of Newton's method: two, and more while the last one is not small.
 constexpr int kMostSteps = 4;
-/// Last step of an estimate that is believed, as a share of the sum.
+/// Largest last step of an estimate that is believed, as a share of the sum.
 constexpr double kBelieved = 0.3;
 /// kSmall: a last step below this share of the sum ends the steps. kMostRatio: largest ratio of
 /// successive steps that is extrapolated.
 constexpr double kSmall = 0.1, kMostRatio = 0.8;
 /// Largest displacement by the last round, as a share of the motion that is missed.
 constexpr double kMostMoved = 0.3;
-/// Steps of Newton's method, as a share of the scene's extent (RMS), that are taken for rounding.
+/// Largest steps of Newton's method that count as rounding, as a share of the scene's extent (RMS).
 /// In contact they stay larger, because kNearly decides what touches and slips.
 constexpr double kRounded = 1e-9, kRoundedInContact = 1e-5;
 /// Number of times that a linear system is solved, to update the tensions and contact forces in it.

@@ -201,7 +201,7 @@ void PanelFactor::add_update(const FactorPanel& child, const double* of_child,
     for (std::size_t r = 0; r < block_; ++r) {
       const double* from = of_child + (block_ * i + r) * side_of_update(child);
       double* const to_own = own + (block_ * place[i] + r) * columns;
-      // j <= i: where the column is beyond the panel's own, the row is, too
+      // since j <= i, a row is beyond the panel's own columns wherever its column is
       double* const to_update = place[i] < panel.columns
                                     ? nullptr
                                     : update + (block_ * (place[i] - panel.columns) + r) * side;

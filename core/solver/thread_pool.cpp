@@ -67,8 +67,8 @@ void ThreadPool::stop() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-/// Returns once the part has done `stages` stages. Does itself what no thread is doing, also of
-/// neighbouring parts.
+/// Returns once the part has done `stages` stages. Meanwhile does the work that no thread is doing,
+/// also of neighbouring parts.
 void ThreadPool::advance(Member& me, std::size_t part, std::uint32_t stages) {
   Part& p = parts_[part];
   Wait wait;

@@ -9,7 +9,7 @@ namespace taut {
 
 namespace {
 
-/// What all passes of wind have in common.
+/// The common base of all passes of wind.
 template <class Real>
 class WindPass : public Pass<Real> {
  public:

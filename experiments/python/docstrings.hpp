@@ -105,9 +105,9 @@ every      frames between two of Run.x and Run.series; 0: none.
 allow_nan  a coordinate that is not finite ends the run as 'exploded' there; False: it raises.
 
 Returns a taut.Run whose x is in m, y up, in the scene's order; how the array was read is in
-Run.record["resolved_settings"]. Velocities are differences between frames. Raises taut.InputError for
-another shape or type, a coordinate that is not finite, a first frame that is not the scene's start,
-and a pin that is not where the scene holds it.
+Run.record["resolved_settings"]. Velocities are differences between frames. Raises taut.InputError
+for another shape or type, a coordinate that is not finite, a first frame that is not the scene's
+start, and a pin that is not where the scene holds it.
 
     taut.score("hang", numpy.load("mine.npy"), fps=24).values["stretch.rms"])";
 

@@ -227,7 +227,8 @@ TEST(BulletContact, OnAConvexBodyOfTrianglesItRestsAsOnTheBox) {
     EXPECT_NEAR(convex.least, above, 3e-3) << text;
     EXPECT_NEAR(convex.most, above, 3e-3) << text;
   }
-  // rests 0.06 m higher; with substeps, higher by the margin that a substep's fall does not cross
+  // it rests 0.06 m higher; with substeps, also by the margin, which a substep's fall does not
+  // cross
   for (const MeshBody& other : {MeshBody{both(box, apart).mesh()},
                                 MeshBody{.mesh = box.mesh(), .sides = MeshBody::Sides::both}}) {
     EXPECT_TRUE(is_met_by_triangles({.shape = other}));

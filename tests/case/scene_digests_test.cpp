@@ -87,7 +87,7 @@ class MadeUp {
       maybe("tilt", number(-90, 90));
     }
     maybe("origin", vec(2));
-    // in separate statements, as compilers evaluate arguments in any order; so everywhere below
+    // separate statements here and below, since compilers evaluate arguments in any order
     if (coin()) {
       const std::string mass = number(0.1, 2);
       const bool whole = coin();

@@ -1,4 +1,4 @@
-// What metrics see of the path between two step boundaries.
+// How metrics judge the path between two step boundaries.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -116,7 +116,7 @@ TEST(SceneKeys, EachThatIsAMemberOfASceneIsPartOfItsContent) {
   EXPECT_GE(counted.size(), 19u);
 }
 
-// The section of a row may be any: who reads, hashes or writes a scene has no list of its own.
+// A row may have any section, since code that reads, hashes or writes a scene has no list of keys.
 TEST(SceneKeys, ThatIsAMemberCountsInWhateverSectionItStands) {
   std::vector<SceneKey> keys(scene_keys().begin(), scene_keys().end());
   for (SceneKey& key : keys)

@@ -76,7 +76,6 @@ TEST(TriangleMesh, ABoxOfTrianglesIsTheBoxOnAMillionSegments) {
     far_apart += std::abs(want.distance - got.distance) > 1e-12;
     inside += want.distance < 0;
     // Near the medial axis two sides are equally near; at the surface the direction is undefined.
-    // direction.
     const Vec3 local = turned.conjugate() * (p - center);
     Vec3 gaps = kHalf - local.cwiseAbs();
     std::sort(gaps.begin(), gaps.end());

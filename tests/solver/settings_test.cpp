@@ -1,4 +1,4 @@
-// What solvers report about a scene: the settings in effect, refusals with their reasons, and the
+// Reports of solvers about a scene: the settings in effect, refusals with their reasons, and the
 // applicable theory.
 #include "tests/support/settings.hpp"
 

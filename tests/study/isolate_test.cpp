@@ -102,7 +102,7 @@ TEST_F(Isolated, WhatIsEndedFromOutsideHasNoRecord) {
   EXPECT_EQ(record_of("sleep 9", {.seconds = 0.05}).status.reason.text(), "wall time");
 }
 
-// A process starts as a copy of the one that starts it, and the system counts what that one held.
+// A process starts as a copy of its parent, and the system counts the parent's memory in its peak.
 TEST_F(Isolated, MemoryOfWhatStartsItIsNotItsOwn) {
   const std::string held(200 << 20, 'x');
   EXPECT_THROW(record_of("kill -KILL $$", {.bytes = 300 << 20}), EndedFromOutside) << held.back();

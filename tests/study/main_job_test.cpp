@@ -1,4 +1,5 @@
-// What `taut run` runs without a study: the keys of main-job.toml, and errors in that file.
+// The main job, which `taut run` runs without a study: keys of main-job.toml and errors in that
+// file.
 #include "experiments/study/main_job.hpp"
 
 #include <gtest/gtest.h>

@@ -28,8 +28,8 @@ TEST(Assertions, EachIsHeldByATruthUnlessItCannotBeTested) {
   EXPECT_EQ(verdicts.size(), 4u) << "publications that are right, or wrong, in everything";
 }
 
-// What a truth measures is known only after it ran, which `taut verify` does. Here, that its source
-// names the constant that holds the quoted words.
+// The quantities that a truth measures are known only after it ran, as in `taut verify`. This tests
+// that its source names the constant with the quoted words.
 TEST(Assertions, QuoteQuantitiesThatTheirTruthsMeasure) {
   const std::filesystem::path folder =
       std::filesystem::path(TAUT_SOURCE_DIR) / "experiments/truths";

@@ -25,10 +25,10 @@ struct Tether {
 std::vector<Tether> make_tethers(const Scene&);
 
 /// Pulls back particles that are beyond their tether and leaves slack tethers alone. The limit is
-/// one-sided and ignores masses: the pin does not move. It carries the weight of a hanging sheet to
-/// the pins in one sweep instead of one row per sweep, and stiffens cloth that hangs in folds: see
-/// core/README.md. The k-th tethers of all particles are stored in the particles' own layout, so
-/// that lanes process them as they process particles.
+/// one-sided and ignores masses: the pin does not move. This carries the weight of a hanging sheet
+/// to the pins in one sweep instead of one row per sweep, and stiffens cloth that hangs in folds:
+/// see core/README.md. The k-th tethers of all particles are stored in the particles' own layout,
+/// so that lanes process them as they process particles.
 template <class Real>
 class TetherPass final : public Pass<Real> {
  public:

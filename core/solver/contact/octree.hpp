@@ -12,12 +12,12 @@ namespace taut {
 
 /// Self-collision as published in Vasilovici, Cloth Simulation Report, section 4.2.4: an octree
 /// over the particles, each of which is a ball; all particles of a leaf are compared with each
-/// other. The report does not say what happens to two that overlap, but that "the cloth will simply
-/// not move" if the radius is large: so both stay where they were before the step. The published
-/// failures follow. Particles on two sides of a split never meet ("when opposite corners want to
-/// collide it will not work"), and a cloth whose particles overlap at rest hangs in the air.
-/// Pushing them apart instead is worse: with a radius of 0.6 of the spacing `jam` then flies 2.4 m
-/// away, with twice the spacing it explodes.
+/// other. The report does not say what happens to two particles that overlap, only that "the cloth
+/// will simply not move" if the radius is large. Both therefore stay where they were before the
+/// step, and the published failures follow. Particles on two sides of a split never meet ("when
+/// opposite corners want to collide it will not work"), and a cloth whose particles overlap at rest
+/// hangs in the air. Pushing them apart instead is worse: with a radius of 0.6 of the spacing `jam`
+/// then flies 2.4 m away, with twice the spacing it explodes.
 template <class Real>
 class OctreePass final : public Pass<Real> {
  public:

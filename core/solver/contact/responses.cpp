@@ -151,8 +151,9 @@ class FreezePass final : public Pass<Real> {
 };
 
 /// The second quick fix: a particle that enters is put on the surface, and its next integration is
-/// left out. Its previous position grows old while its links go on pulling, so the step after next
-/// takes the displacement of two steps for the velocity of one: the pops described in the report.
+/// left out. Its previous position stays that of an earlier step while its links go on pulling, so
+/// the step after next takes the displacement of two steps for the velocity of one: the pops
+/// described in the report.
 template <class Real>
 class HaltPass final : public Pass<Real> {
  public:

@@ -10,7 +10,7 @@
 
 namespace taut {
 
-/// What happens to a particle inside a collider.
+/// How contact treats a particle inside a collider.
 enum class Response {
   /// Pushed out in every sweep, also if it has passed through the collider in this step.
   continuous,

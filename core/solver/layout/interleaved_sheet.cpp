@@ -97,8 +97,7 @@ Layout interleaved_layout(const SheetSides& grid) {
 
 namespace {
 
-/// Everything that the sweep needs to know of one direction but its shares. multipliers: null for
-/// rigid links.
+/// The sweep's data for one direction, except its shares. multipliers: null for rigid links.
 template <class Real>
 SheetDirection<Real> direction_of(const RegularLinks::Direction& links, int rows,
                                   Real* multipliers) {

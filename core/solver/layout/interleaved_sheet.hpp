@@ -55,8 +55,9 @@ inline std::pair<int, int> rows_of_block(std::size_t block, int rows) {
 
 /// Layout of an interleaved sheet (simd/kernels.hpp). Vertices past the last column are padding,
 /// which falls freely and is never read. A link at the end of a strip pairs a vector with another
-/// one, so a row has at least one vector more than links reach columns. Small sheets thus leave
-/// lanes empty, which still takes less time than colour batches (results/benchmarks/kernels.md).
+/// one, so a row has at least one vector more than the number of columns that a link spans. Small
+/// sheets thus leave lanes empty, which still takes less time than colour batches
+/// (results/benchmarks/kernels.md).
 Layout interleaved_layout(const SheetSides&);
 
 /// A Gauss-Seidel sweep over an interleaved sheet: the even blocks, then the odd ones. Within a

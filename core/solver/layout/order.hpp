@@ -11,7 +11,7 @@
 
 namespace taut {
 
-/// A link as the sweeps see it: its vertices, its rest length, and how much each end moves.
+/// A link of a sweep: its vertices, its rest length, and how much each end moves.
 template <class Real>
 struct DistanceConstraint {
   int a = 0, b = 0;               ///< vertices

@@ -22,7 +22,7 @@ struct RigidMotion {
   }
 };
 
-/// A collider in one step, and what it does to a particle, or to one in every lane.
+/// A collider in one step, and its effect on one particle, or on one in every lane.
 template <class Real, template <class> class SurfaceOf>
 struct Contact {
   SurfaceOf<Real> surface;  ///< at the end of the step
@@ -45,7 +45,8 @@ struct Contact {
   }
 
   /// Moves x, where it is `inside`, out to the nearest point at the scene's thickness, then back
-  /// against its slip since `previous`. Returns where it did; x may turn out not to be inside.
+  /// against its slip since `previous`. Returns a mask of where it moved x, which may turn out not
+  /// to be inside.
   template <class T, class Mask>
   [[gnu::always_inline]] Mask project(Vec3T<T>& x, const Vec3T<T>& previous,
                                       const Mask& inside) const {

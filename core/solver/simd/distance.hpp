@@ -50,10 +50,9 @@ template <class T>
   return beyond / length;
 }
 
-/// Moves x1 and x2 by what excess_of(|delta|^2) says, for every width and precision. share1 and
-/// share2 are w1/(w1 + w2) and w2/(w1 + w2), times the relaxation weight of the link. Only
-/// project_batch (batches_impl.hpp), whose coordinates lie across the lanes, repeats these
-/// operations.
+/// Moves x1 and x2 by excess_of(|delta|^2), for every width and precision. share1 and share2 are
+/// w1/(w1 + w2) and w2/(w1 + w2), times the relaxation weight of the link. Only project_batch
+/// (batches_impl.hpp), whose coordinates lie across the lanes, repeats these operations.
 template <class T, class Excess>
 [[gnu::always_inline]] inline void move_ends(Vec3T<T>& x1, Vec3T<T>& x2, T share1, T share2,
                                              const Excess& excess_of) {

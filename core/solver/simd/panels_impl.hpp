@@ -11,9 +11,9 @@
 
 namespace taut {
 
-/// Factors a panel. Makes u = l d and l of the rows below, [columns][side] each, column after
-/// column; then subtracts sum u_i l_j over the columns, in their order, from the update. No sum
-/// runs over lanes.
+/// Factors a panel. Computes u = l d and l of the rows below, [columns][side] each, column after
+/// column; then subtracts the sum of u_i l_j over the columns, in their order, from the update. No
+/// sum runs over lanes.
 template <class T>
 bool eliminate(double* panel, std::size_t columns, std::size_t rows, double* update,
                std::size_t side, double* scratch) {

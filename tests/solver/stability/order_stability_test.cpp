@@ -4,9 +4,9 @@
 // motions, this curve is a cusp: a mode is stable iff |arg mu| < (1 - |mu|)^(3/2). Sweeps with few
 // colours have real mu and stay inside. A sweep along a line of links has mu = e^(2ik) / (2 e^(ik)
 // - 1) for the wave number k, which is exactly the curve, with z = e^(ik): a wave travels with the
-// sweep, one link a step, and neither grows nor decays. Corrections beyond the whole error make all
-// waves grow, be it by over-relaxation or because the square-root-free projection overshoots by the
-// strain. Smaller corrections make all waves decay.
+// sweep, one link a step, and neither grows nor decays. Corrections larger than the error make all
+// waves grow, whether by over-relaxation or because the square-root-free projection overshoots by
+// the strain. Smaller corrections make all waves decay.
 #include <gtest/gtest.h>
 
 #include <algorithm>

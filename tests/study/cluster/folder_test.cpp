@@ -139,7 +139,8 @@ TEST_F(Folder, ItsStatusIsThatOfEveryShard) {
             root_.path().string() + ": not a folder of `taut cluster submit`");
 }
 
-// What starts a folder's shards is what it was written for, whatever its script has become.
+// A folder's shards are started by the scheduler that it was written for, whatever its script
+// contains.
 TEST_F(Folder, RemembersItsScheduler) {
   Study study;
   study.name = "s";
