@@ -171,7 +171,7 @@ class Sources {
     return {sha256(code.text()), quoted(code.text(), "#include \"", "\""),
             quoted(code.text(), "TAUT_SOLVER(", ")")};
   }
-  /// What stands between `before` and `after` on the lines that begin with `before`.
+  /// The texts between `before` and `after` on the lines that begin with `before`.
   static std::vector<std::string> quoted(std::string_view code, std::string_view before,
                                          std::string_view after) {
     std::vector<std::string> all;

@@ -41,7 +41,7 @@ struct Range {
   std::string text() const;  ///< "greater than 0 and at most 10"
 };
 
-/// What cloth is made from: rows of vertices, or a file of triangles.
+/// Source of a cloth: rows of vertices, or a file of triangles.
 enum class ClothKind { grid, mesh };
 std::string_view to_string(ClothKind);
 

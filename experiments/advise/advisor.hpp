@@ -12,7 +12,7 @@
 
 namespace taut {
 
-/// What a search is to find: the best setting on a scene for an error or a budget.
+/// The goal of a search: the best setting on a scene for an error or a budget.
 struct AdviceWanted {
   std::string scene;  ///< name or path
   SceneSettings settings;

@@ -27,7 +27,7 @@ struct Cell {
     not_run,      ///< not run, or not timed
     hardly_moves  ///< the cloth hardly moves: a number is shown but not compared
   };
-  /// What a verdict means to a reader. A terminal shows it as a colour; data do not contain it.
+  /// Meaning of a verdict to a reader. A terminal shows it as a colour; data do not contain it.
   enum class Tone { plain, good, doubtful, bad };
 
   std::variant<std::monostate, std::string, double, Interval, bool> value;
@@ -125,7 +125,7 @@ struct Table {
 /// names.
 struct Answer {
   std::string kind;  ///< the verb: "check", "bench effects"
-  /// What the verb was applied to: "regression", "hang jakobsen:iterations=8".
+  /// Object of the verb: "regression", "hang jakobsen:iterations=8".
   std::string subject;
   std::vector<Fact> facts = {};
   std::vector<Table> tables = {};

@@ -11,7 +11,7 @@ namespace taut {
 /// Short form of a commit's hash, "3f2a9c1d0e"; any other id is returned unchanged.
 std::string short_build(const std::string& id);
 
-/// What happened to a status in a step: "ok to exploded (energy)".
+/// The change of a status in a step: "ok to exploded (energy)".
 std::string status_change(const History&, const HistoryStep&);
 
 /// Steps of one value of one solver at one build, with a sentence: "stretch.rms of hang rose from

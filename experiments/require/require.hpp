@@ -14,7 +14,7 @@
 
 namespace taut {
 
-/// What a smaller model does to the kept answers.
+/// A smaller model and its effect on the kept answers.
 struct ModelTrial {
   std::string change;    ///< for people: "gone", "5 -> 2"
   bool removes = false;  ///< whether nothing of the effect is left
@@ -42,7 +42,7 @@ struct EffectTrial {
   const ModelTrial& representative() const { return trials[allowed > 0 ? allowed - 1 : 0]; }
 };
 
-/// What a scene requires of a model.
+/// The requirements of a scene on a model.
 struct Requirement {
   Case full;
   std::vector<KeptQuantity> answers;  ///< answers that are kept

@@ -8,7 +8,8 @@
 
 namespace taut {
 
-/// What can go and what has to stay, in words. It is written to an answer and read back from one.
+/// The effects that can go and those that have to stay, in words. Written to an answer and read
+/// back from one.
 struct RequirementSummary {
   std::string scene, solver;
   std::string chaotic;  ///< "no", or from when on

@@ -7,8 +7,8 @@
 
 namespace taut {
 
-/// What is probed: elastic links without contact, elastic links in contact with bodies, or rigid
-/// links.
+/// Subject of the probes: elastic links without contact, elastic links in contact with bodies, or
+/// rigid links.
 enum class ProbePart { free, contact, rigid };
 std::vector<std::string> probe_parts();  ///< "free", "contact", "rigid"
 

@@ -49,8 +49,8 @@ std::vector<StudyAxis> solver_axes(const Study& study, const std::string& text) 
   return chosen;
 }
 
-/// Most cases of a study: nobody waits for more, so more are a mistake, such as an axis with a
-/// thousand values too many.
+/// Most cases of a study: more would take too long for anyone, so they are a mistake, such as an
+/// axis with a thousand values too many.
 constexpr int kMostCases = 100'000;
 
 double count(const std::vector<StudyAxis>& axes) {

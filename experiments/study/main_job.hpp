@@ -5,7 +5,7 @@
 
 namespace taut {
 
-/// What `taut run` without a study runs, and `taut report` without one shows: main-job.toml in
+/// The job that `taut run` runs, and `taut report` shows, if no study is named: main-job.toml in
 /// data_folder().
 struct MainJob {
   std::string preset;                ///< preset of all its studies

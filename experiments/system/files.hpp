@@ -9,8 +9,8 @@
 
 namespace taut {
 
-/// Writes a new file beside the old one and renames it, so that nobody sees half of it and the old
-/// one survives a failure. Writes directly to a device or a pipe. Throws InputError with the
+/// Writes a new file beside the old one and renames it, so that no reader sees half of it and the
+/// old one survives a failure. Writes directly to a device or a pipe. Throws InputError with the
 /// system's reason (read-only, full, no such folder).
 void write_file(const std::filesystem::path&, std::string_view bytes);
 

@@ -130,8 +130,7 @@ std::vector<char*> environment_with(std::string& mark) {
   return variables;
 }
 
-/// What is left of a time limit of `seconds` that ends at `end`; negative (no limit) stays
-/// negative.
+/// The rest of a time limit of `seconds` that ends at `end`; negative (no limit) stays negative.
 double left(SteadyClock::time_point end, double seconds) {
   return seconds < 0 ? -1 : std::max(0.0, seconds_until(end));
 }

@@ -1,5 +1,5 @@
-// What every solver must keep, whatever its method: checked for the solvers that `taut verify
-// --solver` names, or for all solvers of this program. Tolerances allow for float32.
+// Properties that every solver must have, whatever its method, checked for the solvers that `taut
+// verify --solver` names, or for all solvers of this program. Tolerances allow for float32.
 #include <cmath>
 
 #include "core/model/index.hpp"

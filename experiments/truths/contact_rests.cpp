@@ -1,4 +1,4 @@
-// Section 7, cloth in contact: where it rests, and what a step in contact must be.
+// Section 7, cloth in contact: where it rests, and the exact step in contact.
 #include <cmath>
 
 #include "core/model/angle.hpp"

@@ -83,7 +83,7 @@ TAUT_TRUTH(xpbd_chain_force, 8, 3,
       "xpbd",
       "force error of 6 / 2 / 0.5 % at 50 / 100 / 1000 iterations (figure 3a): the "
       "chain's link length, start and time of comparison are not in the paper");
-  // What can be checked: at rest the corrections carry the exact weight, for any number of sweeps.
+  // This can be checked: at rest the corrections carry the exact weight, for any number of sweeps.
   for (const int k : {1, 50}) {
     const std::string solver =
         "xpbd:order=mesh,iterations=" + std::to_string(k) + ",substeps=1,precision=double";

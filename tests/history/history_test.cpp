@@ -98,7 +98,7 @@ TEST_F(Histories, AStatusIsItsKindAndItsReason) {
   EXPECT_EQ(status_change(found, found.steps[1]), "exploded (nonfinite) to extreme (nonfinite)");
 }
 
-// Whatever a metric will be called, its value is no cost.
+// A metric's value is not a cost, whatever its name.
 TEST(Changes, HaveTheNamesThatAreTyped) {
   using Kind = Changing::Kind;
   for (const auto& [name, kind] : {std::pair{"status", Kind::status},

@@ -39,7 +39,7 @@ TEST(SceneKeys, SayWhatIsAllowedAndWhatIsTheDefault) {
   EXPECT_EQ(find_scene_key("summary")->name(), "summary");
 }
 
-// Whoever looks up a path gets the first row that has it.
+// A look-up of a path returns the first row that has it.
 TEST(SceneKeys, OfOnePathSayTheSame) {
   const auto said = [](const SceneKey& key) {
     return std::tuple(key.type, key.unit, key.range.min, key.range.max, key.range.above_min,

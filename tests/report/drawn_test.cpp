@@ -1,4 +1,4 @@
-// What the model draws, counts and names, compared with the raw records of made-up reports.
+// The model's drawings, counts and names, compared with the raw records of made-up reports.
 #include <gtest/gtest.h>
 
 #include <cmath>

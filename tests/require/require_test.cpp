@@ -97,7 +97,8 @@ TEST(Effects, EachLeavesWhatItSaysAndNothingElse) {
   }
 }
 
-// What removes an effect leaves nothing of it: the case without it no longer has that effect.
+// A reduction that removes an effect leaves nothing of it: the case without it no longer has that
+// effect.
 TEST(Effects, OnlyWhatLeavesNothingRemovesOne) {
   const Scratch scratch;
   const Case full =

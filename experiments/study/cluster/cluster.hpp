@@ -19,7 +19,7 @@
 // are in shards/0003, an ordinary results folder.
 namespace taut::cluster {
 
-/// What the job script of a folder needs to know.
+/// The data for the job script of a folder.
 struct Plan {
   std::string study, preset;
   int shards = 1;
@@ -43,7 +43,7 @@ Plan plan(const Study&, const std::vector<Case>&, const Limits&, int shards, dou
 /// Results folder of a shard.
 std::filesystem::path shard_folder(const std::filesystem::path& folder, int shard);
 
-/// What starts the shards of a folder.
+/// The program that starts the shards of a folder.
 enum class Scheduler { slurm, parallel };
 std::string_view to_string(Scheduler);
 /// The one that to_string() calls this; nothing for another name.
@@ -80,7 +80,7 @@ Plan write_folder(const std::filesystem::path& folder, const FolderRequest&);
 /// Throws InputError if it is not a cluster folder.
 Answer status_of(const std::filesystem::path& folder);
 
-/// What a merge of folders would find.
+/// Findings of a merge of folders before it writes anything.
 struct MergePlan {
   std::vector<PlannedKey> cases;       ///< planned
   std::vector<PlannedKey> missing;     ///< planned, but not stored in any folder

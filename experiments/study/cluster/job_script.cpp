@@ -23,7 +23,7 @@ constexpr const char* kSlurm =
     R"SH(# Slurm: sbatch job.sh, in this folder; sbatch --array=3,5 job.sh for some shards. A preemption sends SIGTERM, the time limit
 # SIGUSR1 before it strikes, which queues the shard again.
 shard=$(printf %04d "$SLURM_ARRAY_TASK_ID")
-rm -f "shards/$shard/results.db.writer"  # Slurm runs a task once at a time: who left this mark is gone
+rm -f "shards/$shard/results.db.writer"  # Slurm runs a task once at a time: the process that left this mark is gone
 "${run[@]}" --shard "$shard/@SHARDS@" --out "shards/$shard" &
 child=$!
 trap 'again=yes; kill -TERM $child 2>/dev/null' USR1
