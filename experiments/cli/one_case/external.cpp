@@ -70,7 +70,7 @@ TAUT_VERB(external) = {
 
 TAUT_VERB(external_probe) = {
     .name = "external probe",
-    .summary = "Says whether a program may be scored, and if not, what is wrong with it",
+    .summary = "Checks whether a program may be scored, and names its errors if not",
     .example = "taut external probe 'python3 mine.py'\nExit: 0 it may be scored; 1 it may not",
     .answer = {{"facts", "passed"}, {"checks", "verdict check said"}},
     .bind = taut::bind_verb<taut::verb::external_program::add_options_probe,

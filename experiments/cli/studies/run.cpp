@@ -116,7 +116,7 @@ void add_options(CLI::App& app, Options& options) {
   add_limits(app, options.limits);
   app.add_option(
          "--dt", options.steps,
-         "Time step [s] in place of those of the study, as 1/30; repeat it to compare several "
+         "Time step [s], such as 1/30, in place of the study's own; repeat it to compare several "
          "with --table")
       ->allow_extra_args(false)
       ->needs("STUDY");

@@ -99,7 +99,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("TRUTH", options.names, "Names of truths (default: all)")
       ->check(known("truth", std::move(names)));
   app.add_option(own_words::kSolver, options.solvers,
-                 "Only what holds for these solvers (\"reference\": for the references)");
+                 "Only findings of these solvers (\"reference\": of the references)");
   app.add_option("--section", options.section, "Only one section of the truths")
       ->check(CLI::Range(1, 10));
   app.add_option("-j,--jobs", options.jobs,
