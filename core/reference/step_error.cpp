@@ -97,8 +97,8 @@ class StepError::Work {
     const double ratio = factor < 1 ? std::clamp(factor, 0.0, kMostRatio) : 0;
     for (std::size_t i = 0; i < moving_.size(); ++i) all[i] += ratio / (1 - ratio) * way_[i];
     out.distance = rms(all);
-    const double rounding = extent_ * (contact ? kRoundedInContact : kRounded);
-    out.believed = out.last <= rounding || (factor < 1 && out.last <= kBelieved * out.distance);
+    out.believed = out.last <= std::max(kBelieved * out.distance,
+                                        extent_ * (contact ? kRoundedInContact : kRounded));
     return out;
   }
 
