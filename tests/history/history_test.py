@@ -148,7 +148,7 @@ class Commits(Repository):
         self.assertIn(f"building {made[4][:10]}", self.history(*build, "--again", expect=3).err)
         shutil.rmtree(self.folder / "out")
         named = facts_of(self.found(*build, "--bisect", "stretch.rms", expect=None))["named"]
-        self.assertIn(f"first at {made[6][:10]}", named)
+        self.assertIn(f"first changed at {made[6][:10]}", named)
         self.assertIn("or at one of the 2 commits", named)
 
     def test_a_solver_that_no_longer_introduces_itself_is_a_gap(self):
