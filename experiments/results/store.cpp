@@ -64,12 +64,14 @@ std::string wrong_part(Database& database) {
   return {};
 }
 
-/// Whether a file is damaged, or has this taut's version but not its tables.
+/// Whether a file is damaged, has this taut's version but not its tables, or has tables but no
+/// version, which no taut leaves behind.
 bool unusable(const fs::path& file) {
   if (damaged(file)) return true;
   Database database(file, Database::Access::read);
-  return database.number_of("PRAGMA user_version") == kSchemaVersion &&
-         !wrong_part(database).empty();
+  const std::int64_t version = database.number_of("PRAGMA user_version");
+  if (version == 0) return !database.parts().empty();
+  return version == kSchemaVersion && !wrong_part(database).empty();
 }
 
 void require_version(const fs::path& file, std::int64_t version) {

@@ -551,6 +551,20 @@ TEST_F(StoreTest, AFileOfAnotherVersionIsNeitherReadNorWritten) {
     }
 }
 
+TEST_F(StoreTest, AFileOfTablesWithoutAVersionIsSetAside) {
+  put(some_record());
+  change(store_, "PRAGMA user_version = 0");
+  Store other(root_, [&](const std::string& text) { said_.push_back(text); });
+  EXPECT_TRUE(other.keys().empty());
+  other.prepare();
+  ASSERT_EQ(said_.size(), 1u);
+  EXPECT_NE(said_[0].find("results.db: damaged, set aside as "), std::string::npos) << said_[0];
+  EXPECT_TRUE(other.keys().empty());
+  Store again(root_);
+  again.prepare();
+  EXPECT_EQ(said_.size(), 1u) << "it is begun anew, once";
+}
+
 TEST_F(StoreTest, ReadingCreatesNothing) {
   EXPECT_FALSE(store_.find(some_record().key));
   EXPECT_TRUE(store_.keys().empty());
