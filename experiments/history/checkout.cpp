@@ -10,6 +10,7 @@
 #include <ctime>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 #include "core/io/text_file.hpp"
@@ -31,13 +32,24 @@ struct GitAnswer {
   std::string text, complaint;
 };
 
-/// Runs git so that nothing named by a repository's files or configuration is started. `folder` is
-/// the top of a checkout, so that git does not search above it; with `anywhere` it may be any
-/// folder in one.
+/// Runs git without protocols, so that it fetches nothing, and without hooks. `folder` is the top
+/// of a checkout, so that git does not search above it; with `anywhere` it may be any folder in
+/// one.
 GitAnswer git(const fs::path& folder, const std::vector<std::string>& words,
               bool anywhere = false) {
-  std::vector<std::string> all{
-      "git", "-c", "core.hooksPath=/dev/null", "-c", "core.fsmonitor=false", "-C", folder.string()};
+  std::vector<std::string> all{"env",
+                               "GIT_ALLOW_PROTOCOL=none",
+                               "GIT_NO_LAZY_FETCH=1",
+                               "GIT_TERMINAL_PROMPT=0",
+                               "git",
+                               "-c",
+                               "core.hooksPath=/dev/null",
+                               "-c",
+                               "core.fsmonitor=false",
+                               "-c",
+                               "log.showSignature=false",
+                               "-C",
+                               folder.string()};
   if (!anywhere)
     all.insert(all.end(),
                {"--git-dir", (folder / ".git").string(), "--work-tree", folder.string()});
@@ -68,9 +80,58 @@ std::string stripped_end(std::string text) {
   return text;
 }
 
+/// Removes the variables that redirect git or configure it, as a hook has them. Left are those that
+/// say where the person's own configuration is.
+void forget_variables_of_git() {
+  const auto is_kept = [](std::string_view name) {
+    return name == "GIT_CONFIG_GLOBAL" || name == "GIT_CONFIG_SYSTEM" ||
+           name == "GIT_CONFIG_NOSYSTEM" || name == "GIT_EXEC_PATH";
+  };
+  std::vector<std::string> names;
+  for (char** one = environ; *one; ++one) {
+    const std::string_view variable = *one;
+    const std::string_view name = variable.substr(0, variable.find('='));
+    if (name.starts_with("GIT_") && !is_kept(name)) names.emplace_back(name);
+  }
+  for (const std::string& name : names) unsetenv(name.c_str());
+}
+
+/// Makes a checkout of taut's own over the objects and the branches and tags of a repository. None
+/// of that repository's configuration is read by git there, so none of it can name a program to
+/// start; in the repository itself only rev-parse and for-each-ref are run.
+void borrow(const fs::path& repository, const fs::path& checkout) {
+  const auto said = [&](const std::vector<std::string>& words) {
+    return stripped_end(git_or_throw(repository, words, true));
+  };
+  const auto path_of = [&](const char* name) {
+    return fs::path(said({"rev-parse", "--path-format=absolute", "--git-path", name}));
+  };
+  make_folder(checkout);
+  git_or_throw(checkout,
+               {"init", "--quiet",
+                "--template=", "--object-format=" + said({"rev-parse", "--show-object-format"}),
+                checkout.string()},
+               true);
+  const fs::path own = checkout / ".git";
+  make_folder(own / "objects" / "info");
+  write_file(own / "objects" / "info" / "alternates", path_of("objects").string() + "\n");
+  if (const fs::path shallow = path_of("shallow"); fs::is_regular_file(shallow))
+    write_file(own / "shallow", read_text(shallow));
+  const std::string refs =
+      said({"for-each-ref", "--format=%(objectname) %(refname)", "refs/heads", "refs/tags"});
+  std::string packed;
+  std::istringstream lines(refs);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t name = line.find(" refs/heads/");
+    if (name != line.npos) line.replace(name, 12, " refs/remotes/origin/");
+    packed += line + "\n";
+  }
+  write_file(own / "packed-refs", packed);
+}
+
 /// Seconds since 1970 as "2026-05-04T10:11:12Z".
 std::string iso_time(const std::string& seconds) {
-  const std::time_t time = std::atoll(seconds.c_str());
+  const std::time_t time = whole<long long>(seconds).value_or(0);
   std::tm parts{};
   gmtime_r(&time, &parts);
   char text[32];
@@ -98,15 +159,15 @@ std::string full(const fs::path& folder) {
 
 }  // namespace
 
-Repository::Repository(const fs::path& folder) : folder_(fs::absolute(folder).lexically_normal()) {
+Repository::Repository(const fs::path& folder)
+    : folder_(fs::absolute(folder).lexically_normal()), own_(std::make_shared<Scratch>()) {
   if (!on_path("git")) throw InputError("git is not installed");
   std::error_code none;
   if (!fs::is_directory(folder_, none)) throw InputError(folder.string() + ": no such folder");
-  // A hook sets these, and they would redirect git.
-  for (const char* name : {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX"})
-    unsetenv(name);
+  forget_variables_of_git();
   const GitAnswer top = git(folder_, {"rev-parse", "--absolute-git-dir"}, true);
   if (!top.good) throw InputError(folder.string() + ": not a repository: " + top.complaint);
+  borrow(folder_, own_->path());
 }
 
 std::string Repository::commit(const std::string& name) const {
@@ -120,7 +181,7 @@ std::string Repository::commit(const std::string& name) const {
 }
 
 bool Repository::is_ancestor(const std::string& a, const std::string& b) const {
-  return git(folder_, {"merge-base", "--is-ancestor", a, b}, true).good;
+  return git(own_->path(), {"merge-base", "--is-ancestor", a, b}).good;
 }
 
 std::vector<Build> Repository::line(const std::string& range) const {
@@ -133,11 +194,10 @@ std::vector<Build> Repository::line(const std::string& range) const {
     throw InputError("--commits " + range + ": " +
                      (is_ancestor(b, a) ? "the wrong way round: the last is older than the first"
                                         : "the first does not lead to the last"));
-  const std::string log = git_or_throw(
-      folder_, {"log", "--first-parent", "--reverse", "--format=%H%x09%ct%x09%s", a + ".." + b},
-      true);
+  const std::string log = git_or_throw(own_->path(), {"log", "--first-parent", "--reverse",
+                                                      "--format=%H%x09%ct%x09%s", a + ".." + b});
   std::istringstream lines(
-      git_or_throw(folder_, {"log", "-1", "--format=%H%x09%ct%x09%s", a}, true) + log);
+      git_or_throw(own_->path(), {"log", "-1", "--format=%H%x09%ct%x09%s", a}) + log);
   std::vector<Build> builds;
   for (std::string line; std::getline(lines, line);) {
     const std::vector<std::string> parts = parts_of(line, '\t');
@@ -158,11 +218,8 @@ Checkout::Checkout(const Repository& repository, const fs::path& folder)
     throw InputError(folder_.string() + ": another taut history is at work there");
   std::error_code none;
   if (!git(folder_, {"rev-parse", "--git-dir"}).good) {
-    fs::remove_all(folder_, none);  // an incomplete clone by a process that was killed
-    git_or_throw(repository.folder(),
-                 {"clone", "--quiet", "--shared", "--no-checkout", repository.folder().string(),
-                  folder_.string()},
-                 true);
+    fs::remove_all(folder_, none);  // an incomplete one, by a process that was killed
+    borrow(repository.folder(), folder_);
   }
   fs::remove(folder_ / ".git" / "index.lock", none);
 }
@@ -188,7 +245,9 @@ std::string Checkout::build(const std::string& commit, const std::string& comman
                             const BuildLimits& limits) {
   if (const std::string why = full(folder_); !why.empty()) throw InputError(why);
   commit_.clear();
-  git_or_throw(folder_, {"checkout", "--quiet", "--force", "--detach", commit});
+  if (const GitAnswer got = git(folder_, {"checkout", "--quiet", "--force", "--detach", commit});
+      !got.good)
+    return "git cannot check it out: " + got.complaint;
   if (!command.empty()) {
     const fs::path log = folder_.string() + ".log";
     const SteadyClock::time_point start = SteadyClock::now();

@@ -1,15 +1,18 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "experiments/results/builds.hpp"
+#include "experiments/system/files.hpp"
 
 namespace taut {
 
 /// A git repository that is only read. Nothing is written into it, and neither its hooks nor
-/// programs that its configuration names are run.
+/// programs that its configuration names are run. Objects that are missing, as in a partial clone,
+/// are not fetched.
 class Repository {
  public:
   /// Throws InputError if git is not installed or the folder is no repository.
@@ -25,6 +28,7 @@ class Repository {
   std::string commit(const std::string& name) const;
   bool is_ancestor(const std::string& a, const std::string& b) const;
   std::filesystem::path folder_;
+  std::shared_ptr<Scratch> own_;  ///< a checkout over its objects, without its configuration
 };
 
 /// Limits on the build of a commit.
@@ -47,8 +51,8 @@ class Checkout {
   const std::string& commit() const { return commit_; }  ///< "" until one is built
 
   /// Checks out a commit and runs `command`, unless it is "", in a shell there. Returns "" on
-  /// success, otherwise a sentence that says why it failed. Throws InputError if the disk is full
-  /// or git refuses.
+  /// success, otherwise a sentence that says why it failed, as for a commit of which objects are
+  /// missing. Throws InputError if the disk is full.
   std::string build(const std::string& commit, const std::string& command, const BuildLimits&);
   /// A sentence that says what changed in the commit's files since build(); "" if nothing did.
   std::string changed() const;

@@ -271,6 +271,47 @@ class BadInput(Repository):
         self.history(commits="HEAD~1..HEAD")
         self.assertFalse((self.folder / "started").exists())
 
+    def test_programs_that_the_configuration_names_are_not_started(self):
+        """A signature to be shown, a filter, a pager, an editor of diffs, an include: whatever git would start for it."""
+        self.repository({}, commits=2)
+        repo = self.folder / "repo"
+        start = self.folder / "start.sh"
+        start.write_text(f"#!/bin/sh\ntouch {self.folder}/started\nexit 1\n")
+        start.chmod(0o755)
+        (repo / ".gitattributes").write_text("* filter=mine diff=mine\n")
+        git(repo, "add", ".gitattributes")
+        git(repo, "commit", "-q", "-m", "change 2")
+        signed = f"tree {git(repo, 'rev-parse', 'HEAD^{tree}')}\nparent {git(repo, 'rev-parse', 'HEAD')}\nauthor a <a@x> 1778400000 +0000\ncommitter a <a@x> 1778400000 +0000\n" \
+                 "gpgsig -----BEGIN PGP SIGNATURE-----\n \n x\n -----END PGP SIGNATURE-----\n\nsigned\n"
+        (self.folder / "commit").write_text(signed)
+        git(repo, "update-ref", "refs/heads/main", git(repo, "hash-object", "-t", "commit", "-w", "--literally", self.folder / "commit"))
+        more = self.folder / "more.config"
+        more.write_text(f"[core]\n\tfsmonitor = {start}\n\tsshCommand = {start}\n\tpager = {start}\n[diff]\n\texternal = {start}\n")
+        for key, value in [("log.showSignature", "true"), ("gpg.program", start), ("filter.mine.smudge", start), ("filter.mine.process", start),
+                           ("filter.mine.required", "true"), ("include.path", more), ("diff.mine.command", start), ("core.alternateRefsCommand", start),
+                           ("pager.log", start), ("uploadpack.packObjectsHook", start), ("remote.origin.url", f"ext::{start}"),
+                           ("remote.origin.uploadpack", start), ("protocol.ext.allow", "always")]:
+            git(repo, "config", key, str(value))
+        hook = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "core.fsmonitor", "GIT_CONFIG_VALUE_0": str(start), "GIT_EXTERNAL_DIFF": str(start)}
+        self.history(commits="HEAD~2..HEAD", env=os.environ | hook)
+        self.assertFalse((self.folder / "started").exists())
+
+    def test_a_commit_of_which_objects_are_missing_is_a_gap(self):
+        made = self.repository({1: [("RELAXATION = 1.0", "RELAXATION = 0.99")]}, commits=3)
+        repo = self.folder / "repo"
+        lost = git(repo, "rev-parse", f"{made[1]}:notes")
+        (repo / ".git/objects" / lost[:2] / lost[2:]).unlink()
+        git(repo, "config", "extensions.partialClone", "origin")
+        git(repo, "config", "core.repositoryFormatVersion", "1")
+        git(repo, "config", "remote.origin.url", f"ext::touch {self.folder}/started")
+        git(repo, "config", "remote.origin.promisor", "true")
+        git(repo, "config", "protocol.ext.allow", "always")
+        answer = self.found(commits="HEAD~2..HEAD", expect=1)  # a value changed in or after the gap
+        gaps = {row["subject"]: row["gap"] for row in rows_of(answer, "builds") if row["gap"]}
+        self.assertEqual(list(gaps), ["change 1"])
+        self.assertIn("git cannot check it out", gaps["change 1"])
+        self.assertFalse((self.folder / "started").exists())
+
     def test_a_program_that_only_the_store_names_is_not_started(self):
         self.repository({0: [("# START", f"open({str(self.folder / 'started')!r}, 'a').write('x')")]}, commits=2)
         self.history(commits="HEAD~1..HEAD")
