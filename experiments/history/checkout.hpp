@@ -51,8 +51,8 @@ class Checkout {
   const std::string& commit() const { return commit_; }  ///< "" until one is built
 
   /// Checks out a commit and runs `command`, unless it is "", in a shell there. Returns "" on
-  /// success, otherwise a sentence that says why it failed, as for a commit of which objects are
-  /// missing. Throws InputError if the disk is full.
+  /// success, otherwise a sentence that says why it failed, such as a missing object. Throws
+  /// InputError if the disk is full.
   std::string build(const std::string& commit, const std::string& command, const BuildLimits&);
   /// A sentence that says what changed in the commit's files since build(); "" if nothing did.
   std::string changed() const;

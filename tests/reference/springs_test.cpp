@@ -86,6 +86,20 @@ TEST(Springs, SlideAndStickAsCoulombSays) {
   EXPECT_LT(slid(std::tan(angle) + 0.01), 1e-9);
 }
 
+/// A belt at 1 m/s drags what lies on it with mu g until both are equally fast; a floor that rises
+/// at 0.5 m/s meets a vertex above it and carries it along.
+TEST(Springs, AreDraggedAndLiftedByBodiesThatMove) {
+  Scene belt = on_slope(0, 0.3);
+  belt.colliders[0].motion.velocity = {1, 0, 0};
+  const double dt = 1.0 / 65536, reached = 1 / (0.3 * kG);
+  EXPECT_NEAR(run(belt, 0.25, 1e6, dt).x[0].x(), 0.3 * kG * 0.25 * 0.25 / 2, 1e-4);
+  EXPECT_NEAR(run(belt, 0.5, 1e6, dt).x[0].x(), 0.5 - reached / 2, 1e-4);
+  Scene floor = on_slope(0, 0);
+  floor.start.x[0].y() = 0.1;
+  floor.colliders[0].motion.velocity = {0, 0.5, 0};
+  EXPECT_NEAR(run(floor, 0.5, 1e6, dt).x[0].y(), 0.25 + 0.005, 1e-9);
+}
+
 TEST(Springs, AreLeftWithoutVelocityByAWallThatTheyHit) {
   Scene scene = on_slope(0, 0);
   scene.start.x[0].y() = 0.1;
