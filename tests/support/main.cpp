@@ -2,11 +2,13 @@
 // processes of the program that requests them, so it implements the two verbs of `taut` that run
 // one.
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <iostream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/study/isolate.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace {
@@ -39,6 +41,8 @@ int serve(std::vector<std::string> words) try {
 int main(int argc, char** argv) {
   if (argc > 1 && (argv[1] == std::string("case") || argv[1] == std::string("bench")))
     return serve({argv + 1, argv + argc});
+  const taut::Scratch scratch;  // what other programs leave behind is no test's input
+  setenv("TEST_TMPDIR", (scratch.path().string() + "/").c_str(), 1);
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }
