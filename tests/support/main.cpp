@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <filesystem>
 #include <iostream>
 
 #include "core/model/input_error.hpp"
 #include "experiments/study/isolate.hpp"
-#include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace {
@@ -41,8 +41,17 @@ int serve(std::vector<std::string> words) try {
 int main(int argc, char** argv) {
   if (argc > 1 && (argv[1] == std::string("case") || argv[1] == std::string("bench")))
     return serve({argv + 1, argv + argc});
-  const taut::Scratch scratch;  // what other programs leave behind is no test's input
-  setenv("TEST_TMPDIR", (scratch.path().string() + "/").c_str(), 1);
+  // What other programs leave behind is no test's input. No Scratch: it starts a thread, which a
+  // forked death test does not have.
+  std::string folder = (std::filesystem::temp_directory_path() / "taut-tests.XXXXXX").string();
+  if (!mkdtemp(folder.data())) {
+    std::cerr << "cannot make a folder like " << folder << '\n';
+    return 1;
+  }
+  setenv("TEST_TMPDIR", (folder + "/").c_str(), 1);
   testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
+  const int status = RUN_ALL_TESTS();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  return status;
 }
