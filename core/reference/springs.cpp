@@ -173,4 +173,13 @@ std::vector<std::string> refuse_springs(const Scene& scene) {
   return reasons;
 }
 
+Vec3 pushed_out(const Scene& scene, const Vec3& x, double t) {
+  Vec3 out = x;
+  for (const Collider& body : scene.colliders) {
+    const Surface at = surface(shape_at(body, t), out);
+    if (at.distance < scene.thickness) out += (scene.thickness - at.distance) * at.normal;
+  }
+  return out;
+}
+
 }  // namespace taut::reference

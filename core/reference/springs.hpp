@@ -37,4 +37,8 @@ class Springs {
 /// Reasons, one sentence each, why Springs cannot run the scene; empty: it can.
 std::vector<std::string> refuse_springs(const Scene&);
 
+/// The position outside of all bodies at time t [s], at the cloth's thickness, that is reached from
+/// x by going along their normals.
+Vec3 pushed_out(const Scene&, const Vec3& x, double t);
+
 }  // namespace taut::reference

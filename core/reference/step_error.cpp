@@ -34,14 +34,11 @@ constexpr double kBelieved = 0.3;
 /// kSmall: a last step below this share of the sum ends the steps. kMostRatio: largest ratio of
 /// successive steps that is extrapolated.
 constexpr double kSmall = 0.1, kMostRatio = 0.8;
-/// Largest displacement by the last round, as a share of the motion that is missed.
-constexpr double kMostMoved = 0.3;
 /// Largest steps of Newton's method that count as rounding, as a share of the scene's extent (RMS).
 /// In contact they stay larger, because kNearly decides what touches and slips.
 constexpr double kRounded = 1e-9, kRoundedInContact = 1e-5;
 /// Number of times that a linear system is solved, to update the tensions and contact forces in it.
-constexpr int kRounds = 2, kRoundsOfLengths = 3, kSecondRounds = 1, kRoundsInContact = 6,
-              kSecondRoundsInContact = 4;
+constexpr int kRounds = 2, kSecondRounds = 1, kRoundsInContact = 6, kSecondRoundsInContact = 4;
 
 }  // namespace
 
@@ -100,20 +97,6 @@ class StepError::Work {
     out.believed = out.last <= std::max(kBelieved * out.distance,
                                         extent_ * (contact ? kRoundedInContact : kRounded));
     return out;
-  }
-
-  Points missed(const State& from, double t, double h, const Points& answer) {
-    begin(from, t, h);
-    Points x = answer;
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (column_[i] < 0) x[i] = y_[i];
-    keeps_lengths_ = true;
-    const bool found = newton(x, scene_.colliders.empty() ? kRoundsOfLengths : kRoundsInContact);
-    keeps_lengths_ = false;
-    if (!found || moved_ > std::max(kMostMoved * rms(way_), extent_ * kRoundedInContact)) return {};
-    Points all(x.size(), Vec3::Zero());
-    for (std::size_t k = 0; k < moving_.size(); ++k) all[moving_[k]] = way_[k];
-    return all;
   }
 
  private:
@@ -222,7 +205,7 @@ class StepError::Work {
   }
 
   double mass(std::size_t vertex) const { return scene_.mesh.mass[vertex]; }
-  bool is_rigid(const Member& l) const { return keeps_lengths_ || std::isinf(l.stiffness); }
+  bool is_rigid(const Member& l) const { return std::isinf(l.stiffness); }
   double stiffness(const Member& l) const { return is_rigid(l) ? rigid_ : l.stiffness; }
 
   /// Sets way_ to the displacement from x to the minimum of the model there. Returns false if there
@@ -231,13 +214,12 @@ class StepError::Work {
     for (Member& l : links_) {
       const Vec3 d = x[l.b] - x[l.a];
       l.length = d.norm();
-      l.excess = keeps_lengths_ ? 0 : l.length - l.rest;
+      l.excess = l.length - l.rest;
       l.u = l.length > 0 ? Vec3(d / l.length) : Vec3(Vec3::Zero());
     }
     lay_planes(x);
     way_.assign(moving_.size(), Vec3::Zero());
     for (int round = 0; round < rounds; ++round) {
-      const Points before = way_;
       fill();
       if (!factor_.factor()) return false;
       for (int k = 0; k < (any_rigid() ? kMultiplierRounds : 1); ++k) {
@@ -250,9 +232,6 @@ class StepError::Work {
       for (const Vec3& p : way_)
         if (!p.allFinite()) return false;
       settle_contacts();
-      Points change = way_;
-      for (std::size_t k = 0; k < change.size(); ++k) change[k] -= before[k];
-      moved_ = rms(change);
     }
     return true;
   }
@@ -396,8 +375,6 @@ class StepError::Work {
   std::vector<std::pair<Block, double>> bent_;  ///< bending [N/m] in each block, times the identity
   std::vector<double> in_order_;
   double h_ = 0, rigid_ = 0;      ///< s, N/m
-  double moved_ = 0;              ///< m, RMS displacement by the last round
-  bool keeps_lengths_ = false;    ///< all links are rigid at their present lengths
   std::vector<double> hardness_;  ///< [moving] N/m, stiffness of contact
   Points y_, way_;                ///< [n], [moving] m
   std::vector<taut::Shape> shapes_;
@@ -411,10 +388,6 @@ StepError::StepError(const Scene& scene, const Stiffness& stiffness)
     : work_(std::make_unique<Work>(scene, stiffness)) {}
 StepError::~StepError() = default;
 
-std::vector<Vec3> StepError::missed(const State& from, double t, double h,
-                                    const std::vector<Vec3>& x) {
-  return work_->missed(from, t, h, x);
-}
 StepError::Estimate StepError::of(const State& from, double t, double h,
                                   const std::vector<Vec3>& x) {
   return work_->of(from, t, h, x);

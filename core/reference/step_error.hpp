@@ -36,10 +36,6 @@ class StepError {
   /// Estimate for x, the answer to a step of h [s] from `from` at time t [s]. NaN if there is no
   /// factor or x is not finite.
   Estimate of(const State& from, double t, double h, const std::vector<Vec3>& x);
-  /// Displacement [n] from x to the exact step of links with the lengths that they have in x: the
-  /// part of the motion that the answer misses, however much it strains. Empty if it does not
-  /// converge.
-  std::vector<Vec3> missed(const State& from, double t, double h, const std::vector<Vec3>& x);
 
  private:
   class Work;

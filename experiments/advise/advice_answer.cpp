@@ -23,7 +23,7 @@ std::string command(const AdviceWanted& wanted, const Advice& advice) {
   };
   solver(*advice.recommendation.best);
   if (advice.recommendation.runner_up) solver(*advice.recommendation.runner_up);
-  return text + (wanted.metric == kErrorMetric ? "" : " --metric " + wanted.metric);
+  return text + " --metric " + wanted.metric;
 }
 
 /// Adds the best setting, its certainty, and the command that compares it again.
@@ -33,7 +33,8 @@ void add_best(Answer& answer, const AdviceWanted& wanted, const Advice& advice) 
   Cell best(parse_solver(record.spec.solver).brief());
   best.key = record.key;
   answer.add({"best", advice.called()}, best.with(verdict(chosen, advice.bench)));
-  answer.add({"error", wanted.metric, unit_of_value(wanted.metric)}, record.value(wanted.metric));
+  answer.add({"error", wanted.metric, unit_of_value(wanted.metric)},
+             error_of(record, wanted.metric));
   answer.add({"cost", "CPU time", wanted.frame()}, advice.cost);
   answer.add({"again", "timed again", wanted.frame()},
              Cell(advice.again)
@@ -116,13 +117,13 @@ Table solvers_of(const AdviceWanted& wanted, const Advice& advice) {
     if (solver.at) {
       const BenchedCase& c = advice.bench.cases[*solver.at];
       row.insert(row.end(),
-                 {parse_solver(c.record.spec.solver).brief(), c.record.value(wanted.metric),
+                 {parse_solver(c.record.spec.solver).brief(), error_of(c.record, wanted.metric),
                   c.cost(), solver.times, c.timing.peak_bytes});
       for (const Limit& limit : wanted.limits) row.push_back(c.record.value(limit.name));
       row.emplace_back("");
     } else {
       row.resize(table.columns.size());
-      row.back() = nearest(solver, advice.bench, advice.recommendation, wanted.metric, wanted.fps);
+      row.back() = nearest(solver, advice.bench, advice.recommendation, wanted.metric);
     }
   }
   for (const std::string& solver : wanted.solvers) {
@@ -198,6 +199,7 @@ Table refused_of(const Advice& advice) {
 
 Answer answer_of(const AdviceWanted& wanted, const Advice& advice) {
   std::string subject = wanted.scene + ", " + text(advice.target, wanted.metric, wanted.fps);
+  if (!wanted.judged) subject += "; MOTION NOT JUDGED: no reference says where the cloth should be";
   if (!advice.cut.empty())
     subject += "; INCOMPLETE: --patience ended the search of " + join(advice.cut, ", ");
   Answer answer{"advise", subject};

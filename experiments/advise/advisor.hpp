@@ -19,6 +19,7 @@ struct AdviceWanted {
   std::vector<std::string> solvers;  ///< parameters fixed in their texts are not searched
   Target target;
   std::string metric = kErrorMetric;
+  bool judged = false;             ///< whether it is known where the cloth should be
   std::vector<Limit> limits = {};  ///< limits on values besides the error
   double fps = 1 / kFrame;         ///< frames per second, for the unit in which costs are shown
   double patience = 120;           ///< s for everything

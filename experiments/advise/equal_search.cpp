@@ -43,14 +43,16 @@ class SolverSearch {
     const SceneSettings own = parse_study_scene(scene).settings;
     settings_.insert(settings_.end(), own.begin(), own.end());
     const Case one = make(solver);
+    if (metric_.empty()) metric_ = deciding_metric(*one.scene);
     duration_ = one.scene->duration();
     limits_ = default_limits(*one.scene);
-    std::erase_if(limits_, [&](const Limit& limit) { return limit.name == metric; });
+    std::erase_if(limits_, [&](const Limit& limit) { return limit.name == metric_; });
     const auto reasons = one.choice.entry->unsupported(*one.scene, one.choice.params);
     if (!reasons.empty()) unsupported_ = reasons.front();
   }
 
-  EqualSearch run(const std::vector<double>& errors, double seconds) {
+  EqualSearch run(double seconds) {
+    const std::span<const double> errors = levels_of(metric_);
     if (unsupported_.empty()) {
       evaluate(cheapest_setting(solver_), seconds);
       const double plain = kShareWithoutAccelerators * seconds;
@@ -67,7 +69,7 @@ class SolverSearch {
   }
 
   /// Searches each error, with an equal share of the time that the errors before it left.
-  void search(const std::string& solver, const std::vector<double>& errors, double seconds) {
+  void search(const std::string& solver, std::span<const double> errors, double seconds) {
     auto left = static_cast<double>(errors.size());
     for (const double error : errors) {
       cut_off_ = false;
@@ -102,7 +104,7 @@ class SolverSearch {
     return tried_.back();
   }
 
-  EqualSearch found(const std::vector<double>& errors) const {
+  EqualSearch found(std::span<const double> errors) const {
     EqualSearch result{scene_, solver_, {}, {}, cpu_};
     result.cut_off = std::ranges::any_of(cut_, [](const auto& one) { return one.second; });
     for (const Candidate& c : tried_) {
@@ -131,14 +133,11 @@ class SolverSearch {
 
   std::string why_missing(double error) const {
     if (!unsupported_.empty()) return "cannot run it: " + unsupported_;
-    const auto nearest = best_for({{}, std::numeric_limits<double>::infinity()}, tried_);
     const auto cut = cut_.find(error);
     const std::string time =
         cut != cut_.end() && cut->second ? ", its CPU time used up" : ", all its levers tried";
-    if (nearest)
-      return "at best " + number_text(tried_[*nearest].error, unit_of_value(metric_)) + " (" +
-             parse_solver(tried_[*nearest].setting).brief() + ")" + time;
-    return (tried_.empty() ? "nothing was tried" : tried_.front().failure) + time;
+    const Cell why = why_not({.error = error}, tried_, metric_);
+    return (why.note.empty() ? why.text() : why.note) + time;
   }
 
   std::string scene_;
@@ -157,15 +156,14 @@ class SolverSearch {
 }  // namespace
 
 std::vector<EqualSearch> search_equally(const Study& study, Store& store, const std::string& metric,
-                                        const std::vector<double>& errors, double seconds,
+                                        double seconds,
                                         const std::function<void(const EqualSearch&)>& after_each) {
   if (!study.axes.empty())
     throw InputError(study.file.string() + ": settings are searched only for a study without axes");
   std::vector<EqualSearch> all;
   for (const std::string& scene : study.scenes)
     for (const std::string& solver : study.solvers) {
-      all.push_back(
-          SolverSearch(scene, study.settings, solver, metric, store).run(errors, seconds));
+      all.push_back(SolverSearch(scene, study.settings, solver, metric, store).run(seconds));
       after_each(all.back());
     }
   return all;

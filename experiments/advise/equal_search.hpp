@@ -23,10 +23,11 @@ struct EqualSearch {
 
 /// Searches every solver of the study on every scene for the cheapest setting within each error.
 /// Each solver gets the same CPU time, `seconds` per scene: half without the accelerators that
-/// other solvers may lack, half with all parameters. An expensive solver is not abandoned because
+/// other solvers may lack, half with all parameters. Without a metric each scene has the one that
+/// decides on it. An expensive solver is not abandoned because
 /// others are cheap. Throws InputError if the study has axes or a scene has errors; or Interrupted.
 std::vector<EqualSearch> search_equally(const Study&, Store&, const std::string& metric,
-                                        const std::vector<double>& errors, double seconds,
+                                        double seconds,
                                         const std::function<void(const EqualSearch&)>& after_each);
 
 }  // namespace taut

@@ -17,7 +17,7 @@ std::string heading(const Study& study, const std::string& metric, double cpu) {
          "`: every solver's levers, searched scene by scene with " + number_text(cpu) +
          " s of CPU\n# time for each solver: half of it without accelerators that others lack, the "
          "rest with all. All that was tried, with its error (" +
-         metric +
+         (metric.empty() ? std::string(kVerdict) : metric) +
          ")\n# and its cost by a few steps [CPU s per simulated s]. `plain` and `best`: errors for "
          "which it is the cheapest of its solver,\n# without accelerators and with them. "
          "These are what the study runs and times afresh.\n";
@@ -42,15 +42,13 @@ Answer search_study(const Study& study, Store& store, const std::string& metric,
                   {"cut_off", "would have tried more"}}};
   std::vector<SearchedSetting> rows;
   std::vector<std::string> missing;
-  search_equally(
-      study, store, metric, {std::begin(kErrorLevels), std::end(kErrorLevels)}, cpu,
-      [&](const EqualSearch& one) {
-        news(one.scene + ", " + one.solver + ": " + std::to_string(one.rows.size()) +
-             " settings, " + number_text(one.cpu) + " s of CPU");
-        searched.rows.push_back({one.scene, one.solver, one.rows.size(), one.cpu, one.cut_off});
-        rows.insert(rows.end(), one.rows.begin(), one.rows.end());
-        missing.insert(missing.end(), one.missing.begin(), one.missing.end());
-      });
+  search_equally(study, store, metric, cpu, [&](const EqualSearch& one) {
+    news(one.scene + ", " + one.solver + ": " + std::to_string(one.rows.size()) + " settings, " +
+         number_text(one.cpu) + " s of CPU");
+    searched.rows.push_back({one.scene, one.solver, one.rows.size(), one.cpu, one.cut_off});
+    rows.insert(rows.end(), one.rows.begin(), one.rows.end());
+    missing.insert(missing.end(), one.missing.begin(), one.missing.end());
+  });
   std::filesystem::create_directories(study.searched.parent_path());
   write_file(study.searched, searched_toml(heading(study, metric, cpu), rows, missing));
   answer.add({"file"}, study.searched.string());

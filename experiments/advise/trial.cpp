@@ -5,7 +5,6 @@
 
 #include "experiments/case/record_io.hpp"
 #include "experiments/study/campaign.hpp"
-#include "experiments/timing/way.hpp"
 
 namespace taut {
 
@@ -30,13 +29,7 @@ std::optional<SettingTrial> try_setting(const Case& one, Store& store, const std
   if (!record) return {};
   SettingTrial trial;
   Candidate& found = trial.candidate;
-  found = {record->solver, record->spec.solver, {}, std::abs(record->value(metric)), {}};
-  if (!completed(record->status)) found.failure = describe(record->status);
-  if (const std::string why = beyond(*record, limits); !why.empty())
-    found.failure += (found.failure.empty() ? "" : "; ") + why;
-  const ValueSpec* value = find_value(metric).second;
-  if (found.failure.empty() && value && value->role == Role::error)
-    found.failure = hardly_moves(*record);
+  found = judge(*record, metric, limits);
   try {
     const int steps = steps_done(*record);
     const StepTime step = quick_time(record->spec, steps, deadline);

@@ -18,8 +18,8 @@ struct SettingTrial {
   double slowdown = 1;  ///< ratio of wall to CPU time of the few steps
 };
 
-/// Runs and times a setting; nothing if it is not done by the deadline. It is refused if it fails,
-/// exceeds the limits, or hardly moves and the error is a strain.
+/// Runs and times a setting; nothing if it is not done by the deadline. judge() says whether it
+/// counts.
 std::optional<SettingTrial> try_setting(const Case&, Store&, const std::string& metric,
                                         const std::vector<Limit>& limits,
                                         std::chrono::steady_clock::time_point deadline);

@@ -11,8 +11,7 @@
 namespace taut {
 
 namespace {
-constexpr Names<Cell::State::hardly_moves> kStates{"value", "none", "refused", "not_run",
-                                                   "hardly_moves"};
+constexpr Names<Cell::State::astray> kStates{"value", "none", "refused", "not_run", "astray"};
 }
 
 std::string_view to_string(Cell::State state) { return kStates[state]; }

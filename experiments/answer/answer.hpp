@@ -22,10 +22,10 @@ struct Cell {
   /// then its text.
   enum class State {
     value,
-    none,         ///< meaningless, not reached, or the case failed
-    refused,      ///< the solver cannot run it
-    not_run,      ///< not run, or not timed
-    hardly_moves  ///< the cloth hardly moves: a number is shown but not compared
+    none,     ///< meaningless, not reached, or the case failed
+    refused,  ///< the solver cannot run it
+    not_run,  ///< not run, or not timed
+    astray    ///< the cloth is not where it should be: a number is shown but not compared
   };
   /// Meaning of a verdict to a reader. A terminal shows it as a colour; data do not contain it.
   enum class Tone { plain, good, doubtful, bad };

@@ -148,7 +148,10 @@ void add_samples(CLI::App& app, int& rounds, double& seconds, int fewest_rounds)
 }
 
 void add_judgement(CLI::App& app, std::string& metric, double& tolerance) {
-  app.add_option("--metric", metric, "What the error is (default: " + metric + ")")
+  app.add_option(
+         "--metric", metric,
+         "What the error is (default: where the cloth is and how stretched, motion.error; RMS "
+         "stretch where no reference says where it should be)")
       ->check(metric_value());
   app.add_option("--tolerance", tolerance,
                  "Smaller relative differences do not count (default: " + as_typed(tolerance) + ")")

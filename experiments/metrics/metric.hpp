@@ -80,21 +80,24 @@ enum class Role {
   /// Passages of vertices through colliders; drawn like depths; the sum over scenes counts.
   passages,
   reference_error,  ///< distance from the scene's reference; over sweeps
+  motion_error,     ///< distance from the scene's motion; over sweeps
   step_error,       ///< distance from the exact step; over sweeps
   contact_error,    ///< distance from a law of contact; over sweeps and time steps
 };
 
-/// Least motion, as a share of the full motion, at which cloths are compared by strain: links keep
-/// their lengths if nothing moves.
-inline constexpr double kLeastMotion = 0.5;
-/// Values for the share of the motion without a dynamic reference: share of the motion of exact
-/// steps, or else estimated from what steps miss.
-inline constexpr std::string_view kShareOfWay = "way.share", kShareBySteps = "step.share";
-
+/// RMS strain of structural and shear links in the last second.
+inline constexpr std::string_view kStretch = "stretch.rms";
 /// RMS strain at the moment at which it is largest in a run; the last second hides it.
 inline constexpr std::string_view kRmsStretchPeak = "stretch.rms.peak";
-/// Distance from the dynamic reference over the displacement: 1 for a cloth that stands still.
-inline constexpr std::string_view kMotionError = "motion.error";
+/// Distance from the dynamic reference over the displacement: 1 for a cloth that stands still. Its
+/// floor, and the reference's own strain.
+inline constexpr std::string_view kMotionError = "motion.error", kMotionFloor = "motion.floor",
+                                  kMotionStrain = "motion.strain";
+/// Distance of the observables from those of an ensemble of references, where motion is chaotic;
+/// its floor, and what a rigid plate at rest on the body scores.
+inline constexpr std::string_view kEnsembleError = "ensemble.error",
+                                  kEnsembleFloor = "ensemble.floor",
+                                  kEnsemblePlate = "ensemble.plate";
 /// RMS strain caused by the rounding of a file of positions. It is the number of the resolved
 /// setting of this name, which cases that play such a file have. No metric returns it.
 inline constexpr std::string_view kStrainFloor = "strain.floor";

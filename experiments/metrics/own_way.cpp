@@ -1,34 +1,12 @@
 #include "experiments/metrics/own_way.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "core/model/index.hpp"
-#include "core/model/text.hpp"
 
 namespace taut {
 
 namespace {
 
-constexpr double kFirst = 1.3;
-constexpr int kFirstWithoutGravity = 32;
-
-}  // namespace
-
-int first_steps(const Scene& scene) {
-  const double g = scene.gravity.norm();
-  const double steps =
-      g > 0 ? kFirst * std::sqrt(extent(scene) / g) / scene.dt : kFirstWithoutGravity;
-  return static_cast<int>(std::lround(std::min<double>(steps, scene.steps)));
-}
-
-std::string first_time_text() {
-  const double square_metre = kFirst * std::sqrt(std::numbers::sqrt2 / 9.81);
-  return "T = " + as_typed(kFirst) + " sqrt(size/g), " +
-         as_typed(std::round(10 * square_metre) / 10) + " s for a square metre";
-}
-
+/// Mean displacement [m] of the pins until time t, which carries the cloth along.
 Vec3 way_of_pins(const Scene& scene, double t) {
   Vec3 sum = Vec3::Zero();
   for (const int pin : scene.pins)
@@ -36,6 +14,7 @@ Vec3 way_of_pins(const Scene& scene, double t) {
   return sum / static_cast<double>(scene.pins.size());
 }
 
+/// Mean over vertices, weighted by their masses.
 Vec3 weighted_mean(const Scene& scene, const std::vector<Vec3>& all) {
   Vec3 sum = Vec3::Zero();
   double mass = 0;
@@ -45,6 +24,8 @@ Vec3 weighted_mean(const Scene& scene, const std::vector<Vec3>& all) {
   }
   return sum / mass;
 }
+
+}  // namespace
 
 void keep_own_way(const Scene& scene, double t, std::vector<Vec3>& ways) {
   const Vec3 common = scene.pins.empty() ? weighted_mean(scene, ways) : way_of_pins(scene, t);

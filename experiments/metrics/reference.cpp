@@ -25,16 +25,10 @@ class Distance final : public Metric {
       {"reference.max", kErrorLength,
        "largest distance of a free vertex from the static reference, in the last second", true,
        Window::last_second, "largest distance from the reference"},
-      {"reference.motion", kErrorLength,
-       "distance of the free vertices from the dynamic reference, RMS over vertices, at its first "
-       "moment",
-       false, Window::end, "distance from the reference in motion (RMS)"},
       {"reference.floor", kLength, "the static reference's own error, by self-convergence", false,
        Window::none},
       {"reference.strain", kShare,
        "largest strain |d - r|/r of a structural or shear link in the static reference itself",
-       false, Window::none},
-      {"reference.motion_floor", kLength, "the dynamic reference's own error, by self-convergence",
        false, Window::none},
       {.name = "motion.share",
        .unit = kSignedShare,
@@ -42,22 +36,42 @@ class Distance final : public Metric {
            "share of the reference's motion that the cloth makes: sum of (cloth's move . "
            "reference's move) over the sum of the reference's squared, over the free vertices' "
            "moves from each moment of the dynamic reference to the next. 0 if the cloth stands "
-           "still; no value if the reference hardly moves, less than " +
-           percent(ReferencePath::kLeastWay) + " of the cloth's size"),
+           "still; no value where motion.error has none"),
        .window = Window::none,
        .title = "share of the way travelled",
        .role = Role::motion},
       {.name = kMotionError,
        .unit = kErrorShare,
-       .help = "distance of the free vertices from the dynamic reference at its moments, RMS, over "
-               "the reference's distance from the start; 1 if the cloth stands still",
+       .help = lasting(
+           "distance of the free vertices from the dynamic reference, RMS over its moments and "
+           "over the vertices by mass, relative to that of a cloth that stands still (it goes "
+           "where its pins go or, without pins, falls): 0 for the reference, 1 for such a cloth. "
+           "No value if the reference hardly moves, less than " +
+           percent(ReferencePath::kLeastWay) + " of the cloth's size"),
        .window = Window::none,
-       .title = "distance from the reference in motion, per way"},
+       .title = "distance from the reference in motion, per way",
+       .role = Role::motion_error,
+       .negligible = 1e-2,
+       .floor = {"motion.floor", "how far references that should agree differ"}},
+      {.name = kMotionFloor,
+       .unit = kShare,
+       .help = "largest motion.error of one reference beside another that should agree with it: "
+               "shorter steps, a start that differs by 1e-6 of the cloth's size, another program",
+       .window = Window::none},
+      {.name = kMotionStrain,
+       .unit = kShare,
+       .help =
+           "stretch.rms of the dynamic reference itself, over its moments in the last second of "
+           "the run; about 0 where the links are rigid",
+       .window = Window::none},
       {.name = "motion.phase",
        .unit = kTime,
-       .help = "time shift that brings the cloth nearest to the dynamic reference at its moments; "
-               "positive if the cloth is late; at most the time of the first moment, over the "
-               "moments at least that long before the end of the run",
+       .help =
+           lasting("time shift that brings the cloth nearest to the dynamic reference; positive "
+                   "if the cloth is late; at most " +
+                   percent(ReferencePath::kLongestShift) +
+                   " of the horizon, over the moments that are at least that far from its ends. No "
+                   "value if the cloth makes less than half of the motion"),
        .window = Window::none,
        .title = "phase behind the reference in motion"},
       {.name = "motion.horizon",
@@ -68,10 +82,8 @@ class Distance final : public Metric {
        .title = "horizon of the reference in motion"},
   };
   Distance(const Scene& scene, References known)
-      : free_(free_vertices(scene)),
-        known_(std::move(known)),
-        path_(scene, known_.motion),
-        end_(scene) {
+      : free_(free_vertices(scene)), known_(std::move(known)), end_(scene) {
+    if (known_.motion) path_.emplace(scene, std::move(*known_.motion));
     if (!known_.rest) return;
     strain_ = 0;
     for (const Link& link : scene.links)
@@ -87,21 +99,19 @@ class Distance final : public Metric {
       rms_.add(m.step, true, gap.mean_square);
       max_.add(m.step, true, gap.max);
     }
-    if (!known_.motion.empty() && std::abs(m.t - known_.motion[0].t) < 1e-6)
-      at_moment_ = std::sqrt(from(known_.motion[0], m.state).mean_square);
-    path_.observe(m);
+    if (path_) path_->observe(m);
   }
   std::vector<double> finish() override {
     return {std::sqrt(rms_.mean()),
             max_.max(),
-            at_moment_,
             known_.rest ? known_.rest->floor : Summary::kNone,
             strain_,
-            known_.motion.empty() ? Summary::kNone : known_.motion[0].floor,
-            path_.share(),
-            path_.error(),
-            path_.phase(),
-            path_.horizon()};
+            of_path(&ReferencePath::share),
+            of_path(&ReferencePath::error),
+            of_path(&ReferencePath::floor),
+            of_path(&ReferencePath::strain),
+            of_path(&ReferencePath::phase),
+            of_path(&ReferencePath::horizon)};
   }
   std::vector<double> now(const Snapshot& m) const override {
     std::vector<double> values(std::size(kValues), Summary::kNone);
@@ -125,13 +135,15 @@ class Distance final : public Metric {
     }
     return gap;
   }
+  double of_path(double (ReferencePath::*value)() const) const {
+    return path_ ? (*path_.*value)() : Summary::kNone;
+  }
   std::vector<std::size_t> free_;
   References known_;
-  ReferencePath path_;
+  std::optional<ReferencePath> path_;
   LastSecond end_;
   Summary rms_, max_;
   double strain_ = Summary::kNone;
-  double at_moment_ = Summary::kNone;
 };
 
 }  // namespace
@@ -140,11 +152,11 @@ class Distance final : public Metric {
 template <>
 std::unique_ptr<Metric> make_metric<Distance>(const Scene& scene) {
   References known = known_references(scene);
-  if (!known.rest && known.motion.empty()) return nullptr;
+  if (!known.rest && !known.motion) return nullptr;
   return std::make_unique<Distance>(scene, std::move(known));
 }
 
 TAUT_METRIC(reference, Distance, "How far the cloth is from where it should be",
-            "core/reference: static equilibrium; SHAKE");
+            "core/reference: static equilibrium; SHAKE; springs in explicit steps");
 
 }  // namespace taut

@@ -2,108 +2,151 @@
 
 #include <array>
 
+#include "core/model/index.hpp"
+#include "experiments/metrics/own_way.hpp"
+
 namespace taut {
 
-ReferencePath::ReferencePath(const Scene& scene, std::vector<Reference> moments)
-    : free_(free_vertices(scene)), dt_(scene.dt), extent_(extent(scene)) {
-  if (!moments.empty()) longest_shift_ = moments.front().t;
-  for (Reference& reference : moments) {
-    const bool timed = reference.t + longest_shift_ <= scene.duration() + 1e-6;
-    moments_.push_back({std::move(reference), timed, {}, {}});
-  }
+std::vector<Vec3> MotionReference::at(double t) const {
+  const double steps = std::clamp(t / interval(), 0.0, static_cast<double>(states.size() - 1));
+  const std::size_t k = std::min(static_cast<std::size_t>(steps), states.size() - 2);
+  const double s = steps - static_cast<double>(k), left = 1 - s;
+  const State &a = states[k], &b = states[k + 1];
+  if (s == 0) return a.x;
+  if (left == 0) return b.x;
+  // Hermite's cubic
+  const double of_a = left * left * (1 + 2 * s), of_b = s * s * (1 + 2 * left);
+  const double of_va = s * left * left * interval(), of_vb = -s * s * left * interval();
+  std::vector<Vec3> x(a.x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = of_a * a.x[i] + of_b * b.x[i] + of_va * a.v[i] + of_vb * b.v[i];
+  return x;
 }
+
+ReferencePath::ReferencePath(const Scene& scene, MotionReference reference)
+    : scene_(scene), free_(free_vertices(scene)), reference_(std::move(reference)) {}
 
 void ReferencePath::observe(const Snapshot& m) {
-  const std::vector<Vec3>& x = m.state.x;
-  if (m.step == 0) start_ = last_ = left_ = reference_left_ = x;
-  for (; next_ < moments_.size() && moments_[next_].reference.t <= m.t + 1e-6; ++next_) {
-    const double back = std::max(0.0, (m.t - moments_[next_].reference.t) / dt_);
-    std::vector<Vec3> between = x;
-    for (std::size_t i = 0; i < x.size(); ++i) between[i] += back * (last_[i] - x[i]);
-    reach(moments_[next_], between);
+  const double half = scene_.dt / 2, last = reference_.horizon;
+  for (; next_ < reference_.states.size(); ++next_) {
+    const double t = static_cast<double>(next_) * reference_.interval();
+    const bool nearest = m.t > t - half - 1e-9, beyond = m.t + scene_.dt > last + 1e-9;
+    if (!nearest && !(beyond && m.t > 0 && m.t <= last + 1e-9)) return;
+    if (m.t > last + 1e-9) return;
+    if (m.step > 0) moments_.push_back({m.t, m.state.x});
   }
-  for (Moment& moment : moments_)
-    if (moment.timed && m.t < moment.reference.t + longest_shift_ + 2 * dt_) measure(moment, x);
-  last_ = x;
 }
 
-void ReferencePath::reach(const Moment& moment, const std::vector<Vec3>& x) {
-  const std::vector<Vec3>& r = moment.reference.x;
-  for (const std::size_t i : free_) {
-    const Vec3 way = r[i] - reference_left_[i];
-    along_ += way.dot(x[i] - left_[i]);
-    way_ += way.squaredNorm();
-    apart_ += (x[i] - r[i]).squaredNorm();
-    from_start_ += (r[i] - start_[i]).squaredNorm();
-  }
-  left_ = x;
-  reference_left_ = r;
+std::vector<Vec3> ReferencePath::still(double t, const std::vector<Vec3>& reference) const {
+  std::vector<Vec3> ways(reference.size());
+  for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = reference[i] - scene_.start.x[i];
+  std::vector<Vec3> own = ways;
+  keep_own_way(scene_, t, own);
+  for (std::size_t i = 0; i < ways.size(); ++i) ways[i] -= own[i];
+  return ways;
 }
 
-void ReferencePath::measure(Moment& moment, const std::vector<Vec3>& x) const {
-  double square = 0, beside = 0;
-  for (const std::size_t i : free_) {
-    const Vec3 apart = x[i] - moment.reference.x[i];
-    square += apart.squaredNorm();
-    beside += apart.dot(last_[i] - moment.reference.x[i]);
+ReferencePath::Sums ReferencePath::sums() const {
+  if (sums_) return *sums_;
+  Sums sums;
+  const std::vector<Vec3>*before = &scene_.start.x, *reference_before = &scene_.start.x;
+  std::vector<std::vector<Vec3>> references;
+  references.reserve(moments_.size());
+  for (const Moment& moment : moments_) {
+    const std::vector<Vec3>& r = references.emplace_back(reference_.at(moment.t));
+    const std::vector<Vec3> common = still(moment.t, r);
+    for (const std::size_t i : free_) {
+      const double m = scene_.mesh.mass[i];
+      const Vec3 way = r[i] - (*reference_before)[i];
+      sums.along += m * way.dot(moment.x[i] - (*before)[i]);
+      sums.way += m * way.squaredNorm();
+      sums.apart += m * (moment.x[i] - r[i]).squaredNorm();
+      sums.from_still += m * (r[i] - scene_.start.x[i] - common[i]).squaredNorm();
+    }
+    before = &moment.x;
+    reference_before = &r;
   }
-  moment.square.push_back(square);
-  moment.beside.push_back(beside);
+  sums_ = sums;
+  return sums;
 }
 
 bool ReferencePath::moves() const {
-  const double count = static_cast<double>(next_) * static_cast<double>(free_.size());
-  return count > 0 && std::sqrt(from_start_ / count) >= kLeastWay * extent_;
+  double mass = 0;
+  for (const std::size_t i : free_) mass += scene_.mesh.mass[i];
+  const double all = mass * static_cast<double>(moments_.size());
+  return all > 0 && std::sqrt(sums().from_still / all) >= kLeastWay * extent(scene_);
 }
-double ReferencePath::horizon() const {
-  return moves() ? moments_[next_ - 1].reference.t : Summary::kNone;
-}
-double ReferencePath::share() const { return moves() ? along_ / way_ : Summary::kNone; }
+double ReferencePath::horizon() const { return moves() ? moments_.back().t : Summary::kNone; }
+double ReferencePath::share() const { return moves() ? sums().along / sums().way : Summary::kNone; }
 double ReferencePath::error() const {
-  return moves() ? std::sqrt(apart_ / from_start_) : Summary::kNone;
+  return moves() ? std::sqrt(sums().apart / sums().from_still) : Summary::kNone;
 }
 
-/// Sum of squares for a time shift. On a straight piece of the path the square is a parabola in
-/// time.
+/// RMS strain of structural and shear links, as stretch.rms has it at one moment.
+static double rms_strain(const Scene& scene, const std::vector<Vec3>& x) {
+  double square = 0;
+  int count = 0;
+  for (const Link& link : scene.links) {
+    if (link.family == Family::bend || is_seam(link)) continue;
+    square += std::pow((x[to_index(link.b)] - x[to_index(link.a)]).norm() / link.rest - 1, 2);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(square / count) : Summary::kNone;
+}
+
+double ReferencePath::strain() const {
+  const double end = scene_.duration();
+  double square = 0;
+  int count = 0;
+  for (std::size_t k = 1; k < reference_.states.size(); ++k) {
+    const double t = static_cast<double>(k) * reference_.interval();
+    if (t <= end - 1 || t > end + 1e-9) continue;
+    const double rms = rms_strain(scene_, reference_.states[k].x);
+    square += rms * rms;
+    ++count;
+  }
+  return count > 0 && moves() ? std::sqrt(square / count) : Summary::kNone;
+}
+
+/// Mean of the squares for a time shift, over the moments that stay within the reference.
 double ReferencePath::square_of(double shift) const {
   double sum = 0;
+  int count = 0;
   for (const Moment& moment : moments_) {
-    if (!moment.timed) continue;
-    const double steps = std::max(0.0, (moment.reference.t + shift) / dt_);
-    const std::size_t n = std::min(static_cast<std::size_t>(steps), moment.square.size() - 2);
-    const double b = steps - static_cast<double>(n), a = 1 - b;
-    sum +=
-        a * a * moment.square[n] + 2 * a * b * moment.beside[n + 1] + b * b * moment.square[n + 1];
+    const double t = moment.t - shift, most = kLongestShift * reference_.horizon;
+    if (moment.t < most || moment.t > reference_.horizon - most) continue;
+    const std::vector<Vec3> r = reference_.at(t);
+    for (const std::size_t i : free_)
+      sum += scene_.mesh.mass[i] * (moment.x[i] - r[i]).squaredNorm();
+    ++count;
   }
-  return sum;
+  return count > 0 ? sum / count : Summary::kNone;
 }
 
 double ReferencePath::phase() const {
-  std::vector<double> kinks{-longest_shift_, longest_shift_};
-  for (const Moment& moment : moments_)
-    for (std::size_t n = 0; moment.timed && n < moment.square.size(); ++n)
-      kinks.push_back(static_cast<double>(n) * dt_ - moment.reference.t);
-  if (kinks.size() == 2 || !moves()) return Summary::kNone;
-  std::erase_if(kinks, [&](double s) { return std::abs(s) > longest_shift_; });
-  std::ranges::sort(kinks);
-  double best = 0, least = square_of(0), most = least;
+  if (!moves() || next_ < reference_.states.size()) return Summary::kNone;
+  if (!(share() >= 0.5)) return Summary::kNone;  // what hardly moves is not late
+  constexpr int kShifts = 8;                     // on each side
+  const double most = kLongestShift * reference_.horizon;
+  double width = most / kShifts, best = 0, least = square_of(0), largest = least;
   const auto look = [&](double shift) {
+    if (std::abs(shift) > most) return;
     const double square = square_of(shift);
-    if (square < least) {
-      best = shift;
-      least = square;
-    }
-    most = std::max(most, square);
+    largest = std::max(largest, square);
+    if (!(square < least)) return;
+    best = shift;
+    least = square;
   };
-  for (std::size_t k = 0; k + 1 < kinks.size(); ++k) {
-    const double from = kinks[k], half = (kinks[k + 1] - from) / 2;
-    const std::array y{square_of(from), square_of(from + half), square_of(from + 2 * half)};
-    const double bend = y[0] - 2 * y[1] + y[2], at = bend > 0 ? (y[0] - y[2]) / (2 * bend) : 2;
-    look(from);
-    look(from + 2 * half);
-    if (std::abs(at) < 1) look(from + (1 + at) * half);
+  for (int k = -kShifts; k <= kShifts; ++k) look(k * width);
+  for (int halved = 0; halved < 3; ++halved) {  // the least of the parabola through three shifts
+    const double before = best == -most ? best : best - width,
+                 after = best == most ? best : best + width;
+    const std::array y{square_of(before), least, square_of(after)};
+    const double bend = y[0] - 2 * y[1] + y[2];
+    if (before < best && after > best && bend > 0) look(best + width * (y[0] - y[2]) / (2 * bend));
+    width /= 4;
   }
-  return most - least > 1e-9 * most ? best : Summary::kNone;
+  return largest - least > 1e-9 * largest ? best : Summary::kNone;
 }
 
 }  // namespace taut

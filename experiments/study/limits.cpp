@@ -76,7 +76,6 @@ std::vector<Limit> default_limits(const Scene& scene) {
       if (depth || value.role == Role::passages ||
           (value.kept && value.unit.kind == Unit::Kind::count))
         all.push_back({std::string(value.name), depth ? kMostDepth * extent(scene) : 0});
-      if (value.name == kMotionError) all.push_back({std::string(value.name), kMostMotionError});
       if (value.role == Role::error) all.push_back({std::string(value.name), kMostStretch});
     }
   }

@@ -26,14 +26,11 @@ Limit parse_limit(const std::string&, const Scene&);
 inline constexpr double kMostStretch = 0.1;
 /// Largest accepted depth of a vertex, as a share of the cloth's extent.
 inline constexpr double kMostDepth = 1e-3;
-/// Largest accepted motion error, as a share of the way in the dynamic reference.
-inline constexpr double kMostMotionError = 0.25;
 
 /// Limits that apply unless others are requested, for the values that the scene has:
 ///   - no passage of a vertex and no crossing;
 ///   - depths of vertices of at most kMostDepth of the cloth's extent;
-///   - an RMS stretch of at most kMostStretch;
-///   - a motion error of at most kMostMotionError, since cloth that stands still has little strain.
+///   - an RMS stretch of at most kMostStretch.
 /// Passages of edges and faces are accepted: at the edge of a box they happen to every solver that
 /// keeps only vertices outside (`--keep edge.passages:0` forbids them).
 std::vector<Limit> default_limits(const Scene&);

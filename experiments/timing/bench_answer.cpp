@@ -31,15 +31,22 @@ Table controls_of(const StudyBench& bench, double tolerance) {
   return table;
 }
 
+std::string metric_of(const SceneBench& scene, const BenchReport& report) {
+  return report.metric.empty() ? scene.deciding_metric() : report.metric;
+}
+
 /// A table of the cheapest solver for each error and the most accurate one for each budget.
 Table recommended_of(const StudyBench& bench, const BenchReport& report) {
-  std::vector<Target> targets;
-  for (const double level : report.levels) targets.push_back({level, {}});
-  for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
-  Table table = recommendations(report.metric);
-  for (const SceneBench& scene : bench.scenes)
+  Table table = recommendations(report.metric.empty() ? kVerdict : report.metric);
+  for (const SceneBench& scene : bench.scenes) {
+    const std::string metric = metric_of(scene, report);
+    std::vector<Target> targets;
+    for (const double level : report.levels.empty() ? levels_of(metric) : report.levels)
+      targets.push_back({level, {}});
+    for (const double budget : kFrameBudgets) targets.push_back({{}, budget / kFrame});
     for (const Target& target : targets)
-      add(table, recommend(scene, target, report.metric, report.tolerance), scene, report.metric);
+      add(table, recommend(scene, target, metric, report.tolerance), scene, metric);
+  }
   return table;
 }
 
@@ -54,12 +61,14 @@ Table cases_of(const StudyBench& bench, const BenchReport& report) {
                {"cpu", "CPU time a step", kMilliseconds},
                {"wall", "wall time", kMilliseconds},
                {"peak_bytes", "process", kMegabytes},
-               {"error", report.metric, unit_of_value(report.metric)},
+               {"error", report.metric.empty() ? "error" : report.metric,
+                unit_of_value(report.metric.empty() ? kVerdict : report.metric)},
                {"status"},
                {"times", "times the first"},
                {"verdict"},
                {"remark"}}};
   for (const SceneBench& scene : bench.scenes) {
+    const std::string metric = metric_of(scene, report);
     const auto timed = [](const BenchedCase& c) { return c.timing.failure.empty(); };
     const auto first =
         static_cast<std::size_t>(std::ranges::find_if(scene.cases, timed) - scene.cases.begin());
@@ -75,7 +84,7 @@ Table cases_of(const StudyBench& bench, const BenchReport& report) {
       }
       const auto times = i > first ? scene.ratio(i, first) : std::nullopt;
       table.rows.push_back(
-          {scene.scene, id, record.solver, cost, cpu, wall, bytes, record.value(report.metric),
+          {scene.scene, id, record.solver, cost, cpu, wall, bytes, error_of(record, metric),
            cell_of(record.status.kind), times,
            times ? verdict(*times, scene.control, report.tolerance) : "",
            timing.failure.empty() ? timing.remark : "not timed: " + timing.failure});

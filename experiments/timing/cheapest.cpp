@@ -35,8 +35,10 @@ Cheapest cheapest_of(std::vector<Cost> costs, const RatioOf& ratio, const Interv
   return found;
 }
 
-JudgedScene::JudgedScene(SceneBench scene, const std::string& metric)
-    : bench(std::move(scene)), candidates(bench.candidates(metric)) {}
+JudgedScene::JudgedScene(SceneBench scene, const std::string& by)
+    : bench(std::move(scene)),
+      metric(by.empty() ? bench.deciding_metric() : by),
+      candidates(bench.candidates(metric)) {}
 
 bool JudgedScene::has(const std::string& solver) const {
   return std::ranges::find(candidates, solver, &Candidate::solver) != candidates.end();
@@ -54,14 +56,8 @@ std::vector<std::size_t> JudgedScene::best_of_each(const Target& target) const {
   return all;
 }
 
-std::optional<std::size_t> JudgedScene::uncounted(const std::string& solver, double error) const {
-  std::optional<std::size_t> cheapest;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& one = candidates[i];
-    if (one.solver != solver || !one.is_uncounted() || !(one.error <= error)) continue;
-    if (!cheapest || one.cost.mid < candidates[*cheapest].cost.mid) cheapest = i;
-  }
-  return cheapest;
+Cell JudgedScene::why_not(const Target& target, const std::string& solver) const {
+  return taut::why_not(target, candidates, metric, solver);
 }
 
 bool JudgedScene::is_upper_bound(std::size_t at) const {

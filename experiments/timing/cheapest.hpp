@@ -49,16 +49,18 @@ Cheapest cheapest_of(std::vector<Cost>, const RatioOf&, const Interval& control,
 /// of their intervals takes a bootstrap.
 struct JudgedScene {
   SceneBench bench;
-  std::vector<Candidate> candidates;  ///< of its cases, in their order
+  std::string metric;
+  std::vector<Candidate> candidates;  ///< of its cases, in their order, judged by the metric
 
-  JudgedScene(SceneBench, const std::string& metric);
+  /// "": the metric that decides on the scene.
+  explicit JudgedScene(SceneBench, const std::string& metric = "");
   bool has(const std::string& solver) const;
   /// The case of the solver ("" = any) that serves the target best; nothing: none meets it.
   std::optional<std::size_t> best(const Target&, const std::string& solver = "") const;
   /// The same of each solver that meets it, in order of appearance.
   std::vector<std::size_t> best_of_each(const Target&) const;
-  /// The cheapest of the solver's settings that reach the error and do not count.
-  std::optional<std::size_t> uncounted(const std::string& solver, double error) const;
+  /// Why no setting of the solver ("" = any) serves the target (taut::why_not()).
+  Cell why_not(const Target&, const std::string& solver = "") const;
   /// Whether the case's cost is only an upper bound: no cheaper setting of the same solver was
   /// tried, though there is one (the case does more than one sweep in one substep).
   bool is_upper_bound(std::size_t at) const;

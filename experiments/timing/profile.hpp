@@ -22,12 +22,10 @@ struct PerformanceProfile {
   double share(double factor) const;
 };
 
-/// Profiles over all scenes and the error levels of a metric, in order of appearance. Every solver
-/// gets the same number of settings on a scene, that of the solver with the fewest, spread over
-/// those that were timed, so that more attempts are no advantage. Problems that no solver solves
-/// are left out.
+/// Profiles over all scenes and the error levels of a metric, in order of appearance, from all
+/// settings that were timed. Problems that no solver solves are left out.
 std::vector<PerformanceProfile> performance_profiles(const std::vector<SceneBench>&,
                                                      const std::string& metric,
-                                                     std::span<const double> levels = kErrorLevels);
+                                                     std::span<const double> levels);
 
 }  // namespace taut

@@ -22,12 +22,6 @@ std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates, const
   return order;
 }
 
-std::string line(const BenchedCase& c, const std::string& metric, double fps) {
-  return parse_solver(c.record.spec.solver).brief() + ", " + metric + " " +
-         number_text(c.record.value(metric), unit_of_value(metric)) + ", " +
-         text(c.cost(), Column("cost", "", frame_cost(fps)));
-}
-
 }  // namespace
 
 std::string verdict(const Recommendation& recommendation, const SceneBench& bench) {
@@ -47,15 +41,12 @@ std::string verdict(const Recommendation& recommendation, const SceneBench& benc
 }
 
 std::string nearest(const SolverRecommendation& solver, const SceneBench& bench,
-                    const Recommendation& recommendation, const std::string& metric, double fps) {
-  constexpr double kAny = std::numeric_limits<double>::max();
-  const Target any = recommendation.target.error ? Target{{}, kAny} : Target{kAny, {}};
-  const auto at = best_for(any, bench.candidates(metric), solver.solver);
+                    const Recommendation& recommendation, const std::string& metric) {
   const std::string missed = bench.searched_to_the_end(solver.solver)
                                  ? "never, to the end of its accuracy parameters"
                                  : "not by the settings tried";
-  return missed +
-         (at ? "; nearest: " + line(bench.cases[*at], metric, fps) : "; every case failed");
+  const Cell why = why_not(recommendation.target, bench.candidates(metric), metric, solver.solver);
+  return missed + (why.note.empty() ? "" : "; " + why.note);
 }
 
 std::vector<std::size_t> finalists(const std::vector<Candidate>& tried, const Target& target,
@@ -139,7 +130,7 @@ void add(Table& table, const Recommendation& recommendation, const SceneBench& b
     const BenchedCase& c = bench.cases[*solver.at];
     cells[3] = parse_solver(c.record.spec.solver).brief();
     cells[3].key = c.record.key;
-    cells[4] = c.record.value(metric);
+    cells[4] = error_of(c.record, metric);
     cells[5] = c.cost();
   };
   if (recommendation.best)

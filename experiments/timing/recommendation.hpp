@@ -44,7 +44,7 @@ std::string verdict(const Recommendation&, const SceneBench&);
 
 /// How near a solver came that missed the target, and whether it could have reached the target.
 std::string nearest(const SolverRecommendation&, const SceneBench&, const Recommendation&,
-                    const std::string& metric, double fps = 1 / kFrame);
+                    const std::string& metric);
 
 /// An empty table of recommendations. add() appends the rows of one: the best, then every other
 /// solver with its cost or how near it came.

@@ -56,16 +56,19 @@ Measured least(const Case& base, double error, Store& store, const ScalingOption
   const auto start = SteadyClock::now(), end = in_seconds(options.limit);
   const std::string name = searched(base.choice);
   std::optional<Record> last;
+  std::optional<std::vector<Limit>> limits;
   const auto with_value = [&](int n) {
     CaseSpec spec = base.spec;
     spec.solver = base.choice.with(name, std::to_string(n)).canonical();
     return make_case(spec);
   };
   const auto meets = [&](int n) -> std::optional<bool> {
-    const auto record = run_stored(with_value(n), store, {kLongestSeconds, kCaseMemory}, end);
+    const Case one = with_value(n);
+    const auto record = run_stored(one, store, {kLongestSeconds, kCaseMemory}, end);
     if (!record) return {};
     last = record;
-    return completed(record->status) && record->value(kErrorMetric) <= error;
+    if (!limits) limits = default_limits(*one.scene);
+    return Target{.error = error}.meets(judge(*record, deciding_metric({&*record}), limits));
   };
   int low = 0, high = 1;
   std::optional<bool> met;

@@ -12,8 +12,9 @@
 namespace taut {
 
 struct ScalingOptions {
-  /// RMS stretch for which each solver gets as many sweeps as it needs, or substeps if it has one
-  /// sweep in each; nothing: as many as the case has.
+  /// Error for which each solver gets as many sweeps as it needs, or substeps if it has one sweep
+  /// in each; nothing: as many as the case has. Of kVerdict or, at sizes without a reference, of
+  /// RMS stretch.
   std::optional<double> error;
   /// Longest time of a case in all [s], for physics, search and timing; longer cases are skipped.
   double limit = 20;

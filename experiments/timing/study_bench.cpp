@@ -17,14 +17,10 @@
 #include "experiments/system/distinct.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
-#include "experiments/timing/way.hpp"
 
 namespace taut {
 
 namespace {
-
-/// Reason why a case wins nothing if the limits of its scene were never determined.
-constexpr const char* kNobodyAsked = "the limits of its scene are unknown";
 
 /// Digest over everything that the file holds about a scene's bench.
 class DigestedBench {
@@ -112,53 +108,25 @@ void insert(Database& database, const StudyBench& study, const SceneBench& scene
 
 }  // namespace
 
-bool Target::meets(const Candidate& c) const {
-  if (!c.failure.empty() || std::isnan(c.error)) return false;
-  return error ? c.error <= *error : c.cost.mid <= *budget;
-}
+bool BenchedCase::stable() const { return not_timed().empty() && completed(record.status); }
 
-bool Target::prefers(const Candidate& a, const Candidate& b) const {
-  if (meets(a) != meets(b)) return meets(a);
-  const std::pair by_cost_a(a.cost.mid, a.error), by_cost_b(b.cost.mid, b.error);
-  const std::pair by_error_a(a.error, a.cost.mid), by_error_b(b.error, b.cost.mid);
-  return error ? by_cost_a < by_cost_b : by_error_a < by_error_b;
-}
-
-std::optional<std::size_t> best_for(const Target& target, std::span<const Candidate> candidates,
-                                    const std::string& solver) {
-  std::optional<std::size_t> best;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (target.meets(candidates[i]) && (solver.empty() || candidates[i].solver == solver) &&
-        (!best || target.prefers(candidates[i], candidates[*best])))
-      best = i;
-  return best;
-}
-
-bool BenchedCase::stable() const {
-  return timing.failure.empty() && !timing.samples.empty() && completed(record.status);
+std::string BenchedCase::not_timed() const {
+  return !timing.failure.empty() ? timing.failure : timing.samples.empty() ? "not timed" : "";
 }
 
 Interval BenchedCase::cost() const { return bootstrap_median(timing.samples) * (1 / record.dt); }
 
 std::vector<Candidate> SceneBench::candidates(const std::string& metric) const {
   std::vector<Candidate> all;
-  const ValueSpec* value = find_value(metric).second;
-  const bool of_strain = value && value->role == Role::error;
-  for (const BenchedCase& c : cases) {
-    Candidate& one = all.emplace_back(Candidate{.solver = c.record.solver,
-                                                .setting = c.record.spec.solver,
-                                                .cost = c.cost(),
-                                                .error = std::abs(c.record.value(metric)),
-                                                .failure = c.timing.failure});
-    if (one.failure.empty() && !c.stable()) one.failure = describe(c.record.status);
-    if (!one.failure.empty()) continue;
-    one.refusal = Candidate::Refusal::hardly_moves;
-    if (of_strain) one.failure = hardly_moves(c.record);
-    if (!one.failure.empty()) continue;
-    one.refusal = Candidate::Refusal::not_accepted;
-    one.failure = limits ? beyond(c.record, *limits) : kNobodyAsked;
-  }
+  for (const BenchedCase& c : cases)
+    all.push_back(judge(c.record, metric, limits, c.cost(), c.not_timed()));
   return all;
+}
+
+std::string SceneBench::deciding_metric() const {
+  std::vector<const Record*> records;
+  for (const BenchedCase& c : cases) records.push_back(&c.record);
+  return taut::deciding_metric(records);
 }
 
 std::optional<Interval> SceneBench::ratio(std::size_t i, std::size_t j) const {

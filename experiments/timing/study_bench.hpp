@@ -9,59 +9,16 @@
 #include "experiments/case/record.hpp"
 #include "experiments/results/store.hpp"
 #include "experiments/study/limits.hpp"
+#include "experiments/timing/judge.hpp"
 #include "experiments/timing/timing.hpp"
 
 namespace taut {
 
-/// One setting of one solver on one scene, with its cost and error.
-struct Candidate {
-  enum class Refusal {
-    failed,        ///< it did not run to its end, or could not be timed
-    hardly_moves,  ///< its strain is low because the cloth hardly moves
-    not_accepted   ///< it exceeds the limits of its scene
-  };
-  std::string solver;   ///< the entry's name
-  std::string setting;  ///< "jakobsen:substeps=16,iterations=1"
-  Interval cost;        ///< CPU seconds per simulated second
-  double error = 0;     ///< value of the chosen metric, >= 0; NaN if it has no meaning here
-  std::string failure;  ///< why it is refused, such as "exploded (energy)"; empty if it is not
-  Refusal refusal = Refusal::failed;  ///< the kind of `failure`
-
-  /// Whether it has a cost and an error that do not count.
-  bool is_uncounted() const { return !failure.empty() && refusal != Refusal::failed; }
-};
-
-/// The goal of a search: the cheapest setting within an error, or the most accurate one within a
-/// budget. Exactly one is set.
-struct Target {
-  std::optional<double> error;   ///< largest value of the metric, in SI
-  std::optional<double> budget;  ///< CPU seconds per simulated second
-
-  /// Whether the candidate meets the target; a failed one never does.
-  bool meets(const Candidate&) const;
-  /// Whether a serves the target better than b. One that meets it beats all that do not.
-  bool prefers(const Candidate& a, const Candidate& b) const;
-};
-
-/// Index of the candidate of `solver` ("" = any) that serves the target best; nothing if none meets
-/// it.
-std::optional<std::size_t> best_for(const Target&, std::span<const Candidate>,
-                                    const std::string& solver = "");
-
 /// Largest values that a search for a setting tries.
 inline constexpr int kMostSubsteps = 1024, kMostSweeps = 128;
 
-/// Defaults of a bench: the metric value that is the error, and the errors and budgets for which it
-/// answers.
+/// The strain that is drawn over sweeps and over builds.
 inline constexpr const char* kErrorMetric = "stretch.rms";
-inline constexpr double kErrorLevels[] = {0.1, 0.03, 0.01, 0.003, 0.001};
-inline constexpr double kFrame = 1.0 / 60;  ///< s; budgets are CPU time per such frame
-/// Unit in which people see CPU seconds per simulated second: ms per frame, at `fps` frames a
-/// second.
-constexpr Unit frame_cost(double fps) {
-  return {Unit::Kind::other, "s/s", "ms a frame", 1e3 / fps};
-}
-inline constexpr Unit kFrameCost = frame_cost(1 / kFrame);
 inline constexpr double kFrameBudgets[] = {0.1e-3, 0.5e-3, 1e-3, 4e-3, 16e-3};  ///< s per frame
 
 /// Names of costs, as those of metrics' values: CPU time of all threads per simulated second and
@@ -78,6 +35,8 @@ struct BenchedCase {
   Interval cost() const;
   /// Whether cost and errors count: no failure, no explosion, and at least one sample.
   bool stable() const;
+  /// Why there is no cost; "" if there is.
+  std::string not_timed() const;
 };
 
 /// The largest value of an accuracy parameter that was tried, and the last one that a search would
@@ -97,9 +56,10 @@ struct SceneBench {
   /// Limits of the scene; nothing if they were not determined, so that no case can win anything.
   std::optional<std::vector<Limit>> limits = {};
 
-  /// The cases in the same order, with their error in the metric's value. Cases beyond the limits
-  /// are refused (Candidate::Refusal::not_accepted).
+  /// The cases in the same order, judged by this metric.
   std::vector<Candidate> candidates(const std::string& metric) const;
+  /// The metric that decides here (taut::deciding_metric()).
+  std::string deciding_metric() const;
   /// Cost per simulated second of case i relative to case j, from their interleaved samples.
   /// Nothing if either failed or they were not timed in turns.
   std::optional<Interval> ratio(std::size_t i, std::size_t j) const;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/io/positions/positions.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/digest.hpp"
@@ -242,48 +243,78 @@ TEST(CsvText, OfSeriesAndStatesAreTheseLines) {
             "vertex,x,y,z,vx,vy,vz\n0,1,2,3,4,5,6\n1,0.5,0,-1,0,0,7\n");
 }
 
+MotionReference motion_of(const Scene& scene, const std::string& derivation) {
+  MotionReference motion{scene.name, reference_digest(scene, "motion"), derivation, 2, 0.001, 0.95};
+  for (int k = 0; k <= 4; ++k) {
+    State state = scene.start;
+    for (Vec3& x : state.x) x.y() -= 0.25 * k;
+    for (Vec3& v : state.v) v.y() = -0.125 * k;
+    motion.states.push_back(state);
+  }
+  return motion;
+}
+
 TEST(ReferenceFiles, AreFoundByKindForExactlyTheirCloth) {
   const Scratch scratch;
   Scene scene = hanging_sheet(2, 2);
   scene.name = "small";
   scene.damping = 0.5;
-  const auto reference = [&](const std::string& kind, double t) {
-    return Reference{"small",      reference_digest(scene, kind), kind, t, "by hand", 1e-9,
-                     scene.start.x};
+  const auto write_rest = [&] {
+    write_reference({"small", reference_digest(scene, "static"), "by hand", 1e-9, scene.start.x},
+                    scratch.path() / "small");
   };
-  write_reference(reference("static", 0), scratch.path() / "small");
-  for (const double t : {1.5, 0.5, 10.0})
-    write_reference(reference("motion", t), scratch.path() / "small");
+  write_rest();
+  write_motion(motion_of(scene, "by hand"), scratch.path() / "small");
   write_file(scratch.path() / "small" / "notes.txt", "not read");
-  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "small" / "static.json"));
-  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "small" / "motion-0.5s.json"));
+  for (const char* file : {"static.json", "motion.json", "motion.npy"})
+    EXPECT_TRUE(std::filesystem::exists(scratch.path() / "small" / file)) << file;
   const auto found = [&] { return find_references(scene, scratch.path()); };
   ASSERT_TRUE(found().rest);
-  ASSERT_EQ(found().motion.size(), 3u);
-  EXPECT_EQ(found().rest->kind, "static");
-  EXPECT_TRUE(std::ranges::is_sorted(found().motion, {}, &Reference::t));
-  EXPECT_EQ(found().motion[0].t, 0.5);
-  EXPECT_EQ(found().motion[0].derivation, "by hand");
+  const auto motion = found().motion;
+  ASSERT_TRUE(motion);
+  EXPECT_EQ(motion->derivation, "by hand");
+  EXPECT_EQ(motion->horizon, 2);
+  EXPECT_EQ(motion->floor, 0.001);
+  EXPECT_EQ(motion->pushed_out, 0.95);
+  ASSERT_EQ(motion->states.size(), 5u);
+  EXPECT_EQ(motion->states[4].x[3].y(), static_cast<float>(scene.start.x[3].y() - 1));
+  EXPECT_EQ(motion->states[3].v[3].y(), -0.375);
   scene.start.v[3].x() = 1;
-  EXPECT_TRUE(found().rest && found().motion.empty())
-      << "rest does not depend on where it came from";
+  EXPECT_TRUE(found().rest && !found().motion) << "rest does not depend on where it came from";
   scene.start.v[3].x() = 0;
   scene.damping = 1;
-  EXPECT_TRUE(found().rest && found().motion.empty());
+  EXPECT_TRUE(found().rest && !found().motion);
   scene.damping = 0.5;
   scene.dt /= 2;
   scene.steps *= 3;
-  EXPECT_TRUE(found().rest && !found().motion.empty());
+  EXPECT_TRUE(found().rest && found().motion);
   scene.gravity.x() = 1;
-  EXPECT_FALSE(found().rest || !found().motion.empty());
+  EXPECT_FALSE(found().rest || found().motion);
   scene.gravity.x() = 0;
   scene.mesh.mass[1] *= 2;  // another scene with the same name
-  write_reference(reference("static", 0), scratch.path() / "small");
+  write_rest();
   EXPECT_TRUE(found().rest);
   scene.mesh.mass[1] /= 2;
   EXPECT_TRUE(found().rest) << "its own was not replaced";
   scene.name = "";
-  EXPECT_FALSE(found().rest || !found().motion.empty());
+  EXPECT_FALSE(found().rest || found().motion);
+}
+
+TEST(ReferenceFiles, OfAMotionThatLacksFramesSaySo) {
+  const Scratch scratch;
+  Scene scene = hanging_sheet(2, 2);
+  scene.name = "small";
+  write_motion(motion_of(scene, "by hand"), scratch.path());
+  create_rounded_npy(scratch.path() / "motion.npy")->append(0, scene.start.x);
+  try {
+    read_motion(scratch.path() / "motion.json", scene.start);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what())
+                    .ends_with("motion.npy: expected 8 frames of 4 vertices: places, then "
+                               "velocities"))
+        << error.what();
+  }
 }
 
 // A task depends neither on the order of settings nor on a setting of time.dt: the record's step
@@ -317,10 +348,11 @@ TEST(ReferenceFiles, OnesOwnStandInForEachKindThatIsNotCommitted) {
       for (const std::string kind : {"static", "motion"}) {
         const auto folder = scratch.path() / (whose == "own" ? "own/references" : "references");
         make_folder(folder);
-        if (has & bit)
-          write_reference(
-              {"small", reference_digest(scene, kind), kind, 0.5, whose, 1e-9, scene.start.x},
-              folder / "small");
+        if (has & bit && kind == "motion")
+          write_motion(motion_of(scene, whose), folder / "small");
+        else if (has & bit)
+          write_reference({"small", reference_digest(scene, kind), whose, 1e-9, scene.start.x},
+                          folder / "small");
         bit *= 2;
       }
     const auto whose = [&](int committed, int mine) {
@@ -328,7 +360,7 @@ TEST(ReferenceFiles, OnesOwnStandInForEachKindThatIsNotCommitted) {
     };
     const References known = known_references(scene);
     EXPECT_EQ(known.rest ? known.rest->derivation : "", whose(1, 4)) << has;
-    EXPECT_EQ(known.motion.empty() ? "" : known.motion.front().derivation, whose(2, 8)) << has;
+    EXPECT_EQ(known.motion ? known.motion->derivation : "", whose(2, 8)) << has;
   }
 }
 

@@ -21,7 +21,7 @@ SWEPT = "set = ['time.duration=0.1']\naxes.'cloth.grid' = [[4, 4], [6, 6]]\n"
 ASKED = {
     "run": ["./study.toml"], "plot": ["./study.toml", "--kind", "convergence"], "report": ["./study.toml", "--no-media"],
     "export": ["./study.toml"], "new": ["study", "aN"], "case": ["./small.toml", "jakobsen"], "list": ["solvers"],
-    "plan": ["./small.toml", "bullet"], "reference": ["hang", "--replace", "-o", "references"],
+    "plan": ["./small.toml", "bullet"], "reference": ["./small.toml", "--replace", "-o", "references"],
     "render": ["./small.toml", "--solver", "jakobsen", "--quality", "draft", "--size", "320x240"],
     "require": ["./small.toml", "jakobsen", "--patience", "20"], "frontier": ["./small.toml", "jakobsen", "--tolerance", "0.5"],
     "converge": ["./small.toml", "--solver", "jakobsen", "--most", "8"], "advise": ADVICE[1:], "bench": ["./study.toml", *FEW],

@@ -156,7 +156,7 @@ class Installed(unittest.TestCase):
         call("dpkg-deb", "-x", packages["python3-taut"], root)
         said = call("/usr/bin/python3", "-c", "import taut; print(len(taut.scenes()), taut.simulate('hang', 'bullet', duration=0.5).status)",
                     cwd=self.folder, env={**os.environ, "PYTHONPATH": str(root / "usr/lib/python3/dist-packages")})
-        self.assertRegex(said, r"^[12]\d ok$")
+        self.assertRegex(said, r"^[2-4]\d ok$")
         self.assertLess(packages["python3-taut"].stat().st_size, 20e6, "without what debuggers read")
 
 

@@ -55,41 +55,44 @@ TEST(Path, APlateThinnerThanASubstepsTravelIsPassed) {
   EXPECT_EQ(outcome(scene, "jakobsen:contact=discrete,substeps=4").tunnelled, 289);
 }
 
-/// Displacement of the references at t [m]: along a line, at constant velocity.
-Vec3 way(double t) { return t * Vec3(0.3, -0.9, 0.4); }
+/// Displacement of the reference at t [m]: a polynomial of degree three, which Hermite's cubic is.
+Vec3 way(double t) { return t * Vec3(0.3, -0.9, 0.4) + t * t * (t - 3) * Vec3(0.1, 0.2, 0); }
+Vec3 speed(double t) { return Vec3(0.3, -0.9, 0.4) + (3 * t * t - 6 * t) * Vec3(0.1, 0.2, 0); }
 
-ReferencePath followed(double dt, const std::function<Vec3(double)>& way_at) {
-  Scene scene = sheet(3);
+ReferencePath followed(Scene& scene, double dt, const std::function<Vec3(double)>& way_at) {
   scene.dt = dt;
   scene.steps = static_cast<int>(std::ceil(2.6 / dt));
-  const auto moved = [&](const Vec3& by) {
-    std::vector<Vec3> x = scene.start.x;
-    for (Vec3& one : x) one += by;
-    return x;
+  scene.pins = {0};
+  const auto moved = [&](const Vec3& by, const Vec3& v) {
+    State state{scene.start.x, std::vector<Vec3>(scene.start.x.size(), v)};
+    for (Vec3& one : state.x) one += by;
+    return state;
   };
-  std::vector<Reference> moments;
-  for (const double t : {0.5, 1.0, 1.5, 2.0})
-    moments.push_back({"made up", "", "motion", t, "", 0, moved(way(t))});
-  ReferencePath path(scene, std::move(moments));
-  for (int step = 0; step <= scene.steps; ++step)
-    path.observe({step, step * dt, State{moved(way_at(step * dt)), scene.start.v}});
+  MotionReference reference{.derivation = "made up", .horizon = 2};
+  for (int k = 0; k <= 32; ++k) reference.states.push_back(moved(way(k / 16.0), speed(k / 16.0)));
+  ReferencePath path(scene, std::move(reference));
+  for (int step = 0; step <= scene.steps; ++step) {
+    const State state = moved(way_at(step * dt), Vec3::Zero());
+    path.observe({step, step * dt, state});
+  }
   return path;
 }
 
-// References are at moments that few time steps coincide with; on a straight line the time step
-// makes no difference.
-TEST(Path, ALineIsJudgedAtTheReferencesTimes) {
+// The run is compared at the ends of its own steps, few of which are moments of the reference.
+TEST(Path, AReferenceHasNoErrorBesideItselfInAnySteps) {
   for (const double dt : {1.0 / 64, 0.03, 0.07, 0.19, 0.3}) {
     for (const double faster : {0.5, 1.0, 1.5}) {
-      const ReferencePath path = followed(dt, [&](double t) { return Vec3(faster * way(t)); });
+      Scene scene = sheet(3);
+      const ReferencePath path =
+          followed(scene, dt, [&](double t) { return Vec3(faster * way(t)); });
       EXPECT_NEAR(path.share(), faster, 1e-12) << dt;
       EXPECT_NEAR(path.error(), std::abs(faster - 1), 1e-12) << dt;
-      EXPECT_EQ(path.horizon(), 2) << dt;
+      EXPECT_NEAR(path.horizon(), 2, dt) << dt;
+      EXPECT_LE(path.horizon(), 2 + 1e-12) << dt;
     }
-    const double late = 0.1;
-    const ReferencePath path = followed(dt, [&](double t) { return way(t - late); });
-    EXPECT_NEAR(path.phase(), late, 1e-7) << dt;
-    EXPECT_NEAR(path.error(), 2 * late / std::sqrt(0.36 + 1.21 + 2.56 + 4.41), 1e-12) << dt;
+    Scene scene = sheet(3);
+    EXPECT_NEAR(followed(scene, dt, [&](double t) { return way(t - 0.1); }).phase(), 0.1, 2e-3)
+        << dt;
   }
 }
 

@@ -97,7 +97,7 @@ TEST(Metrics, AreFoundByTheirValuesAndRolesInOrder) {
   EXPECT_FALSE(find_value("stretch.most").first);
   EXPECT_EQ(std::ranges::count(value_names(), "penetration.box.mean"), 1);
   const auto with_role = values_with_role();
-  EXPECT_EQ(with_role.size(), 9u);
+  EXPECT_EQ(with_role.size(), 11u);
   EXPECT_EQ(with_role.front()->name, "stretch.rms");
   EXPECT_EQ(with_role.back()->name, "slip.distance");
   EXPECT_TRUE(std::ranges::is_sorted(with_role, {}, &ValueSpec::role));

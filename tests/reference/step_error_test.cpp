@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/reference/exact_path.hpp"
 #include "core/reference/implicit_step.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/metrics/metric.hpp"
@@ -69,17 +68,6 @@ TEST(StepError, TellsAFrozenClothFromARightOne) {
   EXPECT_NEAR(of_frozen.distance / rms_of_free(scene, frozen, right), 1, 0.05);
   EXPECT_GT(of_frozen.distance, 5e-4);
   EXPECT_LT(error.of(scene.start, 0, scene.dt, right).distance, 1e-8);
-}
-
-/// Strain is not missed motion: a rod that is a tenth too long still hangs in its right direction.
-TEST(StepError, OfLinksAtTheirLengthsHasNothingOfTheirStrain) {
-  Scene scene = hanging_sheet(1, 2, {true, false, false});
-  scene.stiffness = {1e5, 1e5, 1e5};
-  std::vector<Vec3> x = scene.start.x;
-  x[1] = 1.1 * (x[1] - x[0]) + x[0];
-  reference::StepError error(scene, scene.stiffness);
-  EXPECT_GT(error.of(scene.start, 0, scene.dt, x).distance, 0.09);
-  EXPECT_LT(error.missed(scene.start, 0, scene.dt, x)[1].norm(), 1e-9);
 }
 
 TEST(StepError, OfRigidLinksIsTheDistanceFromTheNearest) {
@@ -212,7 +200,6 @@ TEST(StepError, OfPlacesThatAreNoNumbersIsNone) {
   std::vector<Vec3> x = scene.start.x;
   x[4].y() = std::nan("");
   EXPECT_FALSE(error.of(scene.start, 0, scene.dt, x).believed);
-  EXPECT_TRUE(error.missed(scene.start, 0, scene.dt, x).empty());
 }
 
 // Tests of the metric.
@@ -257,22 +244,12 @@ Scene swinging() {
   return scene;
 }
 
-/// The same scene without a path of exact steps, so that the estimate uses missed steps.
-Scene swinging_in_still_air() {
-  Scene scene = swinging();
-  scene.wind.emplace();
-  scene.wind->velocity.setZero();
-  scene.wind->strength = 0;
-  return scene;
-}
-
 TEST(StepErrorMetric, IsZeroOfTheExactSolverAndOfEachOfItsSubsteps) {
-  const Scene scene = swinging_in_still_air();
+  const Scene scene = swinging();
   for (const char* solver : {"implicit", "implicit:substeps=4"}) {
     const Measured of = measured(scene, solver);
     EXPECT_LT(of.values.at("step.error.peak"), 1e-7) << solver;
     EXPECT_EQ(of.values.at("step.error.believed"), 1) << solver;
-    EXPECT_NEAR(of.values.at("step.share"), 1, 0.02) << solver;
     EXPECT_EQ(of.remark, "from one implicit Euler step of a substep");
   }
   EXPECT_GT(measured(scene, "pd:iterations=5,substeps=4").values.at("step.error"), 1e-6);
@@ -285,90 +262,6 @@ TEST(StepErrorMetric, StepsThatGrowHaveNoSum) {
   const Measured of = measured(*one.scene, "admm");
   EXPECT_EQ(of.values.at("step.error.believed"), 0.75);
   EXPECT_LT(of.values.at("step.error.peak"), 0.05);
-}
-
-TEST(StepErrorMetric, TellsWhoseStepsMissTheWay) {
-  const Scene scene = swinging_in_still_air();
-  const char* frozen = "pd:iterations=4,material=own,structural=1e6,shear=1e6";
-  EXPECT_LT(measured(scene, frozen).values.at("step.share"), 0.25);
-  EXPECT_GT(measured(scene, "xpbd:substeps=8").values.at("step.share"), 0.9);
-  EXPECT_TRUE(std::isnan(measured(swinging(), frozen).values.at("step.share")))
-      << "the exact path says it";
-}
-
-/// Slack cloth moves 2 cm and returns. The path of exact steps distinguishes a solver that lags,
-/// one that stands still, and one that falls as far as its stretched links allow, whatever the
-/// solver's own step is.
-TEST(Way, TellsWhoLagsFromWhoStandsStillAndWhoGoesTooFar) {
-  const Case one = make_case({"drape", {"cloth.span=0.7", "time.duration=0.6"}, "jakobsen"});
-  const auto share = [&](const std::string& solver) {
-    return measured(*one.scene, solver, "way.share").values.at("way.share");
-  };
-  EXPECT_NEAR(share("implicit:structural=1e5,shear=1e5"), 1, 1e-6);
-  EXPECT_NEAR(share("jakobsen:iterations=64,substeps=16,precision=double"), 1.08, 0.02);
-  EXPECT_NEAR(share("pd:iterations=1,substeps=5,structural=3000,shear=3000"), 0.754, 0.02);
-  EXPECT_LT(share("pd:iterations=1,structural=1e5,shear=1e5"), 0.1);
-  EXPECT_GT(share("jakobsen:iterations=1,substeps=10"), 2);
-  EXPECT_GT(share("bullet:iterations=1"), 2) << "which declares no step";
-  EXPECT_GT(share("mass-spring:structural=200,shear=200,substeps=64"), 2);
-}
-
-TEST(Way, IsTheSameAtTimeStepsThatTheExactPathJoins) {
-  const auto share = [](const char* dt) {
-    const Case one = make_case(
-        {"swing", {"cloth.grid=[9, 9]", "time.duration=0.6", std::string("time.dt=") + dt}, "pd"});
-    return measured(*one.scene, "jakobsen:iterations=1,substeps=8,precision=double", "way.share")
-        .values.at("way.share");
-  };
-  EXPECT_NEAR(share("0.015625"), 1, 0.03);
-  EXPECT_NEAR(share("0.001953125"), 1, 0.03);
-}
-
-TEST(ExactPath, IsThatOfTheExactSolver) {
-  const Scene scene = swinging();
-  const std::vector<std::vector<Vec3>> path = reference::exact_path(scene, {1, 8, 16});
-  ASSERT_EQ(path.size(), 3u);
-  EXPECT_LT(largest_distance(path[0], simulate(scene, "implicit", 1).x), 1e-8);
-  EXPECT_LT(largest_distance(path[2], simulate(scene, "implicit", 16).x), 1e-6);
-  Scene bent = scene;
-  bent.bending.emplace();
-  EXPECT_TRUE(reference::exact_path(bent, {1}).empty());
-}
-
-// A stiff plate that falls on a ball falls nearly as far as cloth but does not drape.
-TEST(StepErrorMetric, LeavesTheFallOfTheWholeOut) {
-  Scene scene = swinging();
-  scene.pins.clear();
-  const Vec3 middle = (scene.start.x.front() + scene.start.x.back()) / 2;
-  scene.colliders = {{.shape = Ball{middle - Vec3(0, 0.35, 0), 0.3}}};
-  scene.thickness = 0.005;
-  EXPECT_LT(measured(scene, "pd:iterations=1,material=own,structural=1e6,shear=1e6")
-                .values.at("step.share"),
-            0.01);
-  EXPECT_GT(measured(scene, "implicit").values.at("step.share"), 0.99);
-}
-
-/// Both solvers cover the whole distance. In single precision the gravity of a substep is rounded
-/// to a whole number of units in the last place of x. With 224 substeps this rounding is a seventh
-/// of gravity.
-TEST(StepErrorMetric, TakesNoRoundingForAWayThatIsMissed) {
-  const auto share = [](const char* scene, const std::string& solver) {
-    const Case one = make_case(
-        {scene,
-         {"cloth.grid=[9, 9]", "time.duration=0.6", "wind.velocity=[0, 0, 0]", "wind.strength=0"},
-         "jakobsen"});
-    return measured(*one.scene, solver).values.at("step.share");
-  };
-  for (const std::string solver : {"jakobsen:iterations=1,", "xpbd:"}) {
-    EXPECT_NEAR(share("swing", solver + "substeps=64"), 1, 0.05);
-    EXPECT_NEAR(share("swing", solver + "substeps=224,precision=double"), 1, 1e-3);
-    EXPECT_TRUE(std::isnan(share("swing", solver + "substeps=224")));
-  }
-  EXPECT_TRUE(std::isnan(share("ball", "jakobsen:iterations=1,substeps=224")));
-  // On a finer sheet, contact rounds far more than positions do.
-  const Case fine = make_case({"box", {"time.duration=0.6"}, "jakobsen"});
-  const Measured of = measured(*fine.scene, "jakobsen:iterations=1,substeps=224,order=coloured");
-  EXPECT_TRUE(std::isnan(of.values.at("step.share")));
 }
 
 TEST(StepErrorMetric, SaysWhyThereIsNone) {

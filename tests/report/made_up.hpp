@@ -52,7 +52,11 @@ class Maker {
     if (r.scene == "fall") stretch = between(1e-17, 1e-12);
     if (failure) stretch = 1e-6;
     if (!chance(0.05)) r.values["stretch.rms"] = chance(0.02) ? std::nan("") : stretch;
-    if (r.scene == "swing" && !chance(0.1)) r.values["motion.share"] = 1.5 * uniform() - 0.3;
+    if (r.scene != "fall" && r.scene != "plane" && !chance(0.1)) {
+      r.values["motion.error"] = between(0.005, chance(0.2) ? 1.5 : 0.2);
+      r.values["motion.floor"] = r.scene == "box" ? 0.01 : 0;
+      r.values["motion.strain"] = r.scene == "swing" ? 0.02 : 0;
+    }
     if (r.scene == "hang" || r.scene == "fall" || r.scene == "swing") return;
     const double peak = failure || chance(0.2) ? 0 : between(1e-6, 0.2);
     r.values["penetration.peak"] = peak;
@@ -161,12 +165,18 @@ class Maker {
             const bool on = tethers == std::string("on");
             if (on && solver != "jakobsen") continue;
             if (!to_the_end && (substeps > 8 || (sweeps > 16 && chance(0.5)))) continue;
-            BenchedCase c{
-                record(scene, solver, dt, substeps, sweeps, on ? ",tethers=on,timed" : ",timed"),
-                {}};
+            BenchedCase c{record(scene, solver, dt, substeps, sweeps,
+                                 on ? ",tethers=on,precision=double" : ",precision=double"),
+                          {}};
             if (solver == "jakobsen") c.record.params["tethers"] = tethers;
             end(c.record);
-            c.record.values["stretch.rms"] = between(stubborn ? 0.011 : 0.001, 0.03);
+            c.record.values["stretch.rms"] = between(0.001, 0.03);
+            if (scene != "fall" && !chance(0.05)) {
+              c.record.values["motion.error"] =
+                  between(stubborn ? 0.06 : 0.005, chance(0.1) ? 2 : 0.3);
+              c.record.values["motion.floor"] = scene == "box" ? 0.01 : 0;
+              c.record.values["motion.strain"] = scene == "tunnel" ? 0.02 : 0;
+            }
             const double cost = speed * substeps * sweeps * (on ? 0.3 : 1) / 64;
             for (int i = 0; i < 10; ++i)
               c.timing.samples.push_back(cost * (1 + noise * (uniform() - 0.5)));

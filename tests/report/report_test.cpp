@@ -151,7 +151,7 @@ TEST(Model, HasTheFailureMap) {
     Record r = synthetic::record("swing", "jakobsen", 4, 1.0 / 64);
     r.spec.settings = {std::string("links.stiffness={ structural = ") + stiffness + " }"};
     r.key += stiffness;
-    r.values = {{"step.share", 0.1}, {"stretch.rms", 0.001}};
+    r.values = {{"motion.share", 0.1}, {"motion.error", 0.9}, {"stretch.rms", 0.001}};
     input.studies[0].records.push_back(r);
   }
   input.bench = StudyBench{"one", "a machine", {}};

@@ -35,7 +35,7 @@ std::vector<Kind> kinds(const fs::path& folder) {
   BaselineRow row = baseline_row(stored_record(), std::string(64, 'b'));
   write_baseline(folder / "baseline", {row});
   const fs::path rows = folder / "baseline" / (row.solver() + ".jsonl");
-  Reference reference{"hang", std::string(64, 'c'), "static", 0, "by hand", 1e-9, {}};
+  Reference reference{"hang", std::string(64, 'c'), "by hand", 1e-9, {}};
   reference.x = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
   write_reference(reference, folder / "reference");
   const auto baseline = [](const fs::path& file) { read_baseline(file.parent_path()); };

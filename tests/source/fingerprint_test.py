@@ -130,7 +130,7 @@ class Fingerprint(unittest.TestCase):
 
     def test_what_measures_is_no_solver(self):
         for file in ("experiments/metrics/stretch.cpp", "experiments/case/run_case.cpp", "experiments/case/divergence.cpp",
-                     "core/reference/exact_path.cpp"):
+                     "core/reference/step_error.cpp"):
             self.assertEqual(self.changed_by(self.add_to(file)), {"measurement"}, file)
         self.assertEqual(self.changed_by(self.add_to("results/references/hang/static.json", " ")), {"measurement"})
         self.assertEqual(self.changed_by(self.add_to("experiments/case/record_io.cpp")), set())

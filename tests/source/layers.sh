@@ -17,7 +17,7 @@ core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_po
 core/reference           | core/(model|reference)/|core/solver/panel_factor\.hpp
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
-experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|deforming_body|text|triangle|triangle_mesh)|reference/(exact_path|step_error))\.hpp|experiments/metrics/
+experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|deforming_body|text|triangle|triangle_mesh)|reference/step_error)\.hpp|experiments/metrics/
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
@@ -26,7 +26,7 @@ experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|c
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
 experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|system|case|study/frontier))/|experiments/(study|results)/[a-z_]+.hpp
-experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|case|results|study|timing|beside))/
+experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study|timing|beside))/
 experiments/beside       | beside\.hpp
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/

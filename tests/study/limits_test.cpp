@@ -13,17 +13,13 @@ namespace {
 
 Scene scene_of(const char* name) { return *make_case({name, {}, "jakobsen"}).scene; }
 
-// A frozen cloth has small strains as well, so the error of the motion is limited where a reference
-// exists.
-TEST(Limits, AreByDefaultOfContactAndOfMotion) {
+TEST(Limits, AreByDefaultOfContactAndOfStrain) {
   const auto limits = [](const char* scene) {
     std::map<std::string, double> all;
     for (const Limit& limit : default_limits(scene_of(scene))) all[limit.name] = limit.most;
     return all;
   };
-  EXPECT_EQ(limits("swing"),
-            (std::map<std::string, double>{{"motion.error", 0.25}, {"stretch.rms", 0.1}}));
-  EXPECT_EQ(limits("ball").count("motion.error"), 0u);
+  EXPECT_EQ(limits("swing"), (std::map<std::string, double>{{"stretch.rms", 0.1}}));
   EXPECT_GT(limits("ball").at("penetration.peak"), 0);
   EXPECT_EQ(limits("ball").at("tunnelling.events"), 0);
 }

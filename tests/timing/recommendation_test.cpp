@@ -109,8 +109,8 @@ TEST(Recommendation, EverySolverIsNamedWithCostOrNearestError) {
   for (const char* part :
        {"e <= 0.01, jakobsen, jakobsen, 0.01, 16.7", ", clearly cheaper than bullet\n",
         "e <= 0.01, bullet, bullet, 0.001, 50 ",
-        "xpbd, , -, -, -, not by the settings tried; nearest: xpbd, e 0.02",
-        "mass-spring, , -, -, -, not by the settings tried; every case failed\n"})
+        "xpbd, , -, -, -, not by the settings tried; at best 0.02 (xpbd)",
+        "mass-spring, , -, -, -, not by the settings tried; exploded"})
     EXPECT_NE(said.find(part), std::string::npos) << part << " in\n" << said;
   EXPECT_EQ(rows(recommend(b, {1e-9, {}}, "e"), b).find("cheaper"), std::string::npos);
 }
@@ -133,24 +133,26 @@ TEST(Recommendation, ReadsLineByLineAsThis) {
             "-, clearly cheaper than bullet\n"
             "e <= 0.01, bullet, bullet:iterations=2, 0.01, 0.833 (0.833 to 0.833) ms a frame, "
             "2.5 (2.5 to 2.5), \n"
-            "e <= 0.01, xpbd, , -, -, -, not by the settings tried; nearest: xpbd:substeps=1024, "
-            "e 0.02, 0.0667 (0.0667 to 0.0667) ms a frame\n");
+            "e <= 0.01, xpbd, , -, -, -, not by the settings tried; at best 0.02 "
+            "(xpbd:substeps=1024)\n");
   b.cases[3].record.params = {{"substeps", "1024"}, {"iterations", "128"}};
   const std::string all = rows(recommend(b, {{}, 0.0006}, "e"), b);
   EXPECT_TRUE(all.starts_with("least e within 0.01 ms a frame of 1/60 s, bullet, , -,")) << all;
   EXPECT_NE(
-      all.find("jakobsen, , -, -, -, not by the settings tried; nearest: jakobsen:iterations=4,"),
+      all.find("jakobsen, , -, -, -, not by the settings tried; the cheapest costs 0.33\u00A0ms "
+               "a frame (jakobsen:iterations=4)"),
       std::string::npos)
       << all;
   EXPECT_NE(
-      all.find(
-          "xpbd, , -, -, -, never, to the end of its accuracy parameters; nearest: xpbd, e 0.03, "
-          "0.0333 (0.0333 to 0.0333) ms"),
+      all.find("xpbd, , -, -, -, never, to the end of its accuracy parameters; the cheapest costs "
+               "0.033\u00A0ms a frame (xpbd)"),
       std::string::npos)
       << "of a budget the cheapest is nearest\n"
       << all;
-  EXPECT_NE(all.find("bullet, , -, -, -, not by the settings tried; nearest: bullet:iterations=2,"),
-            std::string::npos)
+  EXPECT_NE(
+      all.find("bullet, , -, -, -, not by the settings tried; the cheapest costs 0.83\u00A0ms "
+               "a frame (bullet:iterations=2)"),
+      std::string::npos)
       << all;
 }
 

@@ -135,18 +135,20 @@ std::vector<std::uint64_t> numbers_of(std::string_view tuple) {
   return numbers;
 }
 
+template <class Real>
 class NpyWriter final : public PositionWriter {
  public:
   explicit NpyWriter(const std::filesystem::path& path) : out_(path) {}
 
   void append(double, const std::vector<Vec3>& x) override {
     std::string frame;
-    append_vectors<double>(frame, x, std::endian::little);
+    append_vectors<Real>(frame, x, std::endian::little);
     out_.write_at(kWritten + frames_++ * frame.size(), frame);
     std::string header = std::string(kNpyMagic) + std::string("\1\0", 2);
     append_number(header, static_cast<std::uint16_t>(kWritten - 10), std::endian::little);
-    header += "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(frames_) +
-              ", " + std::to_string(x.size()) + ", 3), }";
+    header += "{'descr': '<f" + std::to_string(sizeof(Real)) +
+              "', 'fortran_order': False, 'shape': (" + std::to_string(frames_) + ", " +
+              std::to_string(x.size()) + ", 3), }";
     header.resize(kWritten - 1, ' ');
     out_.write_at(0, header + '\n');  // last, so that it never promises frames that are not there
   }
@@ -289,7 +291,7 @@ std::unique_ptr<PositionWriter> create(const std::filesystem::path& path, const 
   return std::make_unique<Writer>(path);
 }
 
-constexpr std::array kFormats{Format{".npy", open_npy, create<NpyWriter>},
+constexpr std::array kFormats{Format{".npy", open_npy, create<NpyWriter<double>>},
                               Format{".pc2", open_pc2, create<Pc2Writer>},
                               Format{".obj", open_sequence, create_sequence}};
 
@@ -320,6 +322,10 @@ std::unique_ptr<PositionReader> positions_in(std::span<const double> numbers, st
 std::unique_ptr<PositionWriter> create_positions(const std::filesystem::path& path,
                                                  const Mesh& mesh) {
   return format_of(path).create(path, mesh);
+}
+
+std::unique_ptr<PositionWriter> create_rounded_npy(const std::filesystem::path& path) {
+  return std::make_unique<NpyWriter<float>>(path);
 }
 
 }  // namespace taut

@@ -72,5 +72,7 @@ void check_positions_name(const std::filesystem::path&);
 /// NAME_00001.obj, ..., each with triangles and material coordinates; a chain is written as one
 /// line. Throws InputError for another extension, or if it cannot be written.
 std::unique_ptr<PositionWriter> create_positions(const std::filesystem::path&, const Mesh&);
+/// Creates an array of NumPy in float32, half as large.
+std::unique_ptr<PositionWriter> create_rounded_npy(const std::filesystem::path&);
 
 }  // namespace taut

@@ -13,7 +13,7 @@ namespace taut::verb::advise {
 namespace {
 
 struct Options {
-  std::string scene, study, preset, metric = kErrorMetric, error, out;
+  std::string scene, study, preset, metric, error, out;
   double cpu = 8;     ///< s for each solver on a scene of a study
   double budget = 0;  ///< ms per frame; 0: not given
   double fps = 1 / kFrame;
@@ -35,8 +35,7 @@ Target target_of(const Options& options) {
 
 /// The limits of --keep, or the default limits of the scene. The error is not limited, since it is
 /// the target itself.
-std::vector<Limit> limits_of(const Options& options, const Target& target) {
-  const Scene scene = load_scene(find_scene(options.scene), options.settings);
+std::vector<Limit> limits_of(const Options& options, const Scene& scene, const Target& target) {
   std::vector<Limit> limits;
   if (options.keep.empty()) limits = default_limits(scene);
   if (target.error)
@@ -60,7 +59,8 @@ int run(Options options) {
   if (options.scene.empty() == options.study.empty())
     throw InputError("advise needs a scene or --study");
   if (!options.study.empty()) return search(options);
-  find_scene(options.scene);
+  const Scene scene = load_scene(find_scene(options.scene), options.settings);
+  if (options.metric.empty()) options.metric = deciding_metric(scene);
   const Target target = target_of(options);
   if (options.solvers.empty()) options.solvers = solvers_to_search();
   check_solvers(options.solvers);
@@ -70,7 +70,8 @@ int run(Options options) {
                             .solvers = options.solvers,
                             .target = target,
                             .metric = options.metric,
-                            .limits = limits_of(options, target),
+                            .judged = deciding_metric(scene) == kVerdict,
+                            .limits = limits_of(options, scene, target),
                             .fps = options.fps,
                             .patience = options.patience,
                             .rounds = options.rounds,
@@ -112,10 +113,7 @@ void add_options(CLI::App& app, Options& o) {
          "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in %; "
          "repeat it for each. 'nothing': only the error counts (default: no passage, no crossing, "
          "depths of at most " +
-             number_text(100 * kMostDepth) + " % of the cloth, motion within " +
-             number_text(100 * kMostMotionError) +
-             " % of its way from the reference, RMS stretch "
-             "of at most " +
+             number_text(100 * kMostDepth) + " % of the cloth, RMS stretch of at most " +
              number_text(100 * kMostStretch) + " %)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -14,8 +14,8 @@ namespace {
 struct Options {
   std::vector<std::string> what, solvers;
   SceneSettings settings;
-  std::vector<double> levels{std::begin(kErrorLevels), std::end(kErrorLevels)};
-  std::string preset, metric = kErrorMetric, out, against, keep_build, beside;
+  std::vector<double> levels;
+  std::string preset, metric, out, against, keep_build, beside;
   TimingOptions timing;
   double tolerance = kTolerance;
   bool worker = false;
@@ -108,9 +108,9 @@ void add_options(CLI::App& app, Options& o) {
   add_settings(app, o.settings);
   add_preset(app, o.preset);
   add_judgement(app, o.metric, o.tolerance);
-  app.add_option(
-         "--at", o.levels,
-         "Errors to be reached (default: " + join(kErrorLevels, ",", shortest) + "; 0.01 is 1 %)")
+  app.add_option("--at", o.levels,
+                 "Errors to be reached (default: " + join(kErrorLevels, ",", shortest) +
+                     "; by strain alone: " + join(kStrainLevels, ",", shortest) + "; 0.01 is 1 %)")
       ->delimiter(',')
       ->check(above_zero());
   add_samples(app, o.timing.rounds, o.timing.seconds);

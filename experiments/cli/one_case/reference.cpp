@@ -35,8 +35,9 @@ int run(const Options& options) {
                                   "",
                                   {{"scene"},
                                    {"kind"},
-                                   {"t", "at", kTime},
+                                   {"t", "horizon", kTime},
                                    {"floor", "", kLength},
+                                   {"floor_share", "floor over the motion", kShare},
                                    {"derivation"},
                                    {"refused", "why there is none"}}});
   const std::vector<fs::path> files = chosen(options);
@@ -45,9 +46,9 @@ int run(const Options& options) {
     const Scene scene = load_scene(files[i], options.settings);
     for (const ReferenceOutcome& o : write_references(scene, options.output, options.replace)) {
       written += o.refused.empty();
-      table.rows.push_back({o.scene, o.kind, o.t > 0 ? Cell(o.t) : Cell(),
-                            o.refused.empty() || o.floor > 0 ? Cell(o.floor) : Cell(), o.derivation,
-                            o.refused});
+      table.rows.push_back(
+          {o.scene, o.kind, o.t > 0 ? Cell(o.t) : Cell(), o.floor > 0 ? Cell(o.floor) : Cell(),
+           o.floor_share > 0 ? Cell(o.floor_share) : Cell(), o.derivation, o.refused});
     }
     countdown(i + 1, files.size());
   }
@@ -73,5 +74,5 @@ TAUT_VERB(reference) = {
     .group = VerbGroup::one_case,
     .summary = "Rebuilds converged references of scenes, or says why there is none",
     .example = "taut reference drape\n  taut reference --all",
-    .answer = {{"references", "scene kind t floor derivation refused"}},
+    .answer = {{"references", "scene kind t floor floor_share derivation refused"}},
     .bind = taut::bind_verb<taut::verb::references::add_options, taut::verb::references::run>};

@@ -97,8 +97,9 @@ void draw_levels(Chart& chart) {
 
 /// Id of a value's chart within its scene: by the value's role, or by the value if several have it.
 std::string id_of(const ValueSpec& value) {
-  constexpr Names<Role::contact_error> kNames{
-      "", "convergence", "motion", "vertices", "faces", "passages", "reference", "step", "slip"};
+  constexpr Names<Role::contact_error> kNames{"",      "convergence", "motion",    "vertices",
+                                              "faces", "passages",    "reference", "elsewhere",
+                                              "step",  "slip"};
   const std::vector<const ValueSpec*> all = values_with_role();
   const bool alone = std::ranges::count(all, value.role, &ValueSpec::role) == 1;
   return std::string(alone ? kNames[value.role] : value.name);
@@ -106,7 +107,8 @@ std::string id_of(const ValueSpec& value) {
 
 bool over_sweeps_alone(const ValueSpec& value) {
   return value.role == Role::error || value.role == Role::motion ||
-         value.role == Role::reference_error || value.role == Role::step_error;
+         value.role == Role::reference_error || value.role == Role::motion_error ||
+         value.role == Role::step_error;
 }
 
 std::string caption_of(const ValueSpec& value) {
@@ -409,13 +411,14 @@ std::vector<StatusMap> scene_maps(const ReportInput& input, const std::string& s
 }
 
 Chart cost_chart(const SceneBench& scene, const Records& records) {
-  Chart chart = make_chart("cost", records, kCpuPerSecond, kErrorMetric, "setting");
+  const std::string metric = scene.deciding_metric();
+  Chart chart = make_chart("cost", records, kCpuPerSecond, metric, "setting");
   chart.id = slug(scene.scene) + "-cost";
   chart.scene = scene.scene;
   chart.title = capitalised(chart.y.title) + " over " + chart.x.title;
   chart.caption = "Down and left is better.";
   chart.front = true;
-  const std::vector<Candidate> candidates = scene.candidates(kErrorMetric);
+  const std::vector<Candidate> candidates = scene.candidates(metric);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const BenchedCase& c = scene.cases[i];
     const Candidate& one = candidates[i];

@@ -124,7 +124,7 @@ std::string tick_of(const Quantity&, double si);
 /// Everything drawn of a scene that a study ran, in the order in which to show it.
 std::vector<Chart> scene_charts(const ReportInput&, const std::string& scene);
 std::vector<StatusMap> scene_maps(const ReportInput&, const std::string& scene);
-/// kErrorMetric over the cost of a bench.
+/// The metric that decides on the scene over the cost of a bench.
 Chart cost_chart(const SceneBench&, const Records&);
 
 }  // namespace taut::report

@@ -17,14 +17,13 @@ namespace taut::report {
 
 namespace {
 
-/// Costs on one scene, with the accelerators that all of its solvers have: both the answers and the
-/// page compare these.
+/// Costs on one scene.
 struct CostScene {
   JudgedScene timed;
   CaseList& refs;
 
   /// Cell of a case. Its note has the setting and the values of motion, since a small strain may
-  /// come from cloth that hardly moves.
+  /// come from cloth that is not where it should be.
   Cell of(std::size_t at, Cell cell) const {
     const Record& r = timed.bench.cases[at].record;
     const Label label = setting_label(timed.bench, at);
@@ -50,17 +49,19 @@ struct CostScene {
 
 Table levels_table(const CostScene& scene, const WinnerRow& winners) {
   const SceneBench& bench = scene.timed.bench;
-  const Quantity q = quantity(kErrorMetric);
+  const Quantity q = quantity(scene.timed.metric);
   const CaseSpec spec =
       bench.cases.empty() ? CaseSpec{bench.scene, {}, {}} : bench.cases.front().record.spec;
   std::string again = "taut advise " + spec.scene + " --error 1%";
   for (const SceneSetting& one : spec.settings) again += " --set '" + one.text() + "'";
-  Table table{"cost-levels-" + slug(bench.scene),
-              "CPU time of an error, per simulated second",
-              scene.columns(Column("level", q.title, q.unit, 1), quantity(kCpuPerSecond).unit),
-              {},
-              "95\u00A0% interval and setting of the cheapest that was timed, " +
-                  std::string(kWithoutExtras) + ". More accurate ones are searched by: " + again};
+  Table table{
+      "cost-levels-" + slug(bench.scene),
+      "CPU time of an error, per simulated second",
+      scene.columns(Column("level", q.title, q.unit, 1), quantity(kCpuPerSecond).unit),
+      {},
+      "95\u00A0% interval and setting of the cheapest that was timed. More accurate ones are "
+      "searched by: " +
+          again};
   for (std::size_t k = 0; k < std::size(kErrorLevels); ++k) {
     const double level = kErrorLevels[k];
     const WinnerCell& winner = winners.cells[k];
@@ -70,8 +71,8 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
       if (!at) {
         const std::string words =
             bench.searched_to_the_end(solver) ? "never reached" : "not reached";
-        row.push_back(only_uncounted(scene.timed, solver, level, words)
-                          .value_or(Cell::lacking(Cell::State::none, words)));
+        const Cell why = scene.timed.why_not({.error = level}, solver);
+        row.push_back(Cell::lacking(why.state, words).with(why.note));
         continue;
       }
       row.push_back(scene.of(*at, Cell(scene.timed.candidates[*at].cost)));
@@ -87,7 +88,7 @@ Table levels_table(const CostScene& scene, const WinnerRow& winners) {
 std::string upper_bounds(const std::vector<SceneBench>& scenes) {
   std::map<std::string, int> bounds;
   for (const SceneBench& scene : scenes) {
-    const JudgedScene timed(scene, kErrorMetric);
+    const JudgedScene timed(scene, kVerdict);
     for (const double level : kErrorLevels)
       for (const std::size_t at : timed.best_of_each({.error = level}))
         bounds[solver_title(timed.candidates[at].solver)] += timed.is_upper_bound(at);
@@ -99,16 +100,18 @@ std::string upper_bounds(const std::vector<SceneBench>& scenes) {
 
 /// A table of Dolan and More's performance profiles at a few factors.
 Table profile_table(const std::vector<SceneBench>& scenes) {
-  const std::vector<PerformanceProfile> profiles = performance_profiles(scenes, kErrorMetric);
+  const std::vector<PerformanceProfile> profiles =
+      performance_profiles(scenes, kVerdict, kErrorLevels);
   const std::size_t problems = profiles.empty() ? 0 : profiles.front().ratios.size();
   Table table{"cost-profiles",
               "How often each solver is within a factor of the cheapest",
               {Column("solver")},
               {},
-              "Share of " + std::to_string(problems) + " problems, each an error of " +
-                  quantity(kErrorMetric).title +
-                  " to be reached on a scene. All solvers have equally many settings of a scene, " +
-                  kWithoutExtras + "."};
+              std::to_string(problems) +
+                  " problems: an error to be reached on a scene. A cell is the share of them that "
+                  "the solver solves within this factor of the cheapest solver's CPU time, by the "
+                  "best of all its settings that were timed. Between two rows of many, the order "
+                  "depends on who else is there; pairs are compared in the map."};
   if (const std::string bounds = upper_bounds(scenes); !bounds.empty())
     table.caption +=
         " Problems that a solver's cheapest setting already solves, so that it may rank higher: " +
@@ -136,13 +139,11 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, 
   Json cost{{"machine", study.machine}};
   refs.use(kCpuPerSecond);
   refs.use(kCpuPerStep);
-  std::vector<SceneBench> shared;
   std::vector<Chart> charts;
   std::list<std::vector<Record>> kept;  // charts point into these
   for (const SceneBench& bench : study.scenes) {
     const std::vector<Record>& records = kept.emplace_back(StudyBench{"", "", {bench}}.records());
-    shared.push_back(with_shared_parameters(bench));
-    const CostScene scene{JudgedScene(shared.back(), kErrorMetric), refs};
+    const CostScene scene{JudgedScene(bench), refs};
     Json one{{"scene", bench.scene}};
     try {
       charts.push_back(cost_chart(bench, records));
@@ -150,11 +151,11 @@ Json json_of_cost(const ReportInput& input, CaseList& refs, DrawnCharts& drawn, 
     } catch (const InputError&) {
       // Nothing completed, which the tables report.
     }
-    add_table(one, levels_table(scene, winners.rows[shared.size() - 1]), tables);
+    add_table(one, levels_table(scene, winners.rows[kept.size() - 1]), tables);
     cost["scenes"].push_back(std::move(one));
   }
   for (const Figure& figure : figures_of(charts)) add_figure(drawn, "cost", figure, refs);
-  add_table(cost, profile_table(shared), tables);
+  add_table(cost, profile_table(study.scenes), tables);
   return cost;
 }
 

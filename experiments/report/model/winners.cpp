@@ -18,7 +18,7 @@ Json json_of(const Contender& one) {
             {"case", one.key}};
   add_if(json, "terms", one.setting.terms());
   add_if(json, "links", one.links);
-  if (std::isfinite(one.largest)) json["largest"] = one.largest;
+  if (std::isfinite(one.stretch)) json["stretch"] = one.stretch;
   if (one.bound) json["at_most"] = true;
   return json;
 }
@@ -31,8 +31,8 @@ Json json_of(const WinnerCell& cell) {
     json["times"] = cell.times;
   }
   add_if(json, "why", cell.why);
-  for (const auto& [solver, why] : cell.passed_over)
-    json["passed_over"].push_back({{"solver", solver}, {"why", why}});
+  for (const auto& [solver, why] : cell.excluded)
+    json["excluded"].push_back({{"solver", solver}, {"why", why}});
   return json;
 }
 
@@ -52,13 +52,13 @@ Json json_of(const std::vector<Said>& sentence) {
 Json json_of_winners(const ReportInput& input, CaseList& list) {
   const WinnerMap map = winners_of(input, list);
   if (map.rows.empty()) return {};
-  Json json{{"metric", kErrorMetric},
+  Json json{{"metric", kVerdict},
             {"levels", std::vector<double>(std::begin(kErrorLevels), std::end(kErrorLevels))},
             {"frame", kFrame},
             {"rules", rules_of(map)},
             {"certainty", certainty_text(map.noise)}};
   for (const WinnerRow& row : map.rows) {
-    Json one{{"scene", row.scene}, {"title", row.title}, {"way", to_string(row.way)}};
+    Json one{{"scene", row.scene}, {"title", row.title}, {"by", to_string(row.by)}};
     for (const WinnerCell& cell : row.cells) one["cells"].push_back(json_of(cell));
     json["rows"].push_back(std::move(one));
   }

@@ -181,7 +181,7 @@ function chartKey(specs, {kind, frame}) {
              entry(
                  el('b', {}, '○'),
                  'hollow, on no line of the best: does not count ' +
-                     '(hardly moves, or does what its scene does not accept)'));
+                     '(is not where it should be, or does what its scene does not accept)'));
   return list.children.length ? list : '';
 }
 

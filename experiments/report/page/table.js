@@ -56,8 +56,8 @@ function spreadOf([low, mid, high], column) {
 }
 
 /**
- * Whether a cell has words in place of a value: "not run", "exploded". Cloth that hardly moves has
- * a number, but it is not compared.
+ * Whether a cell has words in place of a value: "not run", "exploded". A strain of cloth that is
+ * elsewhere is a number, but it is not compared.
  */
 const lacks = ({state, value}) =>
     Boolean(state) && state !== 'value' && !Number.isFinite(middle(value));
@@ -66,7 +66,7 @@ const lacks = ({state, value}) =>
 function cellContent(cell, column, most) {
   const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value),
         note = cell.note ?? '';
-  const noted = cell.state === 'hardly_moves' ? 'hardly moves' : note;
+  const noted = cell.state === 'astray' ? 'is elsewhere' : note;
   const whole = [note, explain(cell.terms)].filter(Boolean).join('\n');
   const share = 100 * Math.max(0, value) / most;
   const spread = Array.isArray(cell.value) && spreadOf(cell.value, column);

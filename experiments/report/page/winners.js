@@ -42,21 +42,20 @@ const frameCost = {
 
 /**
  * A setting that reaches the error: its solver, the factor by which it beats the next solver, its
- * cost, its parameters, arithmetic and links, and its largest error during the run if that exceeds
- * `level`.
+ * cost, its parameters, arithmetic and links, and how stretched its cloth is.
  */
-function contender(one, over, level) {
+function contender(one, over) {
   const cost = (one.at_most ? '≤ ' : '') + shown(one.cost[1], frameCost, 2);
   const links = one.links && `springs of ${one.links}`;
-  const largest = one.largest > level &&
-      `up to ${shown(one.largest, metric(model.winners.metric), 2)} at some moment`;
+  const stretch = one.stretch !== undefined &&
+      `RMS stretch ${shown(one.stretch, metric(model.winners.metric), 2)}`;
   return el(
       'div', {className: 'contender'}, named(one.solver), over,
       el('div', {className: 'price'}, caseLink(one.case, cost), ' ',
          explained(one.setting, one.terms)),
       explained(
           [one.arithmetic, links].filter(Boolean).join(', '), [one.arithmetic], {className: 'how'}),
-      largest && el('small', {className: 'how'}, largest));
+      stretch && el('small', {className: 'how'}, stretch));
 }
 
 /** How many times cheaper it is than the cheapest setting of another solver. */
@@ -77,42 +76,38 @@ function winnerCell(cell, level) {
   const node = (props, ...content) =>
       el('td', {...props, 'data-level': error}, el('div', {}, content));
   if (!cell.cheapest) return node({className: 'none'}, '–', el('small', {}, ' ', cell.why));
-  const {cheapest, next, times} = cell, passed = cell.passed_over ?? [];
+  const {cheapest, next, times} = cell, excluded = cell.excluded ?? [];
   const over = cheapest.length === 1 &&
       (next ? overNext(next, times) : el('div', {className: 'over'}, 'no other reaches it'));
   return node(
-      {}, cheapest.map((one) => contender(one, over, level)),
+      {}, cheapest.map((one) => contender(one, over)),
       cheapest.length > 1 && el('small', {}, 'noise cannot tell them apart'),
-      passed.length > 0 &&
+      excluded.length > 0 &&
           el('small', {
             className: 'passed',
-            title: passed.map(({solver, why}) => `${solverOf(solver).title}: ${why}`).join('\n')
+            title: excluded.map(({solver, why}) => `${solverOf(solver).title}: ${why}`).join('\n')
           },
-             `not counted: ${passed.map(({solver}) => solverOf(solver).title).join(', ')}`));
+             `not counted: ${excluded.map(({solver}) => solverOf(solver).title).join(', ')}`));
 }
 
 /** The map: a row for each scene, a column for each error. */
 function winnersCard() {
   const {rows, levels, rules, certainty} = model.winners, error = metric(model.winners.metric);
-  const wayBy = {
-    'exact steps': 'way of exact steps',
-    missed: 'way by what steps miss',
-    nothing: 'way not judged'
-  };
+  const judgedBy = {observables: 'by where it comes to rest', nothing: 'motion not judged'};
   const line = (row) => {
     const node =
         el('tr', {},
            el('th', {scope: 'row'},
               scenes.has(row.scene) ? choice({scene: row.scene, at: 'scenes'}, {}, row.title) :
                                       row.title,
-              row.way !== 'reference' && el('small', {}, wayBy[row.way])),
+              row.by in judgedBy && el('small', {}, judgedBy[row.by])),
            row.cells.map((cell, i) => winnerCell(cell, levels[i])));
     state.watch(() => node.classList.toggle('chosen', chosenScene() === row.scene));
     return node;
   };
   return el(
       'div', {className: 'card winners', id: 'winners'},
-      el(model.differences ? 'h3' : 'h2', {}, `Cheapest for an ${error.title} of at most ...`),
+      el(model.differences ? 'h3' : 'h2', {}, `Cheapest for an error of at most ...`),
       scrolling(
           'The cheapest solver of each error on each scene',
           el('tr', {}, el('th', {scope: 'col'}, 'scene'),

@@ -314,9 +314,14 @@ PlotFiles make_profile_plot(PlotSpec spec, const StudyBench& bench,
                             const std::filesystem::path& folder) {
   const PlotKind& kind = find_plot_kind("profile");
   spec.x = kind.x;
+  if (spec.y.empty() && std::ranges::any_of(bench.scenes, [](const SceneBench& scene) {
+        return scene.deciding_metric() == kVerdict;
+      }))
+    spec.y = kVerdict;
   if (spec.y.empty()) spec.y = kind.y;
   if (spec.file.empty()) spec.file = slug("profile-" + spec.y);
-  const std::vector<PerformanceProfile> profiles = performance_profiles(bench.scenes, spec.y);
+  const std::vector<PerformanceProfile> profiles =
+      performance_profiles(bench.scenes, spec.y, levels_of(spec.y));
   if (profiles.empty() || profiles.front().ratios.empty())
     throw InputError("no setting of any solver reaches an error of " + spec.y +
                      " that is asked for");

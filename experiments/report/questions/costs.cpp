@@ -11,20 +11,8 @@
 #include "experiments/report/questions/rows.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/timing/recommendation.hpp"
-#include "experiments/timing/way.hpp"
 
 namespace taut::report {
-
-SceneBench with_shared_parameters(SceneBench bench) {
-  std::map<std::string, std::map<std::string, std::string>> params;
-  for (const BenchedCase& c : bench.cases) params[c.record.solver] = c.record.params;
-  std::erase_if(bench.cases, [&](const BenchedCase& c) {
-    return std::ranges::any_of(params, [&](const auto& other) {
-      return other.first != c.record.solver && !extras(c.record, other.second).empty();
-    });
-  });
-  return bench;
-}
 
 Label setting_label(const SceneBench& bench, std::size_t at, std::vector<std::string> beside) {
   Records records;
@@ -38,33 +26,21 @@ Label setting_label(const SceneBench& bench, std::size_t at, std::vector<std::st
   return label;
 }
 
-std::optional<Cell> only_uncounted(const JudgedScene& scene, const std::string& solver,
-                                   double error, const std::string& words) {
-  const auto at = scene.uncounted(solver, error);
-  if (!at) return {};
-  const Candidate& one = scene.candidates[*at];
-  const bool still = one.refusal == Candidate::Refusal::hardly_moves;
-  return Cell::lacking(still ? Cell::State::hardly_moves : Cell::State::none, words)
-      .with(one.failure);
-}
-
 namespace {
 
-/// The cell of a solver that misses the error: `words`, and how near it came ("at best 0.12 %").
+/// The cell of a solver that misses the error: `words`, and why (JudgedScene::why_not).
 Cell not_reached(const JudgedScene& scene, const std::string& words, const std::string& solver) {
-  if (!scene.has(solver)) return Cell::lacking(Cell::State::not_run, "not timed");
-  if (const auto uncounted = only_uncounted(scene, solver, kPricedError, words)) return *uncounted;
-  const Cell cell = Cell::lacking(Cell::State::none, words);
-  const auto at = scene.best({.budget = std::numeric_limits<double>::infinity()}, solver);
-  if (!at) return cell.with("no case completed");
-  return cell.with(
-      "at best " + quantity(kErrorMetric).text(scene.candidates[*at].error) +
-      (scene.bench.searched_to_the_end(solver) ? ", to the end of its accuracy parameters" : ""));
+  const Cell why = scene.why_not({.error = kPricedError}, solver);
+  if (why.state == Cell::State::not_run) return Cell::lacking(why.state, "not timed");
+  return Cell::lacking(why.state, words)
+      .with(why.note + (scene.bench.searched_to_the_end(solver)
+                            ? ", to the end of its accuracy parameters"
+                            : ""));
 }
 
 /// The first cell of the scene's row.
 Cell head_of(const SceneBench& bench) {
-  return Cell(bench.scene)
+  return Cell(bench.scene + (bench.deciding_metric() == kVerdict ? "" : " (by strain alone)"))
       .of_scene(bench.cases.empty() ? bench.scene : bench.cases.front().record.scene);
 }
 
@@ -102,10 +78,9 @@ class Costs {
   Costs(const ReportInput& input, const std::vector<Column>& solvers, CaseList& list)
       : solvers_(solvers), list_(list) {
     for (const SceneBench& bench : input.bench->scenes) {
-      all_.emplace_back(bench, kErrorMetric);
-      shared_.emplace_back(with_shared_parameters(bench), kErrorMetric);
+      scenes_.emplace_back(bench);
+      list.use(scenes_.back().metric);
     }
-    list.use(kErrorMetric);
     list.use(kCpuPerSecond);
   }
 
@@ -127,7 +102,7 @@ class Costs {
   /// The least budget within which every solver has a setting on every scene, else the largest.
   double common_budget() const {
     for (const double budget : kFrameBudgets)
-      if (std::ranges::all_of(shared_, [&](const JudgedScene& scene) {
+      if (std::ranges::all_of(scenes_, [&](const JudgedScene& scene) {
             return std::ranges::all_of(solvers_of(scene.bench), [&](const std::string& solver) {
               return scene.best({.budget = budget / kFrame}, solver).has_value();
             });
@@ -137,18 +112,17 @@ class Costs {
   }
 
   void add_equal_cost(Answer& answer) {
-    const Quantity q = quantity(kErrorMetric);
-    const double budget = common_budget(), floor = find_value(kErrorMetric).second->negligible;
+    const Quantity q = quantity(kVerdict);
+    const double budget = common_budget(), floor = kErrorLevels[std::size(kErrorLevels) - 1];
     Table table{"equal_cost",
-                capitalised(q.title) + " at equal cost",
+                "Error at equal cost",
                 columns_of(solvers_, q.unit),
                 {},
-                std::string(to_string(q.window)) + "; least of the settings timed within " +
-                    significant(1e3 * budget, 2) + "\u00A0ms of CPU time a frame of 1/" +
-                    number_text(1 / kFrame) + "\u00A0s (" +
-                    quantity(kCpuPerSecond).text(budget / kFrame) + " per simulated second), " +
-                    kWithoutExtras + orders()};
-    for (const JudgedScene& scene : shared_) {
+                "least of the settings timed within " + significant(1e3 * budget, 2) +
+                    "\u00A0ms of CPU time a frame of 1/" + number_text(1 / kFrame) + "\u00A0s (" +
+                    quantity(kCpuPerSecond).text(budget / kFrame) + " per simulated second)" +
+                    orders()};
+    for (const JudgedScene& scene : scenes_) {
       std::vector<Cell> row{head_of(scene.bench)};
       for (const Column& solver : solvers_) {
         const auto at = scene.best({.budget = budget / kFrame}, solver.name);
@@ -173,15 +147,15 @@ class Costs {
   }
 
   void add_price(Answer& answer) {
-    Table table{"price",
-                "CPU time of " + priced(),
-                columns_of(solvers_, quantity(kCpuPerSecond).unit),
-                {},
-                "per simulated second, 95\u00A0% interval; each at its cheapest setting timed, " +
-                    std::string(kWithoutExtras) + orders()};
+    Table table{
+        "price",
+        "CPU time of " + priced(),
+        columns_of(solvers_, quantity(kCpuPerSecond).unit),
+        {},
+        "per simulated second, 95\u00A0% interval; each at its cheapest setting timed" + orders()};
     std::vector<Chosen> chosen;  // of each scene
     bool any_bound = false;
-    for (const JudgedScene& scene : shared_) {
+    for (const JudgedScene& scene : scenes_) {
       std::vector<Cell> row{head_of(scene.bench)};
       Chosen& own = chosen.emplace_back();
       for (const Column& solver : solvers_) {
@@ -204,7 +178,7 @@ class Costs {
   /// The order of links of each solver; "": none has one.
   std::string orders() const {
     std::vector<SceneBench> scenes;
-    for (const JudgedScene& scene : shared_) scenes.push_back(scene.bench);
+    for (const JudgedScene& scene : scenes_) scenes.push_back(scene.bench);
     const std::string all = link_orders(scenes);
     return all.empty() ? "" : "; links in each solver's own order: " + all;
   }
@@ -231,23 +205,23 @@ class Costs {
     std::vector<Cost> costs;
     for (const std::size_t c : common.columns) {
       const bool is_bound = std::ranges::any_of(
-          common.rows, [&](std::size_t r) { return shared_[r].is_upper_bound(*chosen[r][c - 1]); });
+          common.rows, [&](std::size_t r) { return scenes_[r].is_upper_bound(*chosen[r][c - 1]); });
       if (is_bound && common.rows.size() > 1) last[c].note = "at most";
       costs.push_back({c - 1, last[c].number(), is_bound});
     }
     const auto ratio = [&](std::size_t i, std::size_t j) {
       std::vector<std::optional<Interval>> all;
       for (const std::size_t r : common.rows)
-        all.push_back(shared_[r].bench.ratio(*chosen[r][i], *chosen[r][j]));
+        all.push_back(scenes_[r].bench.ratio(*chosen[r][i], *chosen[r][j]));
       return mean_ratio(all);
     };
-    mark_cheapest(last, costs, ratio, control(shared_));
+    mark_cheapest(last, costs, ratio, control(scenes_));
     return last;
   }
 
   static std::string priced() {
-    const Quantity q = quantity(kErrorMetric);
-    return q.text(kPricedError, 1) + " " + q.title;
+    const Quantity q = quantity(kVerdict);
+    return q.text(kPricedError, 1) + " error";
   }
 
   /// The recommended setting of each solver: it reaches the error on most scenes; ties go to the
@@ -258,9 +232,9 @@ class Costs {
                 columns_of(solvers_, kNumber),
                 {},
                 "the cheapest timed that reaches " + priced() +
-                    ", accelerators that only one solver has included, and its CPU time per "
+                    ", and its CPU time per "
                     "simulated second; of all scenes: on most of them, then least geometric mean"};
-    for (const JudgedScene& scene : all_) {
+    for (const JudgedScene& scene : scenes_) {
       std::vector<Cell> row{head_of(scene.bench)};
       Chosen chosen;
       for (const Column& solver : solvers_) {
@@ -301,20 +275,21 @@ class Costs {
   /// cases: none reaches it.
   Reached most_reaching(const std::string& solver) const {
     std::map<std::string, Reached> settings;
-    for (std::size_t k = 0; k < all_.size(); ++k)
-      for (std::size_t i = 0; i < all_[k].candidates.size(); ++i)
-        if (const Candidate& one = all_[k].candidates[i];
+    for (std::size_t k = 0; k < scenes_.size(); ++k)
+      for (std::size_t i = 0; i < scenes_[k].candidates.size(); ++i)
+        if (const Candidate& one = scenes_[k].candidates[i];
             one.solver == solver && Target{.error = kPricedError}.meets(one))
           settings[one.setting].cases[k] = i;
     const auto best = std::ranges::max_element(settings, {}, [&](const auto& one) {
-      return std::pair(one.second.cases.size(), -one.second.mean_log_cost(all_));
+      return std::pair(one.second.cases.size(), -one.second.mean_log_cost(scenes_));
     });
     return best == settings.end() ? Reached{} : best->second;
   }
 
   std::vector<Cell> overall_setting(const Table& table) {
-    const std::string of = " of " + std::to_string(all_.size());
-    std::vector<Cell> last{all_.size() == 1 ? table.rows[0][0] : Cell("on most" + of + " scenes")};
+    const std::string of = " of " + std::to_string(scenes_.size());
+    std::vector<Cell> last{scenes_.size() == 1 ? table.rows[0][0]
+                                               : Cell("on most" + of + " scenes")};
     std::vector<Reached> reached;
     std::vector<Cost> costs;
     for (std::size_t s = 0; s < solvers_.size(); ++s) {
@@ -323,13 +298,14 @@ class Costs {
         last.push_back(why_empty(table, s + 1));
         continue;
       }
-      const bool is_bound = std::ranges::any_of(
-          own.cases, [&](const auto& one) { return all_[one.first].is_upper_bound(one.second); });
-      costs.push_back({s, std::exp(own.mean_log_cost(all_)), is_bound});
+      const bool is_bound = std::ranges::any_of(own.cases, [&](const auto& one) {
+        return scenes_[one.first].is_upper_bound(one.second);
+      });
+      costs.push_back({s, std::exp(own.mean_log_cost(scenes_)), is_bound});
       const auto& [scene, at] = *own.cases.begin();
       last.push_back(
-          setting_cell(all_[scene], at, costs.back().mid, is_bound,
-                       all_.size() == 1 ? "" : ", " + std::to_string(own.cases.size()) + of));
+          setting_cell(scenes_[scene], at, costs.back().mid, is_bound,
+                       scenes_.size() == 1 ? "" : ", " + std::to_string(own.cases.size()) + of));
     }
     const auto alike = [&](const Cost& one) {
       return reached[one.at].is_of_same_scenes(reached[costs.front().at]);
@@ -338,16 +314,16 @@ class Costs {
     const auto ratio = [&](std::size_t i, std::size_t j) {
       std::vector<std::optional<Interval>> all;
       for (const auto& [scene, at] : reached[i].cases)
-        all.push_back(all_[scene].bench.ratio(at, reached[j].cases.at(scene)));
+        all.push_back(scenes_[scene].bench.ratio(at, reached[j].cases.at(scene)));
       return mean_ratio(all);
     };
-    mark_cheapest(last, costs, ratio, control(all_));
+    mark_cheapest(last, costs, ratio, control(scenes_));
     return last;
   }
 
   const std::vector<Column>& solvers_;
   CaseList& list_;
-  std::vector<JudgedScene> all_, shared_;
+  std::vector<JudgedScene> scenes_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "experiments/metrics/metric.hpp"
 #include "experiments/report/questions/costs.hpp"
 #include "experiments/report/questions/rows.hpp"
-#include "experiments/timing/way.hpp"
+#include "experiments/timing/judge.hpp"
 
 namespace taut::report {
 
@@ -68,8 +68,9 @@ class Questions {
            (work.empty() ? capitalised(kSweepsDiffer) : "All else is at " + work) +
            (steps.empty() ? "" : "; time step " + range_text(steps, quantity("dt"))) +
            ". Means are geometric where all values are positive; those of stretch leave out cloth "
-           "that travels less than " +
-           shown(kShare, kLeastMotion, 1) + " of its way, where that is known.";
+           "that is more than " +
+           shown(kShare, kErrorLevels[0], 1) +
+           " of its motion away from where it should be, where that is known.";
   }
 
   /// Adds a table of a value of the cases with the same substeps and sweeps, scene by scene. These
@@ -128,14 +129,15 @@ class Questions {
     return text;
   }
 
-  /// The cell of a value. For an error of strain, its note says if the cloth hardly moves.
+  /// The cell of a value. For an error of strain, its note says if the cloth is not where it should
+  /// be.
   Cell value_cell(const Record* r, const std::string& metric, bool of_strain) {
     const double value = r && completed(r->status) ? value_of(*r, metric) : std::nan("");
     Cell cell = std::isfinite(value) ? Cell(value) : why_none(r);
     if (!r) return cell;
     cell.key = list_.key(*r);
-    if (of_strain && std::isfinite(value)) cell.note = hardly_moves(*r);
-    if (!cell.note.empty()) cell.state = Cell::State::hardly_moves;
+    if (of_strain && std::isfinite(value)) cell.note = astray(*r);
+    if (!cell.note.empty()) cell.state = Cell::State::astray;
     if (compared_.common_work().empty()) {
       const Label work{{label_part(work_of(*r))}};
       cell.note += (cell.note.empty() ? "" : "; ") + work.text();

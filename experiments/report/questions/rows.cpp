@@ -78,7 +78,7 @@ Cell why_empty(const Table& table, std::size_t column) {
   for (const auto& row : table.rows) {
     const Cell& cell = row[column];
     states.insert(cell.state);
-    words.insert(std::isnan(cell.number()) ? cell.text() : "hardly moves");
+    words.insert(std::isnan(cell.number()) ? cell.text() : "is elsewhere");
   }
   if (words.size() != 1) return Cell::lacking(Cell::State::none, "no value");
   return Cell::lacking(states.size() == 1 ? *states.begin() : Cell::State::none, *words.begin());

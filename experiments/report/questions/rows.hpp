@@ -14,8 +14,8 @@ namespace taut::report {
 /// The columns: "scene", then the solvers with this unit.
 std::vector<Column> columns_of(const std::vector<Column>& solvers, const Unit&, int digits = 2);
 
-/// Whether the cell has a number that is compared with others in its row. Numbers of cloth that
-/// hardly moves are not.
+/// Whether the cell has a number that is compared with others in its row. Strains of cloth
+/// that is not where it should be are not.
 bool is_compared(const Cell&);
 /// Marks the smallest compared number in the row if the second smallest exceeds it by kTolerance.
 /// Numbers below `floor` count as `floor`.

@@ -8,7 +8,7 @@
 #include "experiments/report/input.hpp"
 #include "experiments/report/questions/case_list.hpp"
 #include "experiments/report/questions/links.hpp"
-#include "experiments/timing/way.hpp"
+#include "experiments/timing/judge.hpp"
 
 namespace taut::report {
 
@@ -20,7 +20,7 @@ struct Contender {
   std::string links;  ///< stiffness of its structural links, if they are not rigid: "1000 N/m"
   Interval cost;      ///< CPU s per simulated s
   double error = 0;
-  double largest = 0;  ///< error at the moment of the run at which it is largest; NaN: unknown
+  double stretch = 0;  ///< RMS; NaN: unknown
   std::string key;     ///< of its case, short
   bool bound = false;  ///< no cheaper setting of the solver was tried: its cost is at most this
 };
@@ -33,16 +33,26 @@ struct WinnerCell {
   std::optional<Contender> next;  ///< the cheapest other contender, of another solver
   Interval times;                 ///< cost of `next`, if there is one, over that of the cheapest
   std::string why;                ///< why no solver reaches the error
-  /// Solvers that reach the error at less cost, and why that does not count.
-  std::vector<std::pair<std::string, std::string>> passed_over;
+  /// Solvers that reach the error at less cost with settings that do not count, and why; they have
+  /// none that does.
+  std::vector<std::pair<std::string, std::string>> excluded;
 
   bool won() const { return cheapest.size() == 1 && next; }
 };
 
+/// Where the engine's own solver stands, with which most readers compare: btSoftBody.
+struct BesideBullet {
+  double level = 0;               ///< the least error of the map that it reaches; 0: none
+  std::optional<Interval> times;  ///< its cost over the cheapest; nothing: they cannot be compared
+  std::string key;                ///< of its case, short
+  std::string refused;            ///< why it cannot run the scene; "" if it can
+};
+
 struct WinnerRow {
   std::string scene, title;
-  WayGone::By way = WayGone::By::nothing;  ///< how the motion was judged
-  std::vector<WinnerCell> cells;           ///< of each of kErrorLevels
+  JudgedBy by = JudgedBy::nothing;
+  std::vector<WinnerCell> cells;       ///< of each of kErrorLevels
+  std::optional<BesideBullet> bullet;  ///< nothing: it was not timed here
 };
 
 /// A piece of a sentence, and the case or map that it leads to.
@@ -52,10 +62,7 @@ struct Said {
   bool of_map = false;   ///< it counts cells of the map
 };
 
-/// Who wins where: a row for each scene of a bench. A setting counts if its case completed, its
-/// cloth moves where the scene has a reference in motion, and it keeps what its scene asks for
-/// (Candidate::Refusal::not_accepted). Cases that use what another solver of the scene lacks are
-/// left out.
+/// Who wins where: a row for each scene of a bench, judged by kVerdict.
 struct WinnerMap {
   std::vector<WinnerRow> rows;
   double noise = 0;  ///< how far identical code differed from itself, at most, as a share
