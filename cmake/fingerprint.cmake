@@ -7,8 +7,9 @@ function(taut_write_fingerprint out)
   list(FILTER options EXCLUDE REGEX "^-W|ggc-|^-fvisibility")  # these change no result
   list(JOIN options " " options)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  string(REGEX REPLACE " -g[0-9]*" "" of_type "${CMAKE_CXX_FLAGS_${type}}")
   string(CONCAT tools "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}; "
-         "flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${options}; "
+         "flags ${CMAKE_CXX_FLAGS} ${of_type} ${options}; "
          "Eigen ${Eigen3_VERSION}; Bullet ${BULLET64_VERSION}")
   cmake_parse_arguments(of "" "" "LAYERS;PARTS" ${ARGN})
   string(REGEX REPLACE "[^=;|]+=" "" folders "${of_LAYERS};${of_PARTS}")

@@ -4,9 +4,11 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)  # one build serves the programs and the Python module
 if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
-set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")
+# Debug information makes a program of 11 MB one of 76 MB, which takes 2 s to link instead of 0.4 s.
+set(CMAKE_CXX_FLAGS_RELEASE "-O2")
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g")
 
 find_program(CCACHE ccache)
 if(CCACHE)
@@ -31,7 +33,7 @@ if(TAUT_SANITIZE)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "TAUT_SANITIZE needs clang++: -DCMAKE_CXX_COMPILER=clang++")
   endif()
-  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
+  set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")  # their reports name lines
   target_compile_definitions(taut_flags INTERFACE TAUT_SANITIZED)
   # Leaves out checks of pointers that took two thirds of the compile time. The address sanitizer still detects accesses at null
   # and most accesses outside of an object, but none that lands in another object. Nothing detects a misaligned access, or a

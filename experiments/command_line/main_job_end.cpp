@@ -5,6 +5,7 @@
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
 #include "experiments/command_line/page.hpp"
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/steps/one_step.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/data.hpp"

@@ -12,6 +12,7 @@
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/history/history.hpp"
 #include "experiments/render/film/film_plan.hpp"
 #include "experiments/report/findings.hpp"

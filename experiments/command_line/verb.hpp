@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -13,9 +12,9 @@
 
 // Included by the file of every verb.
 #include "core/model/input_error.hpp"
+#include "experiments/command_line/arguments.hpp"
 #include "experiments/command_line/options.hpp"
 #include "experiments/command_line/output.hpp"
-#include "experiments/system/json.hpp"
 #include "experiments/system/own_words.hpp"
 #include "experiments/system/signals.hpp"
 
@@ -51,22 +50,22 @@ struct VerbEntry {
   std::string_view example;  ///< one or more complete command lines, shown below --help
   /// Contents of the answer with --json; empty: no answer (answer.hpp).
   std::vector<AnswerPart> answer;
-  /// Adds options to the verb's parser and returns the function to call once they are parsed. That
+  /// Describes the verb's options and returns the function to call once they are parsed. That
   /// function may throw InputError (printed, exit code 2). Data go to stdout, progress and logs to
   /// stderr. nullptr for a verb that only has subverbs.
-  std::function<int()> (*bind)(CLI::App&) = nullptr;
+  std::function<int()> (*bind)(Arguments&) = nullptr;
 };
 
-/// Makes a verb's `bind` from void add_options(CLI::App&, Options&) and int run(Options).
+/// Makes a verb's `bind` from void add_options(Arguments&, Options&) and int run(Options).
 template <auto add_options, auto run, class Options>
-std::function<int()> bind_options(CLI::App& app, void (*)(CLI::App&, Options&)) {
+std::function<int()> bind_options(Arguments& args, void (*)(Arguments&, Options&)) {
   const auto options = std::make_shared<Options>();
-  add_options(app, *options);
+  add_options(args, *options);
   return [options] { return run(*options); };
 }
 template <auto add_options, auto run>
-std::function<int()> bind_verb(CLI::App& app) {
-  return bind_options<add_options, run>(app, add_options);
+std::function<int()> bind_verb(Arguments& args) {
+  return bind_options<add_options, run>(args, add_options);
 }
 
 /// All verbs, sorted by identifier (generated; see cmake/registry.cmake).

@@ -19,6 +19,7 @@
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/clock.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::external {
 

@@ -9,7 +9,7 @@
 
 #include "core/model/status.hpp"
 #include "experiments/system/files.hpp"
-#include "experiments/system/json.hpp"
+#include "experiments/system/json_type.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut::external {

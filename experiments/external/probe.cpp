@@ -6,6 +6,7 @@
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
 #include "experiments/case/digest.hpp"
+#include "experiments/system/json.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut::external {

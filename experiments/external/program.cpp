@@ -9,6 +9,7 @@
 #include "experiments/answer/answer.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/external/probe.hpp"
+#include "experiments/system/json.hpp"
 #include "experiments/system/text.hpp"
 
 namespace taut::external {

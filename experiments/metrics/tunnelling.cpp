@@ -82,6 +82,14 @@ struct Solid {
   }
 };
 
+/// A rotation that puts an axis along y, whichever way it points.
+Eigen::Quaterniond onto_y(const Vec3& axis) {
+  const Vec3 along = (axis.y() < 0 ? -axis : axis).normalized();
+  const double twice_cosine = std::sqrt(2 * (1 + along.y()));  // of half the angle
+  const Vec3 sine = along.cross(Vec3::UnitY()) * (1 / twice_cosine);
+  return {twice_cosine * 0.5, sine.x(), sine.y(), sine.z()};
+}
+
 /// Follows every free vertex past one collider and remembers the side on which it entered.
 class SideTracker {
  public:
@@ -98,8 +106,7 @@ class SideTracker {
       const Vec3 along = capsule->to - capsule->from;
       solid_.radius = capsule->radius;
       solid_.half_length = along.norm() / 2;
-      if (solid_.half_length > 0)
-        along_y_ = Eigen::Quaterniond::FromTwoVectors(along, Vec3::UnitY());
+      if (solid_.half_length > 0) along_y_ = onto_y(along);
     }
   }
 

@@ -12,14 +12,12 @@
 #include <vector>
 
 #include "core/io/text_file.hpp"
+#include "experiments/system/json_type.hpp"
 
 namespace taut {
 
-/// The JSON type of the whole program. Keys stay in the order in which they were written. The
-/// library is large: keep this header out of headers that many files include.
-using Json = nlohmann::ordered_json;
-
-// The writer and the parser are compiled once, in json.cpp.
+// The library is large: keep this header out of headers that many files include. The writer and the
+// parser are compiled once, in json.cpp.
 
 /// Writes JSON text; a negative indent puts it on one line. Bytes that are not UTF-8 become U+FFFD.
 std::string to_text(const Json&, int indent = -1);

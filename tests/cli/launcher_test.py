@@ -18,6 +18,7 @@ NOBODY = 65534
 CMAKE = """
 cmake_minimum_required(VERSION 3.25)
 project(toy LANGUAGES CXX)
+include(cmake/batches.cmake)
 option(TAUT_TESTS "" ON)
 # Fails if it runs twice at once.
 add_custom_command(OUTPUT made.hpp DEPENDS core/main.cpp COMMAND mkdir alone COMMAND sleep 0.3
@@ -25,7 +26,7 @@ add_custom_command(OUTPUT made.hpp DEPENDS core/main.cpp COMMAND mkdir alone COM
 add_executable(taut core/main.cpp made.hpp)
 target_include_directories(taut PRIVATE ${PROJECT_BINARY_DIR})
 target_compile_definitions(taut PRIVATE SOURCE="${PROJECT_SOURCE_DIR}")
-add_custom_target(taut-f32)
+add_custom_target(taut-f32 COMMAND ${CMAKE_COMMAND} -E copy taut taut-f32 DEPENDS taut)
 option(TAUT_PYTHON "" OFF)
 if(TAUT_PYTHON)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
@@ -88,6 +89,7 @@ class Launcher(unittest.TestCase):
         for name in ["taut", "CMakePresets.json"]:
             shutil.copy2(REPOSITORY / name, self.clone)
         (self.clone / "CMakeLists.txt").write_text(CMAKE)
+        shutil.copy2(REPOSITORY / "cmake/batches.cmake", self.clone / "cmake")
         (self.clone / "core/main.cpp").write_text(MAIN)
         (self.clone / "experiments/taut_module").write_text("version = 1\n")
         self.tools = self.folder / "tools"
@@ -161,6 +163,36 @@ class Launcher(unittest.TestCase):
         self.call("run")
         self.assertEqual(self.started(), [], "a test is no part of the program")
 
+    def test_an_edited_file_leaves_its_batch_until_it_is_committed(self):
+        def git(*words):
+            subprocess.run(["git", "-c", "user.name=x", "-c", "user.email=x", *words], cwd=self.clone, check=True, capture_output=True)
+
+        git("init")
+        git("add", "core")
+        git("commit", "-m", "first")
+        self.call("run")
+        for text, files, configured in (("2", "core/main.cpp", True), ("3", "core/main.cpp", False)):
+            self.edit('"version', f'"{text} version')
+            self.started()
+            self.call("run")
+            self.assertEqual((self.clone / "build/default/edited").read_text(), files)
+            self.assertEqual(self.started().count("cmake"), 2 if configured else 1)
+        git("commit", "-am", "second")
+        self.edit("version 1", "version 1 ")
+        git("commit", "-am", "third")
+        self.call("run")
+        self.assertEqual((self.clone / "build/default/edited").read_text(), "")
+
+    def test_bullet_in_float_is_built_only_for_who_may_run_it(self):
+        in_float = self.clone / "build/default/taut-f32"
+        for words in (["case", "hang", "jakobsen"], ["list", "solvers"], ["--help"]):
+            self.call(*words)
+            self.assertFalse(in_float.exists(), words)
+        for words in (["case", "hang", "bullet:precision=float"], ["run", "hang"]):
+            self.call(*words)
+            self.assertTrue(in_float.exists(), words)
+            in_float.unlink()
+
     def test_every_folder_of_sources_is_watched_and_no_scene_or_study(self):
         self.call("run")
         folders = {file.parent for top in ("cmake", "core", "bullet_ref", "experiments") for ending in ("cpp", "hpp", "cmake", "js", "css", "html")
@@ -172,8 +204,8 @@ class Launcher(unittest.TestCase):
             file.parent.mkdir(parents=True, exist_ok=True)
             file.touch()
         functions = re.findall(r"^(?:is_current|made_from)\(\) \{.*?\}$", (REPOSITORY / "taut").read_text(), re.MULTILINE | re.DOTALL)
-        script = "\n".join(["home=$1", *functions, 'is_current "$home/build/default" built-program'])
-        stamp = self.clone / "build/default/built-program"
+        script = "\n".join(["home=$1", *functions, 'is_current "$home/build/default" built-programs'])
+        stamp = self.clone / "build/default/built-programs"
         os.utime(stamp, (stamp.stat().st_mtime + 100, ) * 2)
 
         def is_current():

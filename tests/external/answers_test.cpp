@@ -17,6 +17,7 @@
 #include "experiments/external/protocol.hpp"
 #include "experiments/external/sdk/taut_solver.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::external::answers_test {

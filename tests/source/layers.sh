@@ -51,7 +51,8 @@ BulletSoftBody|btBullet|BulletDynamics|BulletCollision|LinearMath | ^bullet_ref/
 pybind11/|Python.h      | ^experiments/python/.*
 toml\+\+                | ^core/io/document\.cpp
 Eigen/(Sparse|SparseCholesky|SparseLU|OrderingMethods|Eigenvalues) | ^core/(reference|solver)/.*\.cpp|^tests/beside/stubs/
-nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json\.hpp
+nlohmann/               | ^(experiments|tests)/.*\.cpp|^experiments/system/json(_type)?\.hpp
+CLI/                    | ^experiments/command_line/parser\.cpp
 SQLiteCpp/|sqlite3      | ^experiments/results/database\.[ch]pp
 openssl/                | ^experiments/(case|report/chart)/.*\.cpp
 core/model/(solver|params)\.hpp | ^(core|bullet_ref|tests|experiments/[^m])
@@ -169,6 +170,7 @@ bullet_ref/planted.hpp|<BulletSoftBody/btSoftBody.h>
 core/model/planted.hpp|<toml++/toml.h>
 core/solver/planted.hpp|<Eigen/Sparse>
 core/model/planted.cpp|<nlohmann/json.hpp>
+experiments/cli/cost/planted.cpp|<CLI/CLI.hpp>
 experiments/case/planted.hpp|namespace taut {;struct Scene {
 experiments/report/planted.cpp|namespace taut {;enum class TruthVerdict {
 tests/planted.hpp|namespace taut {;inline int body_of_a_box(const Vec3& size) {

@@ -7,6 +7,7 @@
 #include "experiments/advise/searched_study.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/read_all.hpp"
 
 namespace taut::verb::advise {
 
@@ -91,43 +92,44 @@ int run(Options options) {
   return advice.cut.empty() ? kPass : kIncomplete;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  add_scene(app, o.scene);
-  app.add_option(
+void add_options(Arguments& args, Options& o) {
+  add_scene(args, o.scene);
+  args.add_option(
       "--study", o.study,
       "In place of a scene: search all solvers on all scenes of this study with equal CPU time, "
       "and write the file that the study's key `searched` names");
-  add_preset(app, o.preset);
-  app.add_option(
-         "--cpu", o.cpu,
-         "With --study: CPU time of each solver on a scene [s] (default: " + as_typed(o.cpu) + ")")
-      ->check(above_zero_seconds());
-  app.add_option("--error", o.error, "Reach this error (0.01 or 1%) at the least cost");
-  app.add_option("--budget", o.budget, "Reach the least error within this CPU time per frame [ms]")
-      ->check(above_zero());
-  app.add_option("--fps", o.fps,
-                 "Frames in a second; the budget is that of one (default: " + as_typed(o.fps) + ")")
-      ->check(above_zero());
-  app.add_option(
-         "--keep", o.keep,
-         "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in %; "
-         "repeat it for each. 'nothing': only the error counts (default: no passage, no crossing, "
-         "depths of at most " +
-             number_text(100 * kMostDepth) + " % of the cloth, RMS stretch of at most " +
-             number_text(100 * kMostStretch) + " %)")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("--solver", o.solvers,
-                 "Only this solver, keeping what its text sets; repeat it for each (default: all)");
-  add_settings(app, o.settings);
-  add_judgement(app, o.metric, o.tolerance);
-  app.add_option(
-         "--patience", o.patience,
-         "Search, time and verify within this time [s] (default: " + as_typed(o.patience) + ")")
-      ->check(above_zero_seconds());
-  add_samples(app, o.rounds, o.seconds, 2);
-  add_results(app, o.out);
-  add_format(app, o.format, "Print all that was tried, too");
+  add_preset(args, o.preset);
+  args.add_option(
+          "--cpu", o.cpu,
+          "With --study: CPU time of each solver on a scene [s] (default: " + as_typed(o.cpu) + ")")
+      .check(above_zero_seconds());
+  args.add_option("--error", o.error, "Reach this error (0.01 or 1%) at the least cost");
+  args.add_option("--budget", o.budget, "Reach the least error within this CPU time per frame [ms]")
+      .check(above_zero());
+  args.add_option(
+          "--fps", o.fps,
+          "Frames in a second; the budget is that of one (default: " + as_typed(o.fps) + ")")
+      .check(above_zero());
+  args.add_option(
+          "--keep", o.keep,
+          "VALUE:LIMIT that it must keep, too, in SI units, in the unit shown (:1mm) or in %; "
+          "repeat it for each. 'nothing': only the error counts (default: no passage, no crossing, "
+          "depths of at most " +
+              number_text(100 * kMostDepth) + " % of the cloth, RMS stretch of at most " +
+              number_text(100 * kMostStretch) + " %)")
+      .repeated();
+  args.add_option(
+      "--solver", o.solvers,
+      "Only this solver, keeping what its text sets; repeat it for each (default: all)");
+  add_settings(args, o.settings);
+  add_judgement(args, o.metric, o.tolerance);
+  args.add_option(
+          "--patience", o.patience,
+          "Search, time and verify within this time [s] (default: " + as_typed(o.patience) + ")")
+      .check(above_zero_seconds());
+  add_samples(args, o.rounds, o.seconds, 2);
+  add_results(args, o.out);
+  add_format(args, o.format, "Print all that was tried, too");
 }
 
 }  // namespace

@@ -99,32 +99,32 @@ int run(const Options& options) {
   return slower ? kRegression : kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("WHAT", o.what, "Studies; or scenes, with --solver");
-  app.add_option("--solver", o.solvers, "A solver to time on the scene; repeat it for each");
-  app.add_option(
+void add_options(Arguments& args, Options& o) {
+  args.add_option("WHAT", o.what, "Studies; or scenes, with --solver");
+  args.add_option("--solver", o.solvers, "A solver to time on the scene; repeat it for each");
+  args.add_option(
       "--beside", o.beside,
       "A checkout of public code, timed beside ours of its method (experiments/beside/README.md)");
-  add_settings(app, o.settings);
-  add_preset(app, o.preset);
-  add_judgement(app, o.metric, o.tolerance);
-  app.add_option("--at", o.levels,
-                 "Errors to be reached (default: " + join(kErrorLevels, ",", shortest) +
-                     "; by strain alone: " + join(kStrainLevels, ",", shortest) + "; 0.01 is 1 %)")
-      ->delimiter(',')
-      ->check(above_zero());
-  add_samples(app, o.timing.rounds, o.timing.seconds);
-  add_results(app, o.out);
-  app.add_option(
-         "--against", o.against,
-         "Another build of taut, a folder or the name of a kept one, timed in turns with this "
-         "one; exit 1 if this one is slower")
-      ->excludes("--solver");
-  app.add_option("--keep-build", o.keep_build, "Keep this program under a name, for --against");
-  add_format(app, o.format, "Print every case and every sample, too");
-  app.add_flag(own_words::kWorker, o.worker,
-               "Serve samples of one case over stdin and stdout (internal)")
-      ->group("");
+  add_settings(args, o.settings);
+  add_preset(args, o.preset);
+  add_judgement(args, o.metric, o.tolerance);
+  args.add_option("--at", o.levels,
+                  "Errors to be reached (default: " + join(kErrorLevels, ",", shortest) +
+                      "; by strain alone: " + join(kStrainLevels, ",", shortest) + "; 0.01 is 1 %)")
+      .delimiter(',')
+      .check(above_zero());
+  add_samples(args, o.timing.rounds, o.timing.seconds);
+  add_results(args, o.out);
+  args.add_option(
+          "--against", o.against,
+          "Another build of taut, a folder or the name of a kept one, timed in turns with this "
+          "one; exit 1 if this one is slower")
+      .excludes("--solver");
+  args.add_option("--keep-build", o.keep_build, "Keep this program under a name, for --against");
+  add_format(args, o.format, "Print every case and every sample, too");
+  args.add_flag(own_words::kWorker, o.worker,
+                "Serve samples of one case over stdin and stdout (internal)")
+      .hidden();
 }
 
 }  // namespace

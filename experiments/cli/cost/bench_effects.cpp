@@ -103,20 +103,20 @@ int run(const Options& o) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scenes,
-                 std::string("Scenes beside ") + kUnit + " (default: all that are shipped)");
-  app.add_option("--solver", o.solver, "The solver (default: " + o.solver + ")");
-  app.add_option("--sizes", o.sizes,
-                 "Sheets with this many vertices along each side; 0: as shipped (default: " +
-                     join(o.sizes, ",", [](int side) { return std::to_string(side); }) + ")")
-      ->delimiter(',')
-      ->check(CLI::Range(0, 1024));
-  add_samples(app, o.rounds, o.seconds);
-  app.add_option("--copies", o.copies,
-                 "Also run this many sheets of each scene at once on two threads, in wall time")
-      ->check(CLI::Range(1, 4096));
-  add_format(app, o.format, "Print every sample, too");
+void add_options(Arguments& args, Options& o) {
+  args.add_option("SCENE", o.scenes,
+                  std::string("Scenes beside ") + kUnit + " (default: all that are shipped)");
+  args.add_option("--solver", o.solver, "The solver (default: " + o.solver + ")");
+  args.add_option("--sizes", o.sizes,
+                  "Sheets with this many vertices along each side; 0: as shipped (default: " +
+                      join(o.sizes, ",", [](int side) { return std::to_string(side); }) + ")")
+      .delimiter(',')
+      .check(in_range(0, 1024));
+  add_samples(args, o.rounds, o.seconds);
+  args.add_option("--copies", o.copies,
+                  "Also run this many sheets of each scene at once on two threads, in wall time")
+      .check(in_range(1, 4096));
+  add_format(args, o.format, "Print every sample, too");
 }
 
 }  // namespace

@@ -29,23 +29,23 @@ int run(const Options& options) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("STUDY", o.study,
-                 "A study that varies the cloth's grid (default: scaling, or scaling-error)");
-  add_preset(app, o.preset);
-  app.add_option(
+void add_options(Arguments& args, Options& o) {
+  args.add_option("STUDY", o.study,
+                  "A study that varies the cloth's grid (default: scaling, or scaling-error)");
+  add_preset(args, o.preset);
+  args.add_option(
       "--error", o.error,
       "Search for each solver the fewest substeps (of one sweep), or sweeps if it has more "
       "than one, that reach this RMS stretch: 0.005 or 0.5%");
-  app.add_option("--limit", o.limit,
-                 "Skip a case that would take longer than this in all [s] (default: " +
-                     as_typed(o.limit) + ")")
-      ->check(above_zero_seconds());
-  app.add_option("--samples", o.samples,
-                 "Samples of each case (default: " + std::to_string(o.samples) + ")")
-      ->check(CLI::Range(1, 1000));
-  add_results(app, o.out);
-  add_format(app, o.format, "Print every sample, too");
+  args.add_option("--limit", o.limit,
+                  "Skip a case that would take longer than this in all [s] (default: " +
+                      as_typed(o.limit) + ")")
+      .check(above_zero_seconds());
+  args.add_option("--samples", o.samples,
+                  "Samples of each case (default: " + std::to_string(o.samples) + ")")
+      .check(in_range(1, 1000));
+  add_results(args, o.out);
+  add_format(args, o.format, "Print every sample, too");
 }
 
 }  // namespace

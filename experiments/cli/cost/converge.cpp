@@ -57,23 +57,22 @@ int run(const Options& options) {
   return any ? kPass : kNothing;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  add_scene(app, o.scene)->required();
-  add_solvers(app, o.solvers, "A solver, of which only the iterations vary")->required();
-  app.add_option("--at", o.at,
-                 "Time of the state from which the step is made [s]; 0: the scene's start")
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--from", o.from, "The solver whose run gives that state");
-  app.add_option("--most", o.most, "The most iterations")->check(CLI::Range(1, 1 << 20));
-  add_settings(app, o.settings);
-  CLI::Option* const figures =
-      add_output(app, o.figures, "Draw the curves into this folder, as SVG with data and script");
-  app.add_option("--kind", o.kind, "What is drawn: distance, gap, stretch, residual")
-      ->check(known("kind", step_kinds()))
-      ->needs(figures);
-  add_record(app, o.record);
-  add_results(app, o.out);
-  add_format(app, o.format);
+void add_options(Arguments& args, Options& o) {
+  add_scene(args, o.scene).required();
+  add_solvers(args, o.solvers, "A solver, of which only the iterations vary").required();
+  args.add_option("--at", o.at,
+                  "Time of the state from which the step is made [s]; 0: the scene's start")
+      .check(in_range(0.0, 1e6));
+  args.add_option("--from", o.from, "The solver whose run gives that state");
+  args.add_option("--most", o.most, "The most iterations").check(in_range(1, 1 << 20));
+  add_settings(args, o.settings);
+  add_output(args, o.figures, "Draw the curves into this folder, as SVG with data and script");
+  args.add_option("--kind", o.kind, "What is drawn: distance, gap, stretch, residual")
+      .check(known("kind", step_kinds()))
+      .needs("--output");
+  add_record(args, o.record);
+  add_results(args, o.out);
+  add_format(args, o.format);
 }
 
 }  // namespace

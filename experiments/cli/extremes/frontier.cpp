@@ -78,49 +78,48 @@ int run(const Options& options) {
   return options.all.empty() ? run_setting(options) : run_every_parameter(options);
 }
 
-void add_options(CLI::App& app, Options& options) {
-  options.which.bind(app);
-  for (const char* name : {"SCENE", "SOLVER"}) app.get_option(name)->required(false);
-  auto* others =
-      app.add_option("OTHERS", options.others, "Further solvers: then one table, a row for each");
-  app.add_option("--keep", options.keep,
-                 "METRIC:LIMIT up to which a case is acceptable, in SI units or in the unit shown "
-                 "(stretch.rms:5%); repeat it for each (default: what the scene accepts, see `taut "
-                 "advise --help`)")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  auto* all =
-      app.add_option(
-             "--all", options.all,
-             "One or two solvers: every parameter of theirs and of a small standard scene, with "
-             "what goes wrong first, as a table and a picture; takes about a minute")
-          ->expected(1, 2)
-          ->excludes("SCENE")
-          ->excludes("SOLVER")
-          ->excludes(others)
-          ->excludes("--keep");
+void add_options(Arguments& args, Options& options) {
+  options.which.bind(args);
+  for (const char* name : {"SCENE", "SOLVER"}) args.at(name).required(false);
+  args.add_option("OTHERS", options.others, "Further solvers: then one table, a row for each");
+  args.add_option(
+          "--keep", options.keep,
+          "METRIC:LIMIT up to which a case is acceptable, in SI units or in the unit shown "
+          "(stretch.rms:5%); repeat it for each (default: what the scene accepts, see `taut "
+          "advise --help`)")
+      .repeated();
+  args.add_option(
+          "--all", options.all,
+          "One or two solvers: every parameter of theirs and of a small standard scene, with "
+          "what goes wrong first, as a table and a picture; takes about a minute")
+      .expected(1, 2)
+      .excludes("SCENE")
+      .excludes("SOLVER")
+      .excludes("OTHERS")
+      .excludes("--keep");
   for (const char* name : {"--dt", "--duration", "--set", "--fabric"})
-    app.get_option(name)->excludes(all);
-  add_baselines(app, options.baselines);
-  app.add_flag("--check", options.check, "Exit 1 if a frontier of --all differs from the baseline")
-      ->needs(all);
-  app.add_flag("--update", options.update, "Keep what --all finds as the baseline")->needs(all);
-  app.add_option("--of", options.of,
-                 "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
-                 "(default: " +
-                     options.of + ")")
-      ->excludes(all);
-  app.add_option("--from", options.from, "Where to start (dt: " + as_typed(kTimeSteps.from) + " s)")
-      ->excludes(all);
-  app.add_option("--to", options.to, "Where to stop (dt: " + as_typed(kTimeSteps.to) + " s)")
-      ->excludes(all);
-  app.add_option("--tolerance", options.tolerance,
-                 "Relative width of the bracket (default: " + as_typed(options.tolerance) + ")")
-      ->check(CLI::Range(1e-9, 0.5))
-      ->excludes(all);
-  add_jobs(app, options.jobs);
-  add_results(app, options.out);
-  add_format(app, options.format);
+    args.at(name).excludes("--all");
+  add_baselines(args, options.baselines);
+  args.add_flag("--check", options.check, "Exit 1 if a frontier of --all differs from the baseline")
+      .needs("--all");
+  args.add_flag("--update", options.update, "Keep what --all finds as the baseline").needs("--all");
+  args.add_option("--of", options.of,
+                  "What to enlarge: dt, a parameter of the solver, or a scene key with a dot "
+                  "(default: " +
+                      options.of + ")")
+      .excludes("--all");
+  args.add_option("--from", options.from,
+                  "Where to start (dt: " + as_typed(kTimeSteps.from) + " s)")
+      .excludes("--all");
+  args.add_option("--to", options.to, "Where to stop (dt: " + as_typed(kTimeSteps.to) + " s)")
+      .excludes("--all");
+  args.add_option("--tolerance", options.tolerance,
+                  "Relative width of the bracket (default: " + as_typed(options.tolerance) + ")")
+      .check(in_range(1e-9, 0.5))
+      .excludes("--all");
+  add_jobs(args, options.jobs);
+  add_results(args, options.out);
+  add_format(args, options.format);
 }
 
 }  // namespace

@@ -100,26 +100,26 @@ int run(const Options& options) {
   return worst;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("SCENE", o.scene,
-                 "Name of a shipped scene, or a path; all: every shipped scene, as a table")
-      ->required();
-  app.add_option("SOLVER", o.solver, "NAME or NAME:key=value,... (default: " + o.solver + ")");
-  app.add_option("--keep", o.keep,
-                 "An answer to keep: shape or a metric value, and :TOLERANCE in SI units, in the "
-                 "unit shown (:2mm) or in % of the cloth, of the duration or of the value; repeat "
-                 "it for each (default: shape, stretch, depth, crossings, settling time)")
-      ->allow_extra_args(false);
-  add_settings(app, o.settings);
-  app.add_option("--patience", o.patience,
-                 "Search, verify and time within this time for a scene [s] (default: " +
-                     as_typed(o.patience) + ")")
-      ->check(above_zero_seconds());
-  add_output(app, o.output,
+void add_options(Arguments& args, Options& o) {
+  args.add_option("SCENE", o.scene,
+                  "Name of a shipped scene, or a path; all: every shipped scene, as a table")
+      .required();
+  args.add_option("SOLVER", o.solver, "NAME or NAME:key=value,... (default: " + o.solver + ")");
+  args.add_option("--keep", o.keep,
+                  "An answer to keep: shape or a metric value, and :TOLERANCE in SI units, in the "
+                  "unit shown (:2mm) or in % of the cloth, of the duration or of the value; repeat "
+                  "it for each (default: shape, stretch, depth, crossings, settling time)")
+      .one_each();
+  add_settings(args, o.settings);
+  args.add_option("--patience", o.patience,
+                  "Search, verify and time within this time for a scene [s] (default: " +
+                      as_typed(o.patience) + ")")
+      .check(above_zero_seconds());
+  add_output(args, o.output,
              "Where to draw both models (default: models.png beside the smallest scene)");
-  add_jobs(app, o.jobs);
-  add_results(app, o.out);
-  add_format(app, o.format, "Print all that was tried, too");
+  add_jobs(args, o.jobs);
+  add_results(args, o.out);
+  add_format(args, o.format, "Print all that was tried, too");
 }
 
 }  // namespace

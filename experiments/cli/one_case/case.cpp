@@ -92,18 +92,18 @@ int run(const Options& options) try {
   return kOutOfMemory;
 }
 
-void add_options(CLI::App& app, Options& options) {
-  options.which.bind(app);
-  app.add_flag("--json", options.json, "Print the record as JSON");
-  app.add_option("--final-state", options.final_state,
-                 "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
-  app.add_option("--trajectory", options.trajectory,
-                 "Write every step's positions: .npy, .pc2, or .obj, a file a step");
-  app.add_option("--series", options.series, "Write values over time (CSV)");
-  app.add_flag("--verbose", options.verbose,
-               "Show progress and the solver's resolved settings on stderr");
-  app.add_option(own_words::kInto, options.into, "Used by taut run")->group("");
-  app.add_option(own_words::kFrames, options.frames, "Used with --into")->group("");
+void add_options(Arguments& args, Options& options) {
+  options.which.bind(args);
+  args.add_flag("--json", options.json, "Print the record as JSON");
+  args.add_option("--final-state", options.final_state,
+                  "Write vertex,x,y,z,vx,vy,vz of the last stable state, full precision (CSV)");
+  args.add_option("--trajectory", options.trajectory,
+                  "Write every step's positions: .npy, .pc2, or .obj, a file a step");
+  args.add_option("--series", options.series, "Write values over time (CSV)");
+  args.add_flag("--verbose", options.verbose,
+                "Show progress and the solver's resolved settings on stderr");
+  args.add_option(own_words::kInto, options.into, "Used by taut run").hidden();
+  args.add_option(own_words::kFrames, options.frames, "Used with --into").hidden();
 }
 
 }  // namespace

@@ -39,17 +39,17 @@ int probe(const Options& options) {
   return failed == 0 ? kPass : kRegression;
 }
 
-void add_options_probe(CLI::App& app, Options& o) {
-  app.add_option("COMMAND", o.command,
-                 "The command, the name of a registered solver, or external:cmd='...'")
-      ->required();
-  add_format(app, o.format);
+void add_options_probe(Arguments& args, Options& o) {
+  args.add_option("COMMAND", o.command,
+                  "The command, the name of a registered solver, or external:cmd='...'")
+      .required();
+  add_format(args, o.format);
 }
 
-void add_options_scene(CLI::App& app, Options& o) {
-  add_scene(app, o.scene)->required();
-  add_output(app, o.output, "File to write")->required();
-  add_settings(app, o.settings);
+void add_options_scene(Arguments& args, Options& o) {
+  add_scene(args, o.scene).required();
+  add_output(args, o.output, "File to write").required();
+  add_settings(args, o.settings);
 }
 
 int write_scene(const Options& o) {

@@ -57,27 +57,27 @@ int run(const Options& o) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  add_scene(app, o.scene)->required();
-  app.add_option("POSITIONS", o.motion.file, "A .npy, a .pc2, or one .obj of a sequence")
-      ->required();
-  app.add_option("--fps", o.motion.fps, "Frames in a second (default: one a step of the scene)")
-      ->check(above_zero());
-  app.add_option(
-         "--scale", o.motion.scale,
-         "The file's unit [m]: 0.01 for centimetres (default: " + as_typed(o.motion.scale) + ")")
-      ->check(above_zero());
-  app.add_flag("--z-up", o.motion.z_up, "The file's z points up, not its y");
-  app.add_option(
+void add_options(Arguments& args, Options& o) {
+  add_scene(args, o.scene).required();
+  args.add_option("POSITIONS", o.motion.file, "A .npy, a .pc2, or one .obj of a sequence")
+      .required();
+  args.add_option("--fps", o.motion.fps, "Frames in a second (default: one a step of the scene)")
+      .check(above_zero());
+  args.add_option(
+          "--scale", o.motion.scale,
+          "The file's unit [m]: 0.01 for centimetres (default: " + as_typed(o.motion.scale) + ")")
+      .check(above_zero());
+  args.add_flag("--z-up", o.motion.z_up, "The file's z points up, not its y");
+  args.add_option(
       "--rest", o.motion.rest,
       "A file with the cloth at rest in the same order of vertices, if the positions do not "
       "begin as the scene does");
-  add_settings(app, o.settings);
-  app.add_option("--series", o.series, "Write values over time (CSV)");
-  app.add_option("--picture", o.picture, "Draw the end (.png), beside every --solver");
-  add_solvers(app, o.solvers,
+  add_settings(args, o.settings);
+  args.add_option("--series", o.series, "Write values over time (CSV)");
+  args.add_option("--picture", o.picture, "Draw the end (.png), beside every --solver");
+  add_solvers(args, o.solvers,
               "A solver to draw beside them, at most " + std::to_string(kMostBeside));
-  add_format(app, o.format);
+  add_format(args, o.format);
 }
 
 }  // namespace

@@ -15,12 +15,12 @@ int run(const Options& options) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option(
+void add_options(Arguments& args, Options& o) {
+  args.add_option(
       "WHAT", o.what,
       "scenes | solvers | metrics | studies | keys | fabrics | assertions | record | answers, or "
       "the name of a solver, whose parameters it lists (default: all)");
-  add_format(app, o.format, "Types, ranges and examples of keys, too");
+  add_format(args, o.format, "Types, ranges and examples of keys, too");
 }
 
 }  // namespace

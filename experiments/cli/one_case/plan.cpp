@@ -79,9 +79,9 @@ int run(const Options& options) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  o.which.bind(app);
-  add_format(app, o.format);
+void add_options(Arguments& args, Options& o) {
+  o.which.bind(args);
+  add_format(args, o.format);
 }
 
 }  // namespace

@@ -57,13 +57,14 @@ int run(const Options& options) {
   return written > 0 || options.all ? kPass : kNothing;
 }
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("SCENE", options.scenes, "Names of shipped scenes, or scene files");
-  app.add_flag("--all", options.all, "Every shipped scene");
-  add_settings(app, options.settings);
-  add_output(app, options.output, "Where references are kept (default: " + options.output + ")");
-  app.add_flag("--replace", options.replace, "Compute existing references of the same scene again");
-  add_json(app, options.format.json, "the references, or why there are none,");
+void add_options(Arguments& args, Options& options) {
+  args.add_option("SCENE", options.scenes, "Names of shipped scenes, or scene files");
+  args.add_flag("--all", options.all, "Every shipped scene");
+  add_settings(args, options.settings);
+  add_output(args, options.output, "Where references are kept (default: " + options.output + ")");
+  args.add_flag("--replace", options.replace,
+                "Compute existing references of the same scene again");
+  add_json(args, options.format.json, "the references, or why there are none,");
 }
 
 }  // namespace

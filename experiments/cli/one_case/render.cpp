@@ -114,25 +114,25 @@ int run(Options options) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  add_scene(app, o.what.scene)->required();
-  add_solvers(app, o.what.solvers, "A solver to draw, at most " + std::to_string(kMostPanels));
-  app.add_option("--at", o.at, "A moment to draw [s]; repeat it for each (default: the end)")
-      ->allow_extra_args(false);
-  app.add_flag("--sheet", o.sheet, "One picture, a row for each moment");
-  app.add_flag("--video", o.video, "H.264 video in real time (so does -o NAME.mp4)");
-  app.add_option("--view", o.view,
-                 "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
-  app.add_option("--colour", o.colour, "strain, penetration or speed");
-  app.add_option("--range", o.range, "End of the colour bar, in its unit (%, mm, m/s)")
-      ->check(above_zero());
-  o.changes.bind(app);
-  app.add_option("--size", o.size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
-  app.add_option("--quality", o.quality, "draft, video or still")
-      ->check(known("quality", {"draft", "video", "still"}));
-  app.add_flag("--dark", o.dark, "The dark background of the report");
-  add_output(app, o.output, "File (.png or .mp4)");
-  add_json(app, o.json, "the names of the files");
+void add_options(Arguments& args, Options& o) {
+  add_scene(args, o.what.scene).required();
+  add_solvers(args, o.what.solvers, "A solver to draw, at most " + std::to_string(kMostPanels));
+  args.add_option("--at", o.at, "A moment to draw [s]; repeat it for each (default: the end)")
+      .one_each();
+  args.add_flag("--sheet", o.sheet, "One picture, a row for each moment");
+  args.add_flag("--video", o.video, "H.264 video in real time (so does -o NAME.mp4)");
+  args.add_option("--view", o.view,
+                  "three-quarter, front, back, left, right, top, or AZIMUTH,ELEVATION in degrees");
+  args.add_option("--colour", o.colour, "strain, penetration or speed");
+  args.add_option("--range", o.range, "End of the colour bar, in its unit (%, mm, m/s)")
+      .check(above_zero());
+  o.changes.bind(args);
+  args.add_option("--size", o.size, "WIDTHxHEIGHT of the picture; of a panel with --sheet");
+  args.add_option("--quality", o.quality, "draft, video or still")
+      .check(known("quality", {"draft", "video", "still"}));
+  args.add_flag("--dark", o.dark, "The dark background of the report");
+  add_output(args, o.output, "File (.png or .mp4)");
+  add_json(args, o.json, "the names of the files");
 }
 
 }  // namespace

@@ -53,14 +53,14 @@ int run(const Options& o) {
   return missing.empty() ? kPass : kIncomplete;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("DIR", o.folders,
-                 "Folders of `taut cluster submit`, or results folders of `taut run --shard`")
-      ->required();
-  add_results(app, o.out);
-  app.add_flag("--allow-missing", o.allow_missing,
-               "Merge although planned cases are missing; reports say so");
-  add_format(app, o.format, "All that is missing, foreign or in conflict");
+void add_options(Arguments& args, Options& o) {
+  args.add_option("DIR", o.folders,
+                  "Folders of `taut cluster submit`, or results folders of `taut run --shard`")
+      .required();
+  add_results(args, o.out);
+  args.add_flag("--allow-missing", o.allow_missing,
+                "Merge although planned cases are missing; reports say so");
+  add_format(args, o.format, "All that is missing, foreign or in conflict");
 }
 
 }  // namespace

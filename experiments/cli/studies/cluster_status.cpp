@@ -16,9 +16,9 @@ int run(const Options& o) {
   return answer.fact("done") == answer.fact("cases") ? kPass : kIncomplete;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("DIR", o.folder, "The folder of `taut cluster submit`")->required();
-  add_format(app, o.format, "Every shard and every failed case");
+void add_options(Arguments& args, Options& o) {
+  args.add_option("DIR", o.folder, "The folder of `taut cluster submit`").required();
+  add_format(args, o.format, "Every shard and every failed case");
 }
 
 }  // namespace

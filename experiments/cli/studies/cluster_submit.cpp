@@ -74,28 +74,28 @@ int run(const Options& o) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  add_study(app, o.study)->required();
-  app.add_option("--on", o.on, "Who starts the shards: slurm or parallel")
-      ->required()
-      ->check(known("scheduler", {"slurm", "parallel"}));
-  auto* shards =
-      app.add_option("--shards", o.shards, "How many shards")->check(CLI::Range(1, kMostShards));
-  app.add_option("--hours", o.hours,
-                 "The fewest shards that end within that time (default: " + as_typed(o.hours) + ")")
-      ->check(above_zero())
-      ->excludes(shards);
-  add_preset(app, o.preset);
-  app.add_option("--folder", o.folder,
-                 "A new folder that all nodes see (default: " +
-                     (results_folder() / "cluster/STUDY").string() + ")");
-  app.add_option("--sshlogin", o.logins, "A node for GNU parallel, as [N/][user@]host; repeat it")
-      ->delimiter(',');
-  app.add_option("--node-file", o.node_file, "A file with a node on each line")
-      ->check(CLI::ExistingFile);
-  add_limits(app, o.limits);
-  app.add_flag("--dry-run", o.dry_run, "Write the folder and start nothing");
-  add_json(app, o.format.json, "the folder and its sizes");
+void add_options(Arguments& args, Options& o) {
+  add_study(args, o.study).required();
+  args.add_option("--on", o.on, "Who starts the shards: slurm or parallel")
+      .required()
+      .check(known("scheduler", {"slurm", "parallel"}));
+  args.add_option("--shards", o.shards, "How many shards").check(in_range(1, kMostShards));
+  args.add_option(
+          "--hours", o.hours,
+          "The fewest shards that end within that time (default: " + as_typed(o.hours) + ")")
+      .check(above_zero())
+      .excludes("--shards");
+  add_preset(args, o.preset);
+  args.add_option("--folder", o.folder,
+                  "A new folder that all nodes see (default: " +
+                      (results_folder() / "cluster/STUDY").string() + ")");
+  args.add_option("--sshlogin", o.logins, "A node for GNU parallel, as [N/][user@]host; repeat it")
+      .delimiter(',');
+  args.add_option("--node-file", o.node_file, "A file with a node on each line")
+      .check(existing_file());
+  add_limits(args, o.limits);
+  args.add_flag("--dry-run", o.dry_run, "Write the folder and start nothing");
+  add_json(args, o.format.json, "the folder and its sizes");
 }
 
 }  // namespace

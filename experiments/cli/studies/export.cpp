@@ -1,3 +1,4 @@
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/campaign.hpp"
 #include "experiments/system/files.hpp"
@@ -40,13 +41,13 @@ int run(const Options& options) {
   return not_run + damaged > 0 ? kIncomplete : kPass;
 }
 
-void add_options(CLI::App& app, Options& options) {
-  add_study(app, options.study)->required();
-  add_stored(app, options.preset, options.results);
-  auto* tidy = app.add_flag("--tidy", options.tidy, "A row for each value of each case");
-  app.add_flag("--series", options.series, "A row for each value over time of each case")
-      ->excludes(tidy);
-  add_output(app, options.output, "File (default: standard output)");
+void add_options(Arguments& args, Options& options) {
+  add_study(args, options.study).required();
+  add_stored(args, options.preset, options.results);
+  args.add_flag("--tidy", options.tidy, "A row for each value of each case");
+  args.add_flag("--series", options.series, "A row for each value over time of each case")
+      .excludes("--tidy");
+  add_output(args, options.output, "File (default: standard output)");
 }
 
 }  // namespace

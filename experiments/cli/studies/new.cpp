@@ -41,12 +41,12 @@ int run(const Options& o) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("KIND", o.kind, "study: of one scene and two solvers; scene: a sheet and a ball")
-      ->required()
-      ->check(known("kind", {"study", "scene"}));
-  app.add_option("NAME", o.name, "NAME or path; the file is NAME.toml")->required();
-  add_json(app, o.json, "the name of the file");
+void add_options(Arguments& args, Options& o) {
+  args.add_option("KIND", o.kind, "study: of one scene and two solvers; scene: a sheet and a ball")
+      .required()
+      .check(known("kind", {"study", "scene"}));
+  args.add_option("NAME", o.name, "NAME or path; the file is NAME.toml").required();
+  add_json(args, o.json, "the name of the file");
 }
 
 }  // namespace

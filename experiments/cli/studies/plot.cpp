@@ -1,4 +1,5 @@
 #include "core/model/text.hpp"
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/stored.hpp"
 #include "experiments/report/study_figures.hpp"
@@ -86,30 +87,29 @@ int run(const Options& options) {
   return missing > 0 || !figures.not_drawn.empty() ? kIncomplete : kPass;
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(Arguments& args, Options& options) {
   std::vector<std::string> names;
   for (const report::PlotKind& kind : report::plot_kinds()) names.emplace_back(kind.name);
-  add_study(app, options.study)->required();
-  add_stored(app, options.preset, options.results);
-  app.add_option("--kind", options.kind,
-                 "One of: " + join(names, ", ") + " (default: what the study asks for)")
-      ->check(known("kind of plot", names));
-  app.add_option("--x", options.x, "Value on x: dt, iterations, projections or a metric's value");
-  app.add_option("--y", options.y, "Value on y, such as stretch.rms");
-  add_solvers(app, options.solvers, "Only this solver");
-  app.add_option("--scene", options.scenes, "Only this scene; repeat it for each")
-      ->allow_extra_args(false);
-  app.add_option("--title", options.title, "Title above the figure");
-  app.add_flag("--no-title", options.no_title, "No title above the figure")->excludes("--title");
-  app.add_option("--width", options.width,
-                 "Width of the figure on paper, as 84mm; puts the key below the figure");
-  app.add_option("--height", options.height, "Its height, as 60mm (default: from its width)");
-  app.add_option(
+  add_study(args, options.study).required();
+  add_stored(args, options.preset, options.results);
+  args.add_option("--kind", options.kind,
+                  "One of: " + join(names, ", ") + " (default: what the study asks for)")
+      .check(known("kind of plot", names));
+  args.add_option("--x", options.x, "Value on x: dt, iterations, projections or a metric's value");
+  args.add_option("--y", options.y, "Value on y, such as stretch.rms");
+  add_solvers(args, options.solvers, "Only this solver");
+  args.add_option("--scene", options.scenes, "Only this scene; repeat it for each").one_each();
+  args.add_option("--title", options.title, "Title above the figure");
+  args.add_flag("--no-title", options.no_title, "No title above the figure").excludes("--title");
+  args.add_option("--width", options.width,
+                  "Width of the figure on paper, as 84mm; puts the key below the figure");
+  args.add_option("--height", options.height, "Its height, as 60mm (default: from its width)");
+  args.add_option(
       "--font", options.font,
       "Size of its text, as 8pt (default with --width: " + as_typed(report::kPaperFont) + "pt)");
-  add_output(app, options.output,
+  add_output(args, options.output,
              "Where figures go (default: figures/STUDY or figures/STUDY-PRESET in the results)");
-  add_json(app, options.json, "the names of the files");
+  add_json(args, options.json, "the names of the files");
 }
 
 }  // namespace

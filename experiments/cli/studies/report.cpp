@@ -23,20 +23,20 @@ int run(Options options) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("STUDY", options.studies,
-                 "Names or paths of studies; none: the main job, preset quick. After two results "
-                 "folders A and B: what differs");
-  add_stored(app, options.preset, options.results);
-  app.add_option(
-         "--film", options.films,
-         "Also film this scene (name or path), which no study ran; without --film and STUDY: "
-         "pictures of all shipped scenes without bodies that deform")
-      ->allow_extra_args(false);
-  app.add_flag("--no-media", options.no_media, "Leave out pictures and videos");
-  add_json(app, options.model,
+void add_options(Arguments& args, Options& options) {
+  args.add_option("STUDY", options.studies,
+                  "Names or paths of studies; none: the main job, preset quick. After two results "
+                  "folders A and B: what differs");
+  add_stored(args, options.preset, options.results);
+  args.add_option(
+          "--film", options.films,
+          "Also film this scene (name or path), which no study ran; without --film and STUDY: "
+          "pictures of all shipped scenes without bodies that deform")
+      .one_each();
+  args.add_flag("--no-media", options.no_media, "Leave out pictures and videos");
+  add_json(args, options.model,
            "the model of the page (experiments/report/model/MODEL.md), without pictures,");
-  add_output(app, options.output,
+  add_output(args, options.output,
              "The page (default: report.html), or the model (default: standard output)");
 }
 

@@ -1,6 +1,7 @@
 #include <cstdlib>
 
 #include "experiments/command_line/main_job_end.hpp"
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/report/questions/failure_map.hpp"
 #include "experiments/report/run_answer.hpp"
@@ -97,38 +98,38 @@ int run(Options options) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("STUDY", options.studies,
-                 "Names or paths of studies; none: the main job, preset quick, with its report");
-  add_preset(app, options.preset);
-  add_jobs(app, options.jobs);
-  app.add_option(
+void add_options(Arguments& args, Options& options) {
+  args.add_option("STUDY", options.studies,
+                  "Names or paths of studies; none: the main job, preset quick, with its report");
+  add_preset(args, options.preset);
+  add_jobs(args, options.jobs);
+  args.add_option(
       "--shard", options.shard,
       "Only part i of n of the cases, as i/n (default: this task's part of a Slurm array, else "
       "all)");
-  app.add_option("--only", options.only, "failed: run stored failures again, nothing else")
-      ->check(CLI::IsMember({"failed"}));
-  add_results(app, options.out);
-  app.add_option(
+  args.add_option("--only", options.only, "failed: run stored failures again, nothing else")
+      .check(only("failed"));
+  add_results(args, options.out);
+  args.add_option(
       "--build-id", options.build,
       "Names this build of taut and of the external programs for taut history: ID or ID@TIME, as "
       "1.2.0@2026-05-04; a program's results then belong to this build, not to its files");
-  add_limits(app, options.limits);
-  app.add_option(
-         "--dt", options.steps,
-         "Time step [s], such as 1/30, in place of the study's own; repeat it to compare several "
-         "with --table")
-      ->allow_extra_args(false)
-      ->needs("STUDY");
-  app.add_option(
-         "--table", options.values,
-         "Then print a table, settings by scenes, of this metric value; or failure_map: which "
-         "solver is right at which stiffness; repeat it for each")
-      ->allow_extra_args(false)
-      ->check(metric_value() | CLI::IsMember({report::kFailureMap}));
-  app.add_flag("--verbose", options.verbose, "A line for each case as it ends");
-  app.add_flag("--no-report", options.no_report, "Run the main job without its report");
-  add_json(app, options.json, "how the cases ended, and the tables,");
+  add_limits(args, options.limits);
+  args.add_option(
+          "--dt", options.steps,
+          "Time step [s], such as 1/30, in place of the study's own; repeat it to compare several "
+          "with --table")
+      .one_each()
+      .needs("STUDY");
+  args.add_option(
+          "--table", options.values,
+          "Then print a table, settings by scenes, of this metric value; or failure_map: which "
+          "solver is right at which stiffness; repeat it for each")
+      .one_each()
+      .check(either(metric_value(), only(report::kFailureMap)));
+  args.add_flag("--verbose", options.verbose, "A line for each case as it ends");
+  args.add_flag("--no-report", options.no_report, "Run the main job without its report");
+  add_json(args, options.json, "how the cases ended, and the tables,");
 }
 
 }  // namespace

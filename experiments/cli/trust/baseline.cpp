@@ -2,6 +2,7 @@
 #include "experiments/baseline/baseline_study.hpp"
 #include "experiments/baseline/check_answer.hpp"
 #include "experiments/case/fingerprint.hpp"
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
 
@@ -80,15 +81,15 @@ int update(Options options) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& options) {
-  add_study(app, options.study)->required();
-  add_baseline_options(app, options);
-  add_format(app, options.format);
+void add_options(Arguments& args, Options& options) {
+  add_study(args, options.study).required();
+  add_baseline_options(args, options);
+  add_format(args, options.format);
 }
 
-void add_update_options(CLI::App& app, Options& options) {
-  app.add_option("--why", options.why, "The reason, kept beside the baseline")->required();
-  add_options(app, options);
+void add_update_options(Arguments& args, Options& options) {
+  args.add_option("--why", options.why, "The reason, kept beside the baseline").required();
+  add_options(args, options);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "experiments/baseline/check.hpp"
 
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/files.hpp"
 #include "experiments/timing/two_builds.hpp"
@@ -45,23 +46,23 @@ int check(const Options& options) {
   return exit_code(found.end);
 }
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("STUDY", options.studies,
-                 "Names or paths of studies; none: all that have a baseline");
-  add_baseline_options(app, options);
-  app.add_option("--junit", options.junit, "Also write a JUnit file for continuous integration");
-  app.add_flag(
+void add_options(Arguments& args, Options& options) {
+  args.add_option("STUDY", options.studies,
+                  "Names or paths of studies; none: all that have a baseline");
+  add_baseline_options(args, options);
+  args.add_option("--junit", options.junit, "Also write a JUnit file for continuous integration");
+  args.add_flag(
       "--speed", options.speed,
       "Also time every case in turns with the build of --against; exit 1 if this one is slower");
-  app.add_option("--against", options.against,
-                 "A folder with another build of taut, or the name of a kept one (taut bench "
-                 "--keep-build)")
-      ->default_str("before")
-      ->needs("--speed");
-  add_format(app, options.format, "Print every change with the command that runs its case");
-  add_record(app, options.record);
-  app.add_flag("--strict-env", options.strict,
-               "Fail with 5 if the baseline was made with another toolchain");
+  args.add_option("--against", options.against,
+                  "A folder with another build of taut, or the name of a kept one (taut bench "
+                  "--keep-build)")
+      .shows_default("before")
+      .needs("--speed");
+  add_format(args, options.format, "Print every change with the command that runs its case");
+  add_record(args, options.record);
+  args.add_flag("--strict-env", options.strict,
+                "Fail with 5 if the baseline was made with another toolchain");
 }
 
 }  // namespace

@@ -131,8 +131,8 @@ int run(const Format& format) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Format& format) {
-  add_format(app, format, "Print the digests of solvers and of their layers, too");
+void add_options(Arguments& args, Format& format) {
+  add_format(args, format, "Print the digests of solvers and of their layers, too");
 }
 
 }  // namespace

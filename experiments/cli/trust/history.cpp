@@ -1,3 +1,4 @@
+#include "experiments/command_line/study_options.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/external.hpp"
 #include "experiments/history/history_answer.hpp"
@@ -64,45 +65,43 @@ int history(Options options) {
   return exit_code(found);
 }
 
-void add_options(CLI::App& app, Options& o) {
-  add_study(app, o.study)->required();
-  add_preset(app, o.preset);
-  app.add_option("--metric", o.metric, "Value of the tables and of the figure")
-      ->check(metric_value())
-      ->capture_default_str();
-  app.add_option("--plot", o.plot, "Also draw it over builds: NAME.svg, with its data");
-  app.add_option("--junit", o.junit, "Also write a JUnit file about the last build");
-  add_results(app, o.out);
-  add_baselines(app, o.baselines);
-  CLI::Option* git = app.add_option(
-      "--git", o.repository, "A repository; runs the commits whose results are missing first");
-  const auto of_git = [&](CLI::Option* option) { option->needs(git)->group("With --git"); };
-  CLI::Option* commits =
-      app.add_option("--commits", o.range, "A..B: A and all commits from there to B");
-  git->needs(commits);
-  of_git(commits);
-  of_git(app.add_option("--build", o.build,
-                        "The shell command that builds a commit, run in its checkout"));
-  of_git(app.add_option("--solver", o.solver,
-                        "The solver, run in the checkout: 'python3 mine.py', or "
-                        "mine:cmd='...',iterations=8; it replaces those of the study"));
-  of_git(app.add_option("--taut", o.taut,
-                        "Without --solver: the taut of that commit, which runs the study itself")
-             ->capture_default_str());
-  of_git(app.add_option("--bisect", o.bisect,
-                        "Run only what it takes to name the first commit at which this value "
-                        "changed; cpu.per_step and wall.per_step: the cost"));
-  of_git(app.add_flag("--speed", o.speed, "Also time each build in turns with the one before"));
-  of_git(app.add_flag("--again", o.again, "Try commits again that could not be built"));
-  of_git(app.add_option("--build-timeout", o.limits.seconds, "Seconds that a build may take")
-             ->check(above_zero_seconds())
-             ->capture_default_str());
-  of_git(app.add_option("--disk", o.disk, "Gigabytes that a checkout with its build may take")
-             ->check(above_zero())
-             ->capture_default_str());
-  add_jobs(app, o.jobs);
-  add_limits(app, o.case_limits);
-  add_format(app, o.format, "Print every build, every step and every value");
+void add_options(Arguments& args, Options& o) {
+  add_study(args, o.study).required();
+  add_preset(args, o.preset);
+  args.add_option("--metric", o.metric, "Value of the tables and of the figure")
+      .check(metric_value())
+      .shows_default();
+  args.add_option("--plot", o.plot, "Also draw it over builds: NAME.svg, with its data");
+  args.add_option("--junit", o.junit, "Also write a JUnit file about the last build");
+  add_results(args, o.out);
+  add_baselines(args, o.baselines);
+  args.add_option("--git", o.repository,
+                  "A repository; runs the commits whose results are missing first")
+      .needs("--commits");
+  const auto of_git = [](Argument& one) { one.needs("--git").group("With --git"); };
+  of_git(args.add_option("--commits", o.range, "A..B: A and all commits from there to B"));
+  of_git(args.add_option("--build", o.build,
+                         "The shell command that builds a commit, run in its checkout"));
+  of_git(args.add_option("--solver", o.solver,
+                         "The solver, run in the checkout: 'python3 mine.py', or "
+                         "mine:cmd='...',iterations=8; it replaces those of the study"));
+  of_git(args.add_option("--taut", o.taut,
+                         "Without --solver: the taut of that commit, which runs the study itself")
+             .shows_default());
+  of_git(args.add_option("--bisect", o.bisect,
+                         "Run only what it takes to name the first commit at which this value "
+                         "changed; cpu.per_step and wall.per_step: the cost"));
+  of_git(args.add_flag("--speed", o.speed, "Also time each build in turns with the one before"));
+  of_git(args.add_flag("--again", o.again, "Try commits again that could not be built"));
+  of_git(args.add_option("--build-timeout", o.limits.seconds, "Seconds that a build may take")
+             .check(above_zero_seconds())
+             .shows_default());
+  of_git(args.add_option("--disk", o.disk, "Gigabytes that a checkout with its build may take")
+             .check(above_zero())
+             .shows_default());
+  add_jobs(args, o.jobs);
+  add_limits(args, o.case_limits);
+  add_format(args, o.format, "Print every build, every step and every value");
 }
 
 }  // namespace

@@ -93,29 +93,29 @@ int run(const Options& options) {
   return code == kPass ? assertions : code;
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(Arguments& args, Options& options) {
   std::vector<std::string> names;
   for (const TruthEntry* truth : truths()) names.emplace_back(truth->name);
-  app.add_option("TRUTH", options.names, "Names of truths (default: all)")
-      ->check(known("truth", std::move(names)));
-  app.add_option(own_words::kSolver, options.solvers,
-                 "Only findings of these solvers (\"reference\": of the references)");
-  app.add_option("--section", options.section, "Only one section of the truths")
-      ->check(CLI::Range(1, 10));
-  app.add_option("-j,--jobs", options.jobs,
-                 "Truths at a time, each in a process of its own (default: " +
-                     std::to_string(options.jobs) + ")")
-      ->check(CLI::Range(1, 64));
-  add_record(app, options.record);
-  add_results(app, options.out);
-  app.add_flag("--assertions", options.assertions,
-               "Only the truths behind assertions of publications, and the verdicts");
-  add_baselines(app, options.baselines);
-  app.add_flag("--update", options.update,
-               "With --assertions: keep their verdicts as the baseline");
-  add_format(app, options.format, "Every number, with sources and times");
-  app.add_flag("--list", options.list, "Only name the truths");
-  app.add_flag(own_words::kHere, options.here, "Check in this process (internal)")->group("");
+  args.add_option("TRUTH", options.names, "Names of truths (default: all)")
+      .check(known("truth", std::move(names)));
+  args.add_option(own_words::kSolver, options.solvers,
+                  "Only findings of these solvers (\"reference\": of the references)");
+  args.add_option("--section", options.section, "Only one section of the truths")
+      .check(in_range(1, 10));
+  args.add_option("-j,--jobs", options.jobs,
+                  "Truths at a time, each in a process of its own (default: " +
+                      std::to_string(options.jobs) + ")")
+      .check(in_range(1, 64));
+  add_record(args, options.record);
+  add_results(args, options.out);
+  args.add_flag("--assertions", options.assertions,
+                "Only the truths behind assertions of publications, and the verdicts");
+  add_baselines(args, options.baselines);
+  args.add_flag("--update", options.update,
+                "With --assertions: keep their verdicts as the baseline");
+  add_format(args, options.format, "Every number, with sources and times");
+  args.add_flag("--list", options.list, "Only name the truths");
+  args.add_flag(own_words::kHere, options.here, "Check in this process (internal)").hidden();
 }
 
 }  // namespace

@@ -20,12 +20,11 @@ int run(const Options& o) {
   return kPass;
 }
 
-void add_options(CLI::App& app, Options& o) {
-  app.add_option("PART", o.parts, "free (elastic links), contact, rigid (default: all)")
-      ->check(known("part", probe_parts()));
-  app.add_option("--scene", o.scenes, "One of its scenes alone; repeat it for each")
-      ->allow_extra_args(false);
-  add_format(app, o.format, "Print all rows");
+void add_options(Arguments& args, Options& o) {
+  args.add_option("PART", o.parts, "free (elastic links), contact, rigid (default: all)")
+      .check(known("part", probe_parts()));
+  args.add_option("--scene", o.scenes, "One of its scenes alone; repeat it for each").one_each();
+  add_format(args, o.format, "Print all rows");
 }
 
 }  // namespace
