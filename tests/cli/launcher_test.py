@@ -39,6 +39,7 @@ if(TAUT_TESTS)
     add_custom_target(${target})
   endforeach()
   add_test(NAME one COMMAND true)
+  add_test(NAME layers COMMAND true)
   add_test(NAME planted COMMAND true)
   add_test(NAME random COMMAND true)
   add_test(NAME absent COMMAND false)
@@ -126,6 +127,9 @@ class Launcher(unittest.TestCase):
         self.log.write_text("")
         return names
 
+    def git(self, *words):
+        subprocess.run(["git", "-c", "user.name=x", "-c", "user.email=x", *words], cwd=self.clone, check=True, capture_output=True)
+
     def edit(self, there, then):
         file = self.clone / "core/main.cpp"
         file.write_text(file.read_text().replace(there, then))
@@ -164,12 +168,9 @@ class Launcher(unittest.TestCase):
         self.assertEqual(self.started(), [], "a test is no part of the program")
 
     def test_an_edited_file_leaves_its_batch_until_it_is_committed(self):
-        def git(*words):
-            subprocess.run(["git", "-c", "user.name=x", "-c", "user.email=x", *words], cwd=self.clone, check=True, capture_output=True)
-
-        git("init")
-        git("add", "core")
-        git("commit", "-m", "first")
+        self.git("init")
+        self.git("add", "core")
+        self.git("commit", "-m", "first")
         self.call("run")
         for text, files, configured in (("2", "core/main.cpp", True), ("3", "core/main.cpp", False)):
             self.edit('"version', f'"{text} version')
@@ -177,9 +178,9 @@ class Launcher(unittest.TestCase):
             self.call("run")
             self.assertEqual((self.clone / "build/default/edited").read_text(), files)
             self.assertEqual(self.started().count("cmake"), 2 if configured else 1)
-        git("commit", "-am", "second")
+        self.git("commit", "-am", "second")
         self.edit("version 1", "version 1 ")
-        git("commit", "-am", "third")
+        self.git("commit", "-am", "third")
         self.call("run")
         self.assertEqual((self.clone / "build/default/edited").read_text(), "")
 
@@ -289,6 +290,19 @@ class Launcher(unittest.TestCase):
             out, err = process.communicate(timeout=120)
             self.assertEqual(process.returncode, 0, err)
             self.assertIn("version 2", out)
+
+    def test_what_a_change_cannot_turn_red_is_left_out(self):
+        (self.clone / "tests/source").mkdir()
+        shutil.copy2(REPOSITORY / "tests/source/changed.py", self.clone / "tests/source")
+        self.git("init")
+        self.git("add", ".")
+        self.git("commit", "-m", "first")
+        for words in (["--changed"], ["--changed", "HEAD"], ["--changed", "-V"]):
+            changed = self.call("test", *words)
+            self.assertRegex(changed.out, r" layers \.+ +Passed")
+            self.assertNotIn(" one .", changed.out)
+            self.assertIn("  not run: what no change reaches", changed.err)
+        self.assertIn("no commit 'nonsense'", self.call("test", "--changed", "nonsense", expect=2).err)
 
     def test_a_test_run_names_what_was_skipped(self):
         quick = self.call("test")
