@@ -20,6 +20,7 @@
 #include "experiments/external/protocol.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/system/files.hpp"
+#include "experiments/system/json.hpp"
 
 /// All readers of external input, as functions of bytes, for libFuzzer (fuzz.cpp) and for inputs
 /// that once broke a reader (corpus_test.cpp). A reader throws InputError for input that it
