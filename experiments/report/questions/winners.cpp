@@ -8,6 +8,7 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/questions/costs.hpp"
 #include "experiments/report/questions/links.hpp"
 #include "experiments/system/distinct.hpp"
@@ -149,7 +150,8 @@ void add_wins(std::vector<Said>& sentence, const Wins& wins, const std::string& 
 }
 
 /// "btSoftBody costs 12 times as much as the cheapest solver for 5 % on push; it reaches no error
-/// of the map on ball; it cannot run rail." Empty if it was timed nowhere.
+/// of the map with the settings timed on rail; it cannot run drape-swing." Empty if it was timed
+/// nowhere.
 std::vector<Said> bullet_sentence(const WinnerMap& map) {
   std::vector<Said> sentence;
   std::vector<std::string> missed, refused;
@@ -172,7 +174,7 @@ std::vector<Said> bullet_sentence(const WinnerMap& map) {
     sentence.push_back(
         {(sentence.empty() ? "btSoftBody " : "; it ") + what + join(scenes, ", "), "", true});
   };
-  add(missed, "reaches no error of the map on ");
+  add(missed, "reaches no error of the map with the settings timed on ");
   add(refused, "cannot run ");
   if (!sentence.empty()) sentence.push_back({"."});
   return sentence;
