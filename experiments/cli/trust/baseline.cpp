@@ -1,3 +1,5 @@
+#include <set>
+
 #include "core/model/text.hpp"
 #include "experiments/baseline/baseline_study.hpp"
 #include "experiments/baseline/check_answer.hpp"
