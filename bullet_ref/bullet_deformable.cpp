@@ -15,6 +15,7 @@
 
 #include "bullet_ref/bullet_solver.hpp"
 #include "core/model/index.hpp"
+#include "core/model/text.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::solver::bullet_deformable {
@@ -235,11 +236,10 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                       " Newton step(s), conjugate gradients"
                                 : "symplectic Euler, explicit springs"},
        {kLinksSetting,
-        "springs of " + bullet_ref::short_text(stiffness(scene, params).value_or(0)) +
-            " N/m, all families" + (scene.stiffness == kRigid ? "; the scene's are rigid" : ""),
+        "springs of " + general(stiffness(scene, params).value_or(0), 6) + " N/m, all families" +
+            (scene.stiffness == kRigid ? "; the scene's are rigid" : ""),
         "", stiffness(scene, params).value_or(std::nan(""))},
-       {"spring damping",
-        bullet_ref::short_text(params.real("spring-damping")) + " N s/m (default 0.05)"},
+       {"spring damping", general(params.real("spring-damping"), 6) + " N s/m (default 0.05)"},
        {"gravity", "the scene's, by btDeformableGravityForce (default: none)"},
        {"damping", "velocities x exp(-damping h) before each substep"},
        {"NaN", "Bullet turns velocity changes that are not numbers into zero"}});

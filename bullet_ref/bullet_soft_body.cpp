@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "bullet_ref/bullet_solver.hpp"
+#include "core/model/text.hpp"
 #include "core/model/wind.hpp"
 
 namespace taut::solver::bullet_soft_body {
@@ -230,13 +231,12 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   ResolvedSettings lines = bullet_ref::library_settings(scene, params);
   lines.insert(lines.end(), {{"integration", "symplectic Euler; the same positions as Verlet"},
                              {"projection", "sqrt-free, weighted by inverse mass, kLST " +
-                                                bullet_ref::short_text(params.real("stiffness"))}});
+                                                general(params.real("stiffness"), 6)}});
   for (ResolvedSetting& line : link_order(scene, params)) lines.push_back(std::move(line));
   lines.insert(
       lines.end(),
       {{"gravity", "the scene's (soft bodies' own default: -10 m/s^2 in y)", "the scene's"},
-       {"damping",
-        "kDP " + bullet_ref::short_text(-std::expm1(-scene.damping * h)) + " per substep"},
+       {"damping", "kDP " + general(-std::expm1(-scene.damping * h), 6) + " per substep"},
        {"normals", params.is("faces", "on") ? "computed every substep" : "off"}});
   if (scene.wind)
     lines.emplace_back("wind", "our face law through addForce; Bullet's own medium is empty");
@@ -246,7 +246,7 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                             : "contacts, then links (Bullet's own)");
   lines.emplace_back("contacts", "vertices only, found once per substep at the predicted place");
   for (auto& line : bullet_ref::contact_settings(scene, params, "0.25")) lines.push_back(line);
-  lines.emplace_back("contact hardness", "kKHR " + bullet_ref::short_text(params.real("hardness")));
+  lines.emplace_back("contact hardness", "kKHR " + general(params.real("hardness"), 6));
   lines.emplace_back("friction",
                      params.is("friction", "own")
                          ? "holds if the predicted way along the surface in a substep is "

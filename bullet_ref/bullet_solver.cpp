@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 
 #include "core/model/input_error.hpp"
@@ -238,7 +237,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
 
 ResolvedSettings library_settings(const Scene& scene, const Params& params) {
   const std::string precision(params.choice("precision"));
-  const std::string step = short_text(static_cast<double>(substep_length(scene, params))) +
+  const std::string step = general(static_cast<double>(substep_length(scene, params)), 6) +
                            " s x " + std::string(params.value("substeps"));
   return {{"library", "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
                           std::to_string(BT_BULLET_VERSION % 100) + ", " + precision},
@@ -249,8 +248,8 @@ ResolvedSettings library_settings(const Scene& scene, const Params& params) {
 ResolvedSettings contact_settings(const Scene& scene, const Params& params,
                                   const std::string& default_voxel) {
   ResolvedSettings lines{
-      {"margin", short_text(scene.thickness + params.real("margin")) + " m (default 0.25)"},
-      {"distance field", "trilinear, voxel " + short_text(params.real("voxel")) + " m (default " +
+      {"margin", general(scene.thickness + params.real("margin"), 6) + " m (default 0.25)"},
+      {"distance field", "trilinear, voxel " + general(params.real("voxel"), 6) + " m (default " +
                              default_voxel + ")"}};
   if (std::ranges::any_of(scene.colliders, is_met_by_triangles))
     lines.emplace_back("body of triangles",
@@ -264,12 +263,6 @@ ResolvedSettings contact_settings(const Scene& scene, const Params& params,
     lines.emplace_back("body that deforms",
                        "each contact gets the velocity of the surface where it touches");
   return lines;
-}
-
-std::string short_text(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", value);
-  return digits;
 }
 
 }  // namespace bullet_ref

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <locale>
 #include <sstream>
 #include <string_view>
 #include <tuple>
@@ -268,6 +269,7 @@ Document read_document(const std::filesystem::path& path, const SceneSettings& s
 
 std::string to_toml(const Value& root) {
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   out << table_of(root) << '\n';
   return out.str();
 }

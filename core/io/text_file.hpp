@@ -1,15 +1,14 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
+
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -41,15 +40,6 @@ inline std::vector<std::string_view> words_of(std::string_view line, char commen
     begin = line.find_first_not_of(kBlank, end);
   }
   return words;
-}
-
-/// The number that a whole word is, including "nan" and "inf"; empty if it is not a number.
-template <class T>
-std::optional<T> whole(std::string_view word) {
-  T value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
 }
 
 /// Removes the first line from a text and returns it without its line feed.

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
-#include <cstdlib>
+#include <optional>
 
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
@@ -31,11 +30,6 @@ std::vector<Part> split(std::string_view text, char separator) {
   return parts;
 }
 
-bool parse(std::string_view text, auto& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 /// A value as it is written in a solver's text, in quotes if it needs them.
 std::string quoted_if_needed(const ParamSpec& spec, const std::string& value) {
   constexpr std::string_view kPlain =
@@ -61,20 +55,25 @@ std::string canonical_value(const ParamSpec& spec, std::string_view given, std::
         "is not one of " + std::string(spec.choices) + suggestion(std::string(given), allowed);
     return {};
   }
-  const bool whole = spec.kind == ParamSpec::Kind::integer;
-  long integer = 0;
-  double value = 0;
-  if (whole ? !parse(given, integer) : !parse(given, value)) {
-    problem = whole ? "is not a whole number" : "is not a number";
+  const bool is_whole = spec.kind == ParamSpec::Kind::integer;
+  std::optional<double> value;
+  std::string text;  // 100000, not 1e+05, which is not a whole number
+  if (const auto number = whole<long>(given); is_whole && number) {
+    value = static_cast<double>(*number);
+    text = std::to_string(*number);
+  } else if (!is_whole) {
+    value = whole<double>(given);
+    text = shortest(value.value_or(0) == 0 ? 0 : *value);
+  }
+  if (!value) {
+    problem = is_whole ? "is not a whole number" : "is not a number";
     return {};
   }
-  if (whole) value = static_cast<double>(integer);
-  if (!(value >= spec.min && value <= spec.max)) {  // NaN too
+  if (!(*value >= spec.min && *value <= spec.max)) {  // NaN too
     problem = "is outside " + as_typed(spec.min) + " to " + as_typed(spec.max);
     return {};
   }
-  // 100000, not 1e+05, which is not a whole number
-  return whole ? std::to_string(integer) : shortest(value == 0 ? 0 : value);
+  return text;
 }
 
 }  // namespace
@@ -185,7 +184,9 @@ std::string_view Params::value(std::string_view name) const {
 
 int Params::integer(std::string_view name) const { return static_cast<int>(real(name)); }
 double Params::real(std::string_view name) const {
-  return std::strtod(value(name).data(), nullptr);
+  const auto number = whole<double>(value(name));
+  assert(number && "no number");
+  return *number;
 }
 std::string_view Params::choice(std::string_view name) const { return value(name); }
 

@@ -4,9 +4,24 @@
 #include <charconv>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <utility>
 
 namespace taut {
+
+namespace {
+
+std::string formatted_as(double value, std::chars_format format, int digits) {
+  // The longest is -DBL_MAX with decimals.
+  std::string text(
+      static_cast<std::size_t>(std::numeric_limits<double>::max_exponent10 + digits + 9), '\0');
+  text.resize(static_cast<std::size_t>(
+      std::to_chars(text.data(), text.data() + text.size(), value, format, digits).ptr -
+      text.data()));
+  return text;
+}
+
+}  // namespace
 
 std::string printable(std::string_view text, std::size_t most) {
   std::string out;
@@ -23,6 +38,28 @@ std::string printable(std::string_view text, std::size_t most) {
   }
   return out;
 }
+
+std::optional<double> take_number(std::string_view& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+std::string general(double value, int digits) {
+  return formatted_as(value, std::chars_format::general, digits);
+}
+
+std::string decimal(double value, int decimals) {
+  return formatted_as(value, std::chars_format::fixed, decimals);
+}
+
+std::string scientific(double value, int decimals) {
+  return formatted_as(value, std::chars_format::scientific, decimals);
+}
+
+double rounded_to(double value, int digits) { return *whole<double>(general(value, digits)); }
 
 std::string shortest(double value) {
   char text[32];

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace taut {
@@ -11,6 +14,29 @@ namespace taut {
 /// External text made safe for a terminal: each control character except tab and line feed becomes
 /// '?', and anything beyond `most` bytes becomes "...". The text of every Diagnostic is printable.
 std::string printable(std::string_view, std::size_t most = 2000);
+
+// Numbers from and to text, in every locale alike: a program that embeds this library may have set
+// one with a decimal comma. tests/source/numbers_test.py bans the ways that know locales.
+
+/// The number that a whole text is, including "nan" and "inf"; empty if it is not a number.
+template <class T>
+std::optional<T> whole(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// The number with which a text begins, which is removed from it; empty if it begins with none.
+std::optional<double> take_number(std::string_view& text);
+
+/// The texts that printf() has of "%.*g", "%.*f" and "%.*e" in the locale "C".
+std::string general(double value, int digits);
+std::string decimal(double value, int decimals);
+std::string scientific(double value, int decimals);
+
+/// The number that general() shows.
+double rounded_to(double value, int digits);
 
 /// The shortest text that reads back as the same number.
 std::string shortest(double value);

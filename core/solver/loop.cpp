@@ -334,8 +334,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   const double resolution = farthest * 0x1p-25, move = scene.gravity.norm() * h * h;
   if (move == 0 || move >= resolution) return {};
   const auto most = static_cast<int>(scene.dt / std::sqrt(resolution / scene.gravity.norm()));
-  return {"in float, gravity's move of " + std::to_string(move * 1e9) +
-          " nm a substep is lost in coordinates of " + std::to_string(farthest) + " m: at most " +
+  return {"in float, gravity's move of " + general(move * 1e9, 4) +
+          " nm a substep is lost in coordinates of " + general(farthest, 4) + " m: at most " +
           std::to_string(std::max(most, 1)) + " substeps, or precision=double"};
 }
 

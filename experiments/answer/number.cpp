@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/model/text.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -14,25 +13,25 @@ namespace {
 constexpr std::array<const char*, 10> kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
 
 /// Removes trailing zeros of the decimals.
-std::string stripped(std::string decimal) {
-  if (decimal.find('.') == std::string::npos) return decimal;
-  decimal.erase(decimal.find_last_not_of('0') + 1);
-  if (decimal.back() == '.') decimal.pop_back();
-  return decimal;
+std::string stripped(std::string text) {
+  if (text.find('.') == std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
 }
 
 /// A size rounded to `digits` digits. The exponent is taken after rounding, so that 9.96 with two
 /// digits becomes "10" and not "10.0".
 struct Rounded {
-  std::string mantissa, decimal;  ///< of 3.4e-13: "3.4", and the same number without an exponent
+  std::string mantissa, plain;  ///< of 3.4e-13: "3.4", and the same number without an exponent
   int exponent = 0;
 
   Rounded(double size, int digits) {
-    const std::string scientific = formatted("%.*e", digits - 1, size);
-    const auto e = scientific.find('e');
-    mantissa = stripped(scientific.substr(0, e));
-    exponent = std::stoi(scientific.substr(e + 1));
-    decimal = formatted("%.*f", std::max(0, digits - 1 - exponent), size);
+    const std::string text = scientific(size, digits - 1);
+    const auto e = text.find('e');
+    mantissa = stripped(text.substr(0, e));
+    exponent = std::stoi(text.substr(e + 1));
+    plain = decimal(size, std::max(0, digits - 1 - exponent));
   }
   bool needs_exponent() const { return exponent < -4 || exponent > 5; }
 };
@@ -51,12 +50,12 @@ std::string number_text(double value, int digits) {
   const Rounded size(std::abs(value), digits);
   return (value < 0 ? "-" : "") + (size.needs_exponent()
                                        ? size.mantissa + "e" + std::to_string(size.exponent)
-                                       : stripped(size.decimal));
+                                       : stripped(size.plain));
 }
 
 std::string number_text(double si, const Unit& unit, int digits) {
   const std::string number =
-      is_whole(si, unit) ? formatted("%.0f", si) : number_text(si * unit.scale, digits);
+      is_whole(si, unit) ? decimal(si, 0) : number_text(si * unit.scale, digits);
   return unit.shown.empty() || !std::isfinite(si) ? number : number + " " + std::string(unit.shown);
 }
 
@@ -66,7 +65,9 @@ std::string interval_text(const Interval& i, const Unit& unit, int digits) {
 }
 
 std::string clock_text(double seconds) {
-  return formatted("%.0f:%02d", std::floor(seconds / 60), static_cast<int>(std::fmod(seconds, 60)));
+  const auto of_minute = static_cast<int>(std::fmod(seconds, 60));
+  return decimal(std::floor(seconds / 60), 0) + (of_minute < 10 ? ":0" : ":") +
+         std::to_string(of_minute);
 }
 
 std::string power_of_ten(std::string_view exponent) {
@@ -79,7 +80,7 @@ std::string power_of_ten(std::string_view exponent) {
 
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return significant(value);
-  const std::string text = formatted("%.*f", decimals, std::abs(value));
+  const std::string text = decimal(std::abs(value), decimals);
   const bool nothing = text.find_first_not_of("0.") == std::string::npos;
   return (value < 0 && !nothing ? "−" : "") + text;
 }
@@ -96,7 +97,7 @@ std::string significant(double value, int digits) {
   if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
   if (value == 0) return "0";
   const Rounded size(std::abs(value), digits);
-  std::string text = size.decimal;
+  std::string text = size.plain;
   if (size.needs_exponent())
     text = (size.mantissa == "1" ? "" : size.mantissa + "×") +
            power_of_ten(std::to_string(size.exponent));

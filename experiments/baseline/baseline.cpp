@@ -13,7 +13,6 @@
 #include "core/model/text.hpp"
 #include "experiments/answer/number.hpp"
 #include "experiments/system/process.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -24,15 +23,13 @@ RowStatus row_status(const Status& status) {
   return {std::string(to_string(status.kind)), with_reason ? status.reason.text() : ""};
 }
 
-std::string digits(double value, int count) { return formatted("%.*g", count, value); }
-
 std::string readable(double value) { return std::isnan(value) ? "none" : number_text(value, 7); }
 
 /// "stretch.max 0.0123 -> 0.0145 (by 0.0022, allowed 1e-06)".
 std::string moved_text(const std::string& name, double before, double now, const Tolerance& t) {
   std::string text = name + " " + readable(before) + " -> " + readable(now);
   if (readable(before) == readable(now))  // the difference lies beyond the seventh digit
-    text = name + " " + digits(before, 17) + " -> " + digits(now, 17);
+    text = name + " " + general(before, 17) + " -> " + general(now, 17);
   if (std::isnan(before) || std::isnan(now)) return text;
   const double allowed = t.absolute + t.relative * std::abs(before);
   return text + " (by " + number_text(now - before) + ", allowed " + number_text(allowed) + ")";
@@ -43,7 +40,7 @@ double rounded(double value, const Tolerance& t) {
   if (!std::isfinite(value)) return value;
   const double slack = (t.absolute + t.relative * std::abs(value)) / 100;
   for (int count = 1; count < 17; ++count) {
-    const double shorter = std::strtod(digits(value, count).c_str(), nullptr);
+    const double shorter = rounded_to(value, count);
     if (std::abs(shorter - value) <= slack) return shorter;
   }
   return value;

@@ -2,6 +2,7 @@
 // for ours. C++17 and the standard library alone.
 #pragma once
 
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -73,6 +74,14 @@ inline double iteration(const std::function<void()>& few, const std::function<vo
   return 1e9 * (least_many - least_few) / (kMany - kFew) / (Net::kSide * Net::kSide);
 }
 
+/// Prints a number whatever locale the code that is measured has set.
+inline void print(double value, char end) {
+  char text[32];
+  const char* const to = std::to_chars(text, text + sizeof text, value).ptr;
+  std::fwrite(text, 1, static_cast<std::size_t>(to - text), stdout);
+  std::putchar(end);
+}
+
 /// Answers each line of standard input, until that ends, with a measurement of a net that starts
 /// from rest. So the reader can measure several programs in turns.
 /// `Sheet(net).step(iterations)` is a step of the code that is measured; `lowest()` [m] is how far
@@ -85,7 +94,8 @@ int serve() {
     Sheet few(net);
     Sheet many(net);
     const double each = iteration([&] { few.step(kFew); }, [&] { many.step(kMany); });
-    std::printf("%.17g %.17g\n", each, many.lowest());
+    print(each, ' ');
+    print(many.lowest(), '\n');
     std::fflush(stdout);
   }
   return 0;

@@ -10,7 +10,6 @@
 #include "core/model/input_error.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -55,7 +54,7 @@ struct VertexMatch {
 constexpr std::size_t kNoVertex = std::numeric_limits<std::size_t>::max();
 
 std::string coordinates(const Vec3& x) {
-  return formatted("(%.6g, %.6g, %.6g)", x.x(), x.y(), x.z());
+  return "(" + general(x.x(), 6) + ", " + general(x.y(), 6) + ", " + general(x.z(), 6) + ")";
 }
 
 /// Vertices in the order of their x.
@@ -130,11 +129,12 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
   if (strays > 0) {
     const std::size_t at =
         neighbours.within(file[first_stray], std::numeric_limits<double>::infinity());
-    match.mismatch = formatted(
-        "%zu of its %zu vertices lie on none of the scene: its vertex %zu is at %s, %.4g m "
-        "from the nearest, the scene's vertex %zu at %s (tolerance %.2g m)",
-        strays, file.size(), first_stray, coordinates(file[first_stray]).c_str(),
-        (scene[at] - file[first_stray]).norm(), at, coordinates(scene[at]).c_str(), tolerance);
+    match.mismatch = std::to_string(strays) + " of its " + std::to_string(file.size()) +
+                     " vertices lie on none of the scene: its vertex " +
+                     std::to_string(first_stray) + " is at " + coordinates(file[first_stray]) +
+                     ", " + general((scene[at] - file[first_stray]).norm(), 4) +
+                     " m from the nearest, the scene's vertex " + std::to_string(at) + " at " +
+                     coordinates(scene[at]) + " (tolerance " + general(tolerance, 2) + " m)";
     return match;
   }
   match.farthest = farthest();
@@ -194,7 +194,7 @@ void ComputedMotion::find_place(const Scene& scene) {
   }
   order_said_ = std::string(match.same_order() ? "as in the scene" : "matched by position") +
                 ", at " + (at_rest ? "rest" : "the start") + " at most " +
-                formatted("%.2g", match.farthest) + " m off";
+                general(match.farthest, 2) + " m off";
   of_scene_ = std::move(match.of_scene);
 }
 
@@ -211,8 +211,8 @@ void ComputedMotion::check_pins(const Scene& scene) {
       const double distance = (x[to_index(pin)] - held).norm();
       if (distance <= farthest) continue;
       farthest = distance;
-      where = formatted("vertex %d is %.3g m from %s at t = %.4g s", pin, distance,
-                        coordinates(held).c_str(), k * scene.dt);
+      where = "vertex " + std::to_string(pin) + " is " + general(distance, 3) + " m from " +
+              coordinates(held) + " at t = " + general(k * scene.dt, 4) + " s";
     }
     if (release != scene.releases.end() && release->step == k) {
       for (const int free : release->vertices) std::erase(holding, free);
@@ -279,7 +279,7 @@ ResolvedSettings ComputedMotion::settings(const Scene& scene) {
       {"unit", place()},
       {"vertex order", order_said_},
       {kStrainFloor,
-       formatted("%.1e", least.rms) + " RMS, " + formatted("%.1e", least.max) +
+       scientific(least.rms, 1) + " RMS, " + scientific(least.max, 1) +
            " at most: the rounding of the file",
        "", least.rms},
       {"velocity", "differences between frames"},

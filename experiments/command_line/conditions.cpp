@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
-#include <sstream>
 #include <system_error>
 
 #include "core/model/input_error.hpp"
@@ -17,13 +16,9 @@ namespace taut {
 
 namespace {
 
-/// The number that a word is, as the parser reads it; nullopt if it is none.
-std::optional<double> parsed_number(const std::string& word) {
-  char* end = nullptr;
-  const double value = std::strtod(word.c_str(), &end);
-  if (word.empty() || end != word.c_str() + word.size()) return std::nullopt;
-  return value;
-}
+/// The number that a word is; nullopt if it is none.
+std::optional<double> parsed_number(const std::string& word) { return whole<double>(word); }
+/// As the parser reads it, so that "0x10" is one.
 std::optional<long long> parsed_whole_number(const std::string& word) {
   char* end = nullptr;
   const long long value = std::strtoll(word.c_str(), &end, 0);
@@ -33,13 +28,11 @@ std::optional<long long> parsed_whole_number(const std::string& word) {
 
 template <class Number, class Read>
 Condition in_range(const std::string& type, Number least, Number most, const Read& read) {
-  std::ostringstream shown;
-  shown << type << " in [" << least << " - " << most << "]";
-  return {shown.str(), [=](const std::string& word) {
+  const std::string from = as_typed(least), to = as_typed(most);
+  return {type + " in [" + from + " - " + to + "]", [=](const std::string& word) {
             const auto value = read(word);
             if (value && least <= *value && *value <= most) return std::string();
-            return "Value " + word + " not in range " + std::to_string(least) + " to " +
-                   std::to_string(most);
+            return "Value " + word + " not in range " + from + " to " + to;
           }};
 }
 

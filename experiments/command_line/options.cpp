@@ -186,15 +186,9 @@ void continue_in_right_program(const SolverChoice& choice) {
 }
 
 double error_of(const std::string& text, const Unit& of) {
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  const std::string unit = text.substr(used);
-  if (used == 0 || !(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
+  std::string_view unit = text;
+  const double value = take_number(unit).value_or(0);
+  if (!(unit.empty() || unit == "%") || !(std::isfinite(value) && value > 0))
     throw InputError("--error " + text + ": expected a number above 0 such as 0.01 or 1%");
   if (unit.empty() && of.kind == Unit::Kind::share && value >= 1)
     throw InputError("--error " + text + ": " + text + "% or " + number_text(100 * value) +

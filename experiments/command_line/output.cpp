@@ -114,7 +114,7 @@ void Countdown::operator()(std::size_t done, std::size_t total) const {
   const double each = seconds_since(start_) / static_cast<double>(done);
   std::cerr << (terminal_ ? "\r\033[K" : "") << what_ << formatted(" %zu/%zu  ", done, total)
             << (done < total ? "left " + clock_text(each * static_cast<double>(total - done))
-                             : formatted("%.2g s each", each));
+                             : general(each, 2) + " s each");
   if (!terminal_ || done == total) std::cerr << '\n';
   std::cerr << std::flush;
 }

@@ -1,6 +1,7 @@
 #include "experiments/command_line/parser.hpp"
 
 #include <CLI/CLI.hpp>
+#include <locale>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -249,6 +250,7 @@ int parse_and_run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     std::ostringstream complaint;
+    complaint.imbue(std::locale::classic());
     const int code = app.exit(error, std::cout, complaint);
     std::cerr << complaint.str();
     if (code != 0) return kUsage;

@@ -290,10 +290,9 @@ double Connection::cpu_seconds() const {
 
 std::size_t Connection::peak_bytes() const {
   std::ifstream in("/proc/" + std::to_string(process_.pid()) + "/status");
-  std::size_t kilobytes = 0;
   for (std::string word; in >> word;)
-    if (word == "VmHWM:" && in >> kilobytes) break;
-  return kilobytes * 1024;
+    if (word == "VmHWM:" && in >> word) return 1024 * whole<std::size_t>(word).value_or(0);
+  return 0;
 }
 
 long Connection::children_ticks() const {
@@ -303,9 +302,9 @@ long Connection::children_ticks() const {
   std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
   std::string skipped;
   for (int i = 3; i < 16; ++i) fields >> skipped;  // proc(5): cutime is field 16, cstime 17
-  long user = 0, system = 0;
+  std::string user, system;
   fields >> user >> system;
-  return user + system;
+  return whole<long>(user).value_or(0) + whole<long>(system).value_or(0);
 }
 
 bool Connection::has_helpers() const {

@@ -119,7 +119,7 @@ const SolverEntry* program(const std::string& name, std::string_view params,
   const std::lock_guard lock(started().mutex);
   auto& programs = started().all;
   const std::string command = '\n' + solver.command.text() + '\n' +
-                              std::to_string(solver.command.seconds) + '\n' +
+                              shortest(solver.command.seconds) + '\n' +
                               solver.command.folder.string() + '\n' + value_in(params, "build");
   auto& known = programs[name + command];
   if (!known) {

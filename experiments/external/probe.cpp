@@ -5,9 +5,9 @@
 
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut::external {
 
@@ -31,9 +31,11 @@ Scene sheet(int side, std::vector<int> pins) {
   return scene;
 }
 
-std::string text(double value) { return formatted("%.4g", value); }
+std::string text(double value) { return general(value, 4); }
 
-std::string text(const Vec3& v) { return formatted("(%.4g, %.4g, %.4g)", v.x(), v.y(), v.z()); }
+std::string text(const Vec3& v) {
+  return "(" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + ")";
+}
 
 /// The vertex farthest from its expected position. NaN counts as farthest.
 std::pair<std::size_t, double> farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {

@@ -10,7 +10,6 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/external/probe.hpp"
 #include "experiments/system/json.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut::external {
 
@@ -73,7 +72,8 @@ class ExternalSolver final : public Solver {
     if (steps_ == 0 || std::isnan(said_)) return {};
     const double word = said_ / steps_, clock = clock_ / steps_;
     if (agrees(word, clock, empty_)) return {};
-    return formatted("it says %.4g us a step, its CPU clock %.4g us", 1e6 * word, 1e6 * clock);
+    return "it says " + general(1e6 * word, 4) + " us a step, its CPU clock " +
+           general(1e6 * clock, 4) + " us";
   }
 
  private:

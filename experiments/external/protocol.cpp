@@ -184,9 +184,9 @@ class SpecReader {
 Json typed(const ParamSpec& spec, std::string_view value) {
   switch (spec.kind) {
     case ParamSpec::Kind::integer:
-      return std::stol(std::string(value));
+      return *whole<long>(value);
     case ParamSpec::Kind::real:
-      return std::stod(std::string(value));
+      return *whole<double>(value);
     default:
       return std::string(value);
   }

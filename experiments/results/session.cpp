@@ -4,9 +4,9 @@
 #include <charconv>
 #include <cstdlib>
 #include <map>
-#include <sstream>
 
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/results/builds.hpp"
 #include "experiments/results/database.hpp"
@@ -38,10 +38,11 @@ Shard Shard::parse(const std::string& text) {
     shard.index = from_environment("SLURM_ARRAY_TASK_ID", 1) -
                   from_environment("SLURM_ARRAY_TASK_MIN", 1) + 1;
   } else {
-    char slash = 0, rest = 0;
-    std::istringstream in(text);
-    if (!(in >> shard.index >> slash >> shard.count) || slash != '/' || in >> rest)
-      throw InputError("--shard " + text + ": expected i/n, such as 1/4");
+    const std::string_view all = text;
+    const std::size_t slash = std::min(all.find('/'), all.size() - 1);
+    const auto index = whole<int>(all.substr(0, slash)), count = whole<int>(all.substr(slash + 1));
+    if (!index || !count) throw InputError("--shard " + text + ": expected i/n, such as 1/4");
+    shard = {*index, *count};
   }
   if (shard.count < 1 || shard.index < 1 || shard.index > shard.count)
     throw InputError("shard " + std::to_string(shard.index) + "/" + std::to_string(shard.count) +

@@ -24,14 +24,11 @@ std::string name_of_kept(const std::string& asked, const std::vector<std::string
 }
 
 double number_of_kept(const std::string& asked, const Unit& known, double hundred) {
-  const std::string text = asked.substr(asked.find(':') + 1);
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
+  std::string_view unit = std::string_view(asked).substr(asked.find(':') + 1);
+  const std::optional<double> number = take_number(unit);
   const bool shown = unit == known.shown && known.kind != Unit::Kind::share;
   const bool share = unit == "%" && !std::isnan(hundred);
-  if (end == text.c_str() || !std::isfinite(number) || number < 0 ||
-      !(unit.empty() || share || shown)) {
+  if (!number || !std::isfinite(*number) || *number < 0 || !(unit.empty() || share || shown)) {
     std::vector<std::string> units;
     if (!known.shown.empty() && known.kind != Unit::Kind::share)
       units.push_back("'" + std::string(known.shown) + "'");
@@ -39,7 +36,7 @@ double number_of_kept(const std::string& asked, const Unit& known, double hundre
     throw InputError("--keep " + asked + ": expected a number of at least 0 after ':'" +
                      (units.empty() ? "" : " and then " + join(units, ", ") + " or nothing"));
   }
-  return share ? number / 100 * hundred : shown && !unit.empty() ? number / known.scale : number;
+  return share ? *number / 100 * hundred : shown && !unit.empty() ? *number / known.scale : *number;
 }
 
 double hundred_percent(const Unit& unit, const Scene& scene) {

@@ -1,6 +1,5 @@
 // Files of settings that a search chose for a study.
 #include <cmath>
-#include <cstdio>
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -17,12 +16,6 @@ std::string quoted(const std::string& text) {
     all += c == '\n' || c == '\t' ? ' ' : c;
   }
   return all + '"';
-}
-
-std::string rounded(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number);
-  return text;
 }
 
 std::string list_of(const std::vector<double>& numbers) {
@@ -71,8 +64,8 @@ std::string searched_toml(const std::string& heading, const std::vector<Searched
   text += "]\n\ntried = [\n";
   for (const SearchedSetting& row : rows) {
     text += "  { scene = " + quoted(row.scene) + ", solver = " + quoted(row.solver);
-    if (std::isfinite(row.error)) text += ", error = " + rounded(row.error);
-    if (std::isfinite(row.cost)) text += ", cost = " + rounded(row.cost);
+    if (std::isfinite(row.error)) text += ", error = " + general(row.error, 4);
+    if (std::isfinite(row.cost)) text += ", cost = " + general(row.cost, 4);
     if (!row.refused.empty()) text += ", refused = " + quoted(row.refused);
     if (row.cheapest) text += ", cheapest = true";
     if (!row.plain.empty()) text += ", plain = " + list_of(row.plain);

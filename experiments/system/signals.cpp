@@ -13,8 +13,11 @@
 #include <mutex>
 #include <set>
 #include <sstream>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -47,7 +50,8 @@ std::vector<pid_t> children() {
   std::error_code none;
   for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task", none)) {
     std::ifstream list(thread.path() / "children");
-    for (pid_t child; list >> child;) all.push_back(child);
+    for (std::string child; list >> child;)
+      if (const auto id = whole<pid_t>(child)) all.push_back(*id);
   }
   return all;
 }
@@ -60,8 +64,9 @@ bool is_no_program(pid_t process) {
   std::getline(file, line);
   std::istringstream fields(line.substr(std::min(line.size(), line.rfind(')') + 1)));
   constexpr unsigned long kExiting = 0x4, kKernelThread = 0x200000;
-  unsigned long flags = kExiting;
-  fields >> state >> skipped >> skipped >> skipped >> skipped >> skipped >> flags;
+  std::string word;
+  fields >> state >> skipped >> skipped >> skipped >> skipped >> skipped >> word;
+  const unsigned long flags = whole<unsigned long>(word).value_or(kExiting);
   return state == "Z" || (flags & (kExiting | kKernelThread)) != 0;
 }
 

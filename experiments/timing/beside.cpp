@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <sstream>
 
 #include "core/model/text.hpp"
 #include "experiments/beside/beside.hpp"
@@ -157,9 +156,11 @@ class Adapter {
     std::string line;
     if (!process_.write("\n", kLongestAnswer) || !process_.read_line(line, kLongestAnswer))
       throw InputError("the adapter ended without an answer");
-    std::istringstream words(line);
-    double each = std::nan(""), lowest = std::nan("");
-    words >> each >> lowest;
+    const std::vector<std::string> words = parts_of(line, ' ');
+    const auto number = [&](std::size_t k) {
+      return k < words.size() ? whole<double>(words[k]).value_or(std::nan("")) : std::nan("");
+    };
+    const double each = number(0), lowest = number(1);
     if (!std::isfinite(each) || !std::isfinite(lowest) || lowest > -0.5)
       throw InputError("the adapter's net does not hang: '" + line + "'");
     return each;

@@ -155,8 +155,9 @@ class SettingSearch {
 
   bool is_stiffer(const Values& stiffness) const {
     const Params& params = parse_solver(solver_).params;
-    return std::ranges::all_of(
-        stiffness, [&](const auto& one) { return std::stod(one.second) > params.real(one.first); });
+    return std::ranges::all_of(stiffness, [&](const auto& one) {
+      return *whole<double>(one.second) > params.real(one.first);
+    });
   }
 
   /// Tries the columns, with these values of other parameters.

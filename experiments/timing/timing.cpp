@@ -12,10 +12,10 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
+#include "core/model/text.hpp"
 #include "experiments/system/clock.hpp"
 #include "experiments/system/data.hpp"
 #include "experiments/system/own_words.hpp"
@@ -96,19 +96,17 @@ int serve_timing(const Scene& scene, const SolverChoice& choice) {
   if (std::getenv("SLURM_JOB_ID"))
     bind_to_cores(choice.params.has("threads") ? std::max(1, choice.params.integer("threads")) : 1);
   const std::unique_ptr<Solver> solver = choice.entry->make(scene, choice.params);
-  std::cout.precision(17);
   std::cout << kReady << std::endl;
   std::optional<CheckpointedRun> run;
   std::string line;
   const auto answer = [&](const StepTime& time) {
     if (std::isnan(time.cpu)) throw std::runtime_error(solver->time_remark());
-    std::cout << time.cpu << ' ' << time.wall << std::endl;
+    std::cout << shortest(time.cpu) << ' ' << shortest(time.wall) << std::endl;
   };
   while (std::getline(std::cin, line)) try {
-      std::istringstream request(line);
-      std::string word;
-      int steps = 0;
-      request >> word >> steps;
+      const std::vector<std::string> request = parts_of(line, ' ');
+      const std::string word = request.empty() ? "" : request[0];
+      const int steps = request.size() < 2 ? 0 : whole<int>(request[1]).value_or(0);
       if (word == kPilotRun && steps > 0) {
         run.emplace(scene, *solver, steps);
         answer(run->whole());
@@ -158,11 +156,14 @@ std::string TimingWorker::ask(const std::string& request) {
 }
 
 StepTime TimingWorker::ask_time(const std::string& line) {
-  std::istringstream answer(ask(line));
-  StepTime time;
-  if (!(answer >> time.cpu >> time.wall))
-    throw std::runtime_error("the timing worker answered '" + answer.str() + "'");
-  return time;
+  const std::string answer = ask(line);
+  const std::vector<std::string> words = parts_of(answer, ' ');
+  const auto number = [&](std::size_t k) {
+    return k < words.size() ? whole<double>(words[k]) : std::nullopt;
+  };
+  const auto cpu = number(0), wall = number(1);
+  if (!cpu || !wall) throw std::runtime_error("the timing worker answered '" + answer + "'");
+  return {*cpu, *wall};
 }
 
 StepTime TimingWorker::pilot_run(int steps) {

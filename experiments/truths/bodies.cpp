@@ -246,7 +246,7 @@ TAUT_TRUTH(thin_plate, 7, 17,
     s.thickness = kThickness;
     s.start.v.assign(kPoints, Vec3(0, -way / s.dt, 0));
     s.colliders = {{plate, {}, 0}};
-    const std::string per = ", W/s = " + std::to_string(kSeen / way).substr(0, 4);
+    const std::string per = ", W/s = " + decimal(kSeen / way, 2);
     for (const std::string solver :
          {"jakobsen:precision=double,substeps=1", "xpbd:precision=double,substeps=1",
           "mass-spring:substeps=1", "vbd:precision=double", "avbd:precision=double", "implicit",

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/model/angle.hpp"
+#include "core/model/text.hpp"
 #include "core/reference/implicit_step.hpp"
 #include "experiments/truths/capstan.hpp"
 #include "experiments/truths/truth.hpp"
@@ -70,7 +71,7 @@ TAUT_TRUTH(sheet_on_a_floor, 7, 6, "a flat sheet at rest on a level floor stays 
     for (Vec3& x : s.start.x) x = {x.x(), 0, x.y()};
     s.colliders = {{Plane{}, {}, friction}};
     const std::string what =
-        "way of a vertex along the floor in 10 s, mu = " + std::to_string(friction).substr(0, 3);
+        "way of a vertex along the floor in 10 s, mu = " + decimal(friction, 1);
     for (const std::string solver :
          {"jakobsen:precision=double", "xpbd:precision=double", "mass-spring", "implicit", "pd",
           "pd:iterations=100", "admm", "admm:iterations=100", "vbd", "vbd:iterations=100",
@@ -156,8 +157,7 @@ TAUT_TRUTH(steps_in_contact, 7, 9,
       s.start = Simulation(s, "implicit", 40).state();
       const auto exact = reference::ImplicitStep(s, s.start, 0, s.stiffness).minimum(s.start.x);
       const std::string what = "farthest vertex from the exact step on a " +
-                               std::string(type_name(shape)) +
-                               ", mu = " + std::to_string(friction).substr(0, 3);
+                               std::string(type_name(shape)) + ", mu = " + decimal(friction, 1);
       for (const std::string solver :
            {"implicit:iterations=100", "pd:iterations=6000", "admm:iterations=6000",
             "vbd:iterations=6000",

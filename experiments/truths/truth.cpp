@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "core/model/input_error.hpp"
 #include "core/model/names.hpp"
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -168,12 +168,9 @@ std::string xpbd(int substeps, std::string_view more) {
 }
 
 std::string mass_spring(std::string_view integrator, double stiffness, double drag) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "mass-spring:integrator=" << integrator << ",structural=" << stiffness
-       << ",shear=" << stiffness << ",bend=" << stiffness << ",drag=" << drag
-       << ",substeps=1,precision=double";
-  return text.str();
+  const std::string k = general(stiffness, 17);
+  return "mass-spring:integrator=" + std::string(integrator) + ",structural=" + k + ",shear=" + k +
+         ",bend=" + k + ",drag=" + general(drag, 17) + ",substeps=1,precision=double";
 }
 
 namespace bare {

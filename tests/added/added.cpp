@@ -14,6 +14,7 @@
 #include "experiments/study/campaign.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace taut::report {
 namespace {
@@ -42,7 +43,7 @@ Json model() {
         const bool boost = solver.find("boost") != std::string::npos;
         if (!boost) study.records.push_back(r);
         if (dt != "1/64") continue;
-        const std::vector<double> samples(10, 1e-4 * std::stod(sweeps) *
+        const std::vector<double> samples(10, 1e-4 * number_at(sweeps) *
                                                   (r.solver == "jakobsen" ? 1
                                                    : boost                ? 1.5
                                                                           : 3));

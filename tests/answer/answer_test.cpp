@@ -16,6 +16,7 @@
 
 #include "core/model/input_error.hpp"
 #include "experiments/system/json.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace taut::answer_test {
 namespace {
@@ -126,10 +127,10 @@ void expect_csv(const Json& table, const Rows& csv) {
       else if (value.is_null())
         EXPECT_EQ(line[at], "");
       else if (value.is_number())
-        EXPECT_EQ(std::stod(line[at]), value.get<double>());
+        EXPECT_EQ(number_at(line[at]), value.get<double>());
       else
         for (std::size_t k = 0; k < 3; ++k)
-          EXPECT_EQ(std::stod(line[at + k - 1]), value[k].get<double>());
+          EXPECT_EQ(number_at(line[at + k - 1]), value[k].get<double>());
     }
   }
 }

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::bullet_ref_settings_test {
@@ -21,11 +21,7 @@ Lines operator+(Lines a, const Lines& b) {
   return a;
 }
 
-std::string six_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string six_digits(double value) { return general(value, 6); }
 
 Scene with_everything() {
   Scene scene = hanging_sheet(3, 3);

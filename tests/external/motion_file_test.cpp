@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <locale>
 #include <random>
 #include <set>
 
@@ -222,6 +223,7 @@ TEST_F(MotionFiles, TheFloorIsWhatTheRoundingDoes) {
   // Six decimals, as Blender writes them.
   for (int k = 0; k < 4; ++k) {
     std::ofstream out(folder_ / ("six" + std::to_string(k) + ".obj"));
+    out.imbue(std::locale::classic());
     out.setf(std::ios::fixed);
     out.precision(6);
     for (const Vec3& v : rigid({})) out << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
@@ -304,6 +306,7 @@ TEST_F(MotionFiles, TheFloorOfAStepIsItsVarianceOverTheRestLength) {
       options = write(name, scene, [&](const std::vector<Vec3>&) { return scene.start.x; });
     for (int k = 0; k < 4 && !text.empty(); ++k) {
       std::ofstream out(folder_ / (text + std::to_string(k) + ".obj"));
+      out.imbue(std::locale::classic());
       out.precision(9);
       for (const Vec3& v : scene.start.x)
         out << "v " << v.x() / unit << ' ' << v.y() / unit << ' ' << v.z() / unit << '\n';

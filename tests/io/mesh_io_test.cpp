@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <locale>
 #include <map>
 #include <numeric>
 #include <set>
@@ -16,6 +17,7 @@
 #include "core/io/scene_io.hpp"
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 
 namespace taut::mesh_io_test {
 namespace {
@@ -23,6 +25,7 @@ namespace {
 /// The sheet's quads as an OBJ file with all digits.
 std::string as_obj(const Mesh& sheet) {
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   out.precision(17);
   for (const Vec3& x : sheet.rest) out << "v " << x[0] << ' ' << x[1] << ' ' << x[2] << '\n';
   const Grid g = *sheet.grid;
@@ -146,6 +149,7 @@ TEST(MeshFromObj, EachTriangleGivesAThirdToItsCorners) {
 
 std::string vertices_of(const std::vector<Vec3>& corners) {
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   out.precision(17);
   for (const Vec3& x : corners) out << "v " << x[0] << ' ' << x[1] << ' ' << x[2] << '\n';
   return out.str();
@@ -214,8 +218,8 @@ TEST(MeshFromObj, AFaceThatCrossesItselfIsRefused) {
       << "a crossed quad";
   std::string star;  // a star of five corners that winds around twice
   for (const int k : {0, 2, 4, 1, 3})
-    star += "v " + std::to_string(std::cos(1.2566370614 * k)) + " " +
-            std::to_string(std::sin(1.2566370614 * k)) + " 0\n";
+    star += "v " + shortest(std::cos(1.2566370614 * k)) + " " +
+            shortest(std::sin(1.2566370614 * k)) + " 0\n";
   EXPECT_EQ(errors_of(star + "f 1 2 3 4 5\n"), "x.obj:6:1" + said);
   EXPECT_EQ(errors_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n"),
             "x.obj:5:1: the face has no area");

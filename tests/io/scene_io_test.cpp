@@ -12,6 +12,7 @@
 
 #include "core/io/fabrics.hpp"
 #include "core/model/input_error.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace taut::scene_io_test {
 namespace {
@@ -111,7 +112,7 @@ TEST(SceneFiles, ASpanHangsTheRowsWithoutStretchingThem) {
     const Scene drape = shipped("drape", {std::string("cloth.span=") + span});
     EXPECT_LT(start_strain(drape, Family::structural), 1e-12) << span;
     const Vec3 right = drape.start.x[31];
-    EXPECT_EQ(right, Vec3(std::stod(span), 0, 0));
+    EXPECT_EQ(right, Vec3(number_at(span), 0, 0));
     EXPECT_LT(drape.start.x[16].y(), 0);  // it sags
   }
   const Scene skewed = shipped("drape", {"cloth.span=0.8", "cloth.v=[0.6, -0.8, 0.3]"});

@@ -20,7 +20,7 @@ TEST(Text, NumbersAreSaidAsTheyAreTyped) {
   EXPECT_EQ(as_typed(-0.0), "0");
   for (int power = -300; power <= 300; ++power) {
     const double value = 1.0625 * std::pow(10.0, power);
-    EXPECT_EQ(std::strtod(as_typed(value).c_str(), nullptr), value);
+    EXPECT_EQ(whole<double>(as_typed(value)), value);
   }
 }
 

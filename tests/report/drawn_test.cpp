@@ -12,6 +12,7 @@
 #include "experiments/report/report.hpp"
 #include "experiments/system/json.hpp"
 #include "tests/report/made_up.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::drawn_test {
@@ -47,7 +48,7 @@ Json value_in(const Json& one, const std::string& metric) {
   for (const char* field : {"dt", "steps", "projections"})
     if (metric == field) return one[field];
   if (one["parameters"].contains(metric))
-    return std::stod(one["parameters"][metric].get<std::string>());
+    return number_at(one["parameters"][metric].get<std::string>());
   if (one.contains("cost") && one["cost"].contains(metric)) return one["cost"][metric]["mid"];
   return one["values"].value(metric, Json());
 }
@@ -194,7 +195,7 @@ TEST(Drawn, AMapNamesItsAxesAndItsSharedSettings) {
                     .maps = {{"spans", "?", "dt", "cloth.span", {}}}};
   for (const char* dt : {"0.01", "0.02"})
     for (const char* span : {"0.7", "0.8", "0.9"}) {
-      Record r = synthetic::record("hang", "jakobsen", 8, std::stod(dt));
+      Record r = synthetic::record("hang", "jakobsen", 8, number_at(dt));
       r.spec.settings = {std::string("time.dt=") + dt, "cloth.mass=2",
                          std::string("cloth.span=") + span, "forces.damping=1"};
       r.key = std::string(dt) + span + std::string(20, 'x');

@@ -10,6 +10,7 @@
 #include "core/io/text_file.hpp"
 #include "experiments/report/plot/plot.hpp"
 #include "experiments/system/files.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace taut::report::frontier_plot_test {
 namespace {
@@ -53,10 +54,10 @@ TEST(FrontierPlot, BarsAreHowMuchHarderAParameterMayBeMade) {
     const std::size_t name =
         line.find('"') == std::string::npos ? line.find(',', 2) : line.find('"', 3) + 1;
     std::istringstream rest(line.substr(name + 1));
-    std::vector<double> row{std::stod(line)};
+    std::vector<double> row{number_at(line)};
     for (std::string cell; std::getline(rest, cell, ',');)
       if (row.size() < 5)
-        row.push_back(cell.empty() || cell == "nan" || cell == "NaN" ? kNone : std::stod(cell));
+        row.push_back(cell.empty() || cell == "nan" || cell == "NaN" ? kNone : number_at(cell));
       else
         ends.push_back(cell);
     rows.push_back(row);

@@ -16,6 +16,7 @@
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/system/files.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/synthetic_records.hpp"
 
 namespace taut::report::plot_test {
@@ -105,7 +106,7 @@ TEST_F(Plots, PanelsShareTheirAxesAndOneKey) {
             (std::vector<std::string>{"empty: no case has both 'iterations' and 'stretch.rms'"}));
   const std::string gp = read_text(plot.gp), key = gp.substr(gp.find("# The key"));
   const auto number = [&](const std::string& after) {
-    return std::stod(gp.substr(gp.find(after) + after.size()));
+    return number_at(gp.substr(gp.find(after) + after.size()));
   };
   EXPECT_EQ(count(gp, "set yrange ["), 1U);
   EXPECT_EQ(count(gp, "set xrange ["), 1U);
@@ -120,7 +121,7 @@ TEST_F(Plots, PanelsShareTheirAxesAndOneKey) {
   EXPECT_GT(number("set yrange ["), 1e-10) << "one point does not flatten the others";
   // The key widens the figure: two panels side by side keep their width.
   const double left = number("margins screen ");
-  const double right = std::stod(gp.substr(gp.find(", screen ", gp.find("margins screen ")) + 9));
+  const double right = number_at(gp.substr(gp.find(", screen ", gp.find("margins screen ")) + 9));
   EXPECT_GE((right - left) * number("svg noenhanced size "), 500);
   const std::string csv = read_text(plot.csv);
   for (const char* scene : {"hang", "ball", "box"})
@@ -193,8 +194,8 @@ TEST_F(Plots, AScriptDrawsEveryRowAndFailuresAbove) {
   EXPECT_EQ(line_of(gp, "set xtics"), "set xtics ('1' 1, '4' 4, '16' 16)");
   const std::string range = line_of(gp, "set yrange");  // 2 to 30 %, with a margin
   const double air = std::pow(15, 0.06), top = 30 * air;
-  EXPECT_NEAR(std::stod(range.substr(12)), 2 / air, 1e-12);
-  EXPECT_NEAR(std::stod(range.substr(range.find(':') + 1)), top, 1e-9);
+  EXPECT_NEAR(number_at(range.substr(12)), 2 / air, 1e-12);
+  EXPECT_NEAR(number_at(range.substr(range.find(':') + 1)), top, 1e-9);
   const auto rows = [](int curve, const char* failed) {
     return "'one.csv' skip 1 using (column(1) == " + std::to_string(curve) + " && strcol(8) eq '" +
            failed + "' ? column(4)*1 : NaN):";
@@ -213,16 +214,16 @@ TEST_F(Plots, AScriptDrawsEveryRowAndFailuresAbove) {
   };
   const std::string zero = "(column(5) >= 0 && !(" + shown + ") ? ";
   EXPECT_EQ(drawn[1].find(rows(0, "no") + zero), 0u);
-  EXPECT_NEAR(std::stod(part(drawn[1], zero, " :")), 2 / air, 1e-12) << "the floor";
+  EXPECT_NEAR(number_at(part(drawn[1], zero, " :")), 2 / air, 1e-12) << "the floor";
   EXPECT_TRUE(drawn[1].ends_with(": NaN) with points pt 10 ps 1.2" + ink("jakobsen")));
   EXPECT_EQ(drawn[2], rows(1, "no") + "(" + shown + " ? column(5)*100 : NaN) with linespoints" +
                           look("bullet") + " notitle");
   EXPECT_TRUE(drawn[3].starts_with(rows(1, "yes") + "(")) << drawn[3];
-  EXPECT_NEAR(std::stod(drawn[3].substr(rows(1, "yes").size() + 1)), top, 1e-9);
+  EXPECT_NEAR(number_at(drawn[3].substr(rows(1, "yes").size() + 1)), top, 1e-9);
   EXPECT_TRUE(drawn[3].ends_with(") with points pt 2 ps 1.2 lw 2" + ink("bullet")));
   // 0.6 of the smallest y x, 0.08, in per cent
-  EXPECT_NEAR(std::stod(drawn[4].substr(1)), std::pow(16, -0.06), 1e-12);
-  EXPECT_NEAR(std::stod(drawn[4].substr(drawn[4].find("] ") + 2)), 4.8, 1e-12);
+  EXPECT_NEAR(number_at(drawn[4].substr(1)), std::pow(16, -0.06), 1e-12);
+  EXPECT_NEAR(number_at(drawn[4].substr(drawn[4].find("] ") + 2)), 4.8, 1e-12);
   EXPECT_EQ(drawn[4].substr(drawn[4].find('*')),
             "*(x/1)**-1 with lines dt (4,4) lc rgb '#5B6472' notitle");
   const std::string grey = " lc rgb '#5B6472' title '";
@@ -275,12 +276,12 @@ TEST_F(Plots, AxesAreAsTheirUnitsSay) {
   ASSERT_EQ(drawn.size(), 3u);
   EXPECT_NE(drawn[0].find("column(4)*1000 : NaN):"), std::string::npos) << drawn[0];
   const double factor = 0.6 * 0.25 / (0.008 * 0.008) * unit.scale;  // the smallest y / x^2
-  EXPECT_NEAR(std::stod(drawn[1].substr(1)), 2 / 1.12, 1e-12) << drawn[1];
-  EXPECT_NEAR(std::stod(drawn[1].substr(drawn[1].find("] ") + 2)), factor, 1e-9 * factor);
+  EXPECT_NEAR(number_at(drawn[1].substr(1)), 2 / 1.12, 1e-12) << drawn[1];
+  EXPECT_NEAR(number_at(drawn[1].substr(drawn[1].find("] ") + 2)), factor, 1e-9 * factor);
   EXPECT_NE(drawn[1].find("*(x/1000)**2 with"), std::string::npos);
-  EXPECT_NEAR(std::stod(drawn[2]), 0.004 * unit.scale, 1e-12);
+  EXPECT_NEAR(number_at(drawn[2]), 0.004 * unit.scale, 1e-12);
   EXPECT_TRUE(line_of(gp, "set yrange").starts_with("set yrange ["));
-  const double low = std::stod(line_of(gp, "set yrange").substr(12));
+  const double low = number_at(line_of(gp, "set yrange").substr(12));
   EXPECT_LT(low, 0.004 * unit.scale) << "the floor is in the picture";
   EXPECT_GT(low, 0.004 * unit.scale / 3);
   // Values of both signs are drawn on a linear axis that includes zero.
@@ -288,8 +289,8 @@ TEST_F(Plots, AxesAreAsTheirUnitsSay) {
       read_text(draw({.kind = "work-precision", .y = "settle.time", .file = "linear"}, all).gp);
   EXPECT_EQ(line_of(linear, "set logscale y"), "");
   const std::string range = line_of(linear, "set yrange");
-  EXPECT_NEAR(std::stod(range.substr(12)), -0.3 - 0.06 * 0.8, 1e-12);
-  EXPECT_NEAR(std::stod(range.substr(range.find(':') + 1)), 0.5 + 0.06 * 0.8, 1e-12);
+  EXPECT_NEAR(number_at(range.substr(12)), -0.3 - 0.06 * 0.8, 1e-12);
+  EXPECT_NEAR(number_at(range.substr(range.find(':') + 1)), 0.5 + 0.06 * 0.8, 1e-12);
   EXPECT_NE(linear.find("$front1 << EOD\n"), std::string::npos);
   const std::string front = linear.substr(linear.find("$front1 << EOD\n") + 15);
   EXPECT_TRUE(front.starts_with("125 0.5\n250 -0.09")) << front.substr(0, 40);
@@ -385,7 +386,7 @@ TEST_F(Plots, SeriesAreDrawnAsTheyAre) {
   EXPECT_NE(drawn[0].find("(column(5)*100) with lines lw 1.5 " + ink), std::string::npos);
   EXPECT_TRUE(drawn[1].ends_with(" dt (7,4) notitle")) << "another dash of the same solver";
   EXPECT_EQ(count(read_text(plot.gp), " dt (7,4) title 'C'"), 1u);
-  EXPECT_NEAR(std::stod(drawn[2]), 1e-5, 1e-18) << "the rounding of its file";
+  EXPECT_NEAR(number_at(drawn[2]), 1e-5, 1e-18) << "the rounding of its file";
 
   StudyBench bench{"trade", "a machine", {{"hang", {0.99, 1, 1.01}, {}}}};
   bench.scenes[0].limits.emplace();
@@ -409,12 +410,12 @@ TEST_F(Plots, SeriesAreDrawnAsTheyAre) {
   for (const auto& [begin, numbers] : expected) {
     ASSERT_TRUE(std::getline(rows, row)) << begin;
     ASSERT_TRUE(row.starts_with(begin)) << row;
-    EXPECT_NEAR(std::stod(row.substr(begin.size())), numbers[0], 1e-9);
-    EXPECT_EQ(std::stod(row.substr(row.rfind(',') + 1)), numbers[1]);
+    EXPECT_NEAR(number_at(row.substr(begin.size())), numbers[0], 1e-9);
+    EXPECT_EQ(number_at(row.substr(row.rfind(',') + 1)), numbers[1]);
   }
   EXPECT_FALSE(std::getline(rows, row));
   const std::string gp = read_text(profile.gp);
-  EXPECT_NEAR(std::stod(line_of(gp, "set xrange").substr(14)), 2.75, 1e-9);
+  EXPECT_NEAR(number_at(line_of(gp, "set xrange").substr(14)), 2.75, 1e-9);
   EXPECT_EQ(line_of(gp, "set xrange").substr(0, 14), "set xrange [1:");
   EXPECT_EQ(line_of(gp, "set yrange"), "set yrange [0:105]");
   const auto steps = drawn_by(gp);

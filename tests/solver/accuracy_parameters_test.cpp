@@ -8,6 +8,7 @@
 
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace taut::accuracy_parameters_test {
 namespace {
@@ -45,8 +46,8 @@ TEST(AccuracyParameters, StiffnessesRiseAndHaveTheDefault) {
       const Words& values = entry->accuracy.stiffness.values;
       const std::string own(parse_solver(std::string(entry->name)).params.value(parameter));
       EXPECT_NE(std::ranges::find(values, own), values.end()) << entry->name;
-      EXPECT_TRUE(std::ranges::is_sorted(
-          values, {}, [](std::string_view v) { return std::stod(std::string(v)); }));
+      EXPECT_TRUE(
+          std::ranges::is_sorted(values, {}, [](std::string_view v) { return number_at(v); }));
     }
 }
 

@@ -274,7 +274,7 @@ std::vector<Other> others(const SolverEntry& entry, const ParamSpec& param) {
         all.push_back({value, param.name == "contact" ? "substeps=1" : ""});
     return all;
   }
-  const double number = std::strtod(std::string(param.default_value).c_str(), nullptr);
+  const double number = whole<double>(param.default_value).value_or(0);
   const bool elastic = param.name == "penalty-ratio" || param.unit == "N/m";
   const std::string more =
       entry.name == "admm" && elastic && param.name != "penalty" ? "links=elastic" : "";

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <locale>
 
 #include "core/model/input_error.hpp"
 #include "experiments/study/isolate.hpp"
@@ -39,6 +41,9 @@ int serve(std::vector<std::string> words) try {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // tests/cli/locales_test.py: what a program that embeds the library may have done.
+  if (const char* locale = std::getenv("TAUT_TESTS_LOCALE"))
+    std::locale::global(std::locale(locale));
   if (argc > 1 && (argv[1] == std::string("case") || argv[1] == std::string("bench")))
     return serve({argv + 1, argv + argc});
   // What other programs leave behind is no test's input. No Scratch: it starts a thread, which a

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/io/positions/positions.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/study/isolate.hpp"
@@ -24,8 +25,8 @@ void tell(const Snapshot& m, int steps) {
   if (m.step % std::max(1, steps / 20) != 0) return;
   double fastest = 0;
   for (const Vec3& v : m.state.v) fastest = std::max(fastest, v.norm());
-  std::cerr << "step " << m.step << "/" << steps << "  t " << m.t << " s  fastest vertex "
-            << fastest << " m/s\n";
+  std::cerr << "step " << m.step << "/" << steps << "  t " << general(m.t, 6)
+            << " s  fastest vertex " << general(fastest, 6) << " m/s\n";
 }
 
 /// Reports the progress of a run that takes over ten seconds, and how long it will last.

@@ -5,7 +5,6 @@
 #include "experiments/render/film/drawing.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/system/data.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut::verb::render {
 
@@ -85,7 +84,7 @@ std::vector<double> times_of(const Options& options, SceneSettings& settings) {
                      number_text(scene.duration()) + " s: see --duration");
   const double seen = times.back() + 1e-4;
   if (!options.video && !options.changes.has_duration() && seen < scene.duration())
-    settings.emplace_back("time.duration", std::to_string(seen));
+    settings.emplace_back("time.duration", decimal(seen, 6));
   return times;
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/model/solver.hpp"
+#include "core/model/text.hpp"
 #include "experiments/case/fingerprint.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/results/store.hpp"
@@ -91,8 +92,7 @@ std::vector<Check> examine() {
   for (const char* program : {"gnuplot", "ffmpeg"})
     all.push_back({program, on_path(program) ? "found" : "missing: its pictures are left out",
                    on_path(program)});
-  all.push_back({"load",
-                 std::to_string(load).substr(0, 4) + " on " + std::to_string(cores) + " cores",
+  all.push_back({"load", decimal(load, 2) + " on " + std::to_string(cores) + " cores",
                  load < 0.5 * cores, kOfTiming});
   if (!governor.empty()) all.push_back({"clock", governor, governor == "performance", kOfTiming});
   all.push_back(

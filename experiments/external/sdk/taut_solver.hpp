@@ -26,17 +26,20 @@
 // protocol: print to standard error. MIT licence, as taut.
 #pragma once
 
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <locale>
 #include <map>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <vector>
 
@@ -80,7 +83,8 @@ class JsonParser {
   }
 
  private:
-  explicit JsonParser(const std::string& text) : text_(text), at_(text_.c_str()) {}
+  explicit JsonParser(const std::string& text)
+      : text_(text), at_(text_.c_str()), end_(at_ + text_.size()) {}
   [[noreturn]] static void fail() { throw std::runtime_error("no JSON"); }
   char next() {
     while (*at_ == ' ' || *at_ == '\n' || *at_ == '\t' || *at_ == '\r') ++at_;
@@ -133,10 +137,10 @@ class JsonParser {
         expect("null");
         return v;
       default: {
-        char* end = nullptr;
+        // Not strtod(): a library may have set a locale with a decimal comma.
+        const auto [end, error] = std::from_chars(at_, end_, v.number);
         v.kind = Json::Kind::number;
-        v.number = std::strtod(at_, &end);
-        if (end == at_) fail();
+        if (error != std::errc()) fail();
         at_ = end;
         return v;
       }
@@ -184,7 +188,7 @@ class JsonParser {
   }
 
   std::string text_;
-  const char* at_;
+  const char *at_, *end_;
 };
 
 inline std::string json_text(const std::string& text) {
@@ -228,6 +232,7 @@ int serve() {
       std::ifstream file(request["file"].text, std::ios::binary);
       if (!file) throw std::runtime_error("cannot read " + request["file"].text);
       std::ostringstream content;
+      content.imbue(std::locale::classic());
       content << file.rdbuf();
       const Json scene = JsonParser::parse(content.str());
       std::string reasons;

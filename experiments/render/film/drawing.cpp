@@ -1,8 +1,8 @@
 #include "experiments/render/film/drawing.hpp"
 
+#include "core/model/text.hpp"
 #include "experiments/render/picture/figure.hpp"
 #include "experiments/render/picture/media.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -39,7 +39,7 @@ Drawn draw_stills(const RunSet& set, const Drawing& drawing, const fs::path& out
   for (const double time : drawing.times) {
     fs::path file = out;
     if (drawing.times.size() > 1)
-      file.replace_filename(out.stem().string() + formatted("-t%.2f", time) +
+      file.replace_filename(out.stem().string() + "-t" + decimal(time, 2) +
                             out.extension().string());
     write_png(file, compose(renderer, layout, {time}));
     drawn.files.push_back(file.string());

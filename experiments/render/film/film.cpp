@@ -79,7 +79,7 @@ report::Footage footage_of(const RunSet& set, const Media& media, double speed) 
 std::string key_of(const Film& film) {
   const MediaOptions options = options_of(film);
   std::string all = program_digest() + "\n" + std::string(pictures()) + "\n" + film.request.scene;
-  const auto add = [&](const auto&... values) { ((all += "\n" + std::to_string(values)), ...); };
+  const auto add = [&](const auto&... values) { ((all += "\n" + shortest(values)), ...); };
   CaseMaker maker;
   for (const std::string& solver : film.request.solvers)
     all += "\n" + maker.make({film.request.scene, film.request.settings, solver}).key;

@@ -75,7 +75,7 @@ PlannedFilm of_other(const report::ComparedSolvers& compared, const OtherScene& 
   film.request.scene = other.name;
   const double shown = kFilmSeconds * film.speed;
   if (scene.duration() > shown)
-    film.request.settings.emplace_back("time.duration", std::to_string(kFilmSeconds));
+    film.request.settings.emplace_back("time.duration", shortest(kFilmSeconds));
   for (const report::ComparedSolver& solver : compared.all) {
     const auto quoted = std::ranges::find_if(
         solver.cases, [&](const Record* r) { return report::work_of(*r) == solver.work; });

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/model/input_error.hpp"
-#include "experiments/system/text.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
@@ -128,7 +128,7 @@ double ColourScale::shown() const { return style(colour_by).shown; }
 std::string ColourScale::text(double value) const {
   if (colour_by == ColourBy::strain && value == 0) return "0";
   const char* sign = colour_by != ColourBy::strain ? "" : value < 0 ? "\u2212" : "+";
-  return sign + formatted("%.3g %s", std::abs(shown() * value), style(colour_by).unit);
+  return sign + general(std::abs(shown() * value), 3) + " " + style(colour_by).unit;
 }
 
 std::vector<double> ColourScale::ticks() const {

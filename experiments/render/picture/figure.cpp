@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/model/text.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -16,7 +15,7 @@ constexpr Rgb8 kAlarm = rgb(0xB3261E);
 std::string caption(const SceneRenderer& renderer, const RecordedRun& run, double t) {
   const Scene& scene = renderer.scene();
   const auto& frame = run.at(t);
-  std::vector<std::string> parts{formatted("t = %.2f s", frame.t)};
+  std::vector<std::string> parts{"t = " + decimal(frame.t, 2) + " s"};
   const LiveFigures live = live_figures(scene, frame.state, frame.t);
   for (std::string& part : caption_of(renderer.scale().colour_by, live))
     parts.push_back(std::move(part));
@@ -108,7 +107,7 @@ void draw_footer(Canvas& canvas, const SceneRenderer& renderer, const PageLayout
   if (hatched && layout.columns > 1)
     canvas.text(
         {layout.width - 24 * u, top + 98 * u},
-        formatted("hatched: over %.2g mm inside the collider", 1e3 * renderer.hatch_depth()),
+        "hatched: over " + general(1e3 * renderer.hatch_depth(), 2) + " mm inside the collider",
         {15.5 * u, kMuted, Weight::regular, Align::right});
 }
 
@@ -116,10 +115,7 @@ void draw_footer(Canvas& canvas, const SceneRenderer& renderer, const PageLayout
 
 std::string strain_text(double value, bool sign) {
   const double size = std::abs(100 * value);
-  const std::string digits = formatted(size < 9.995   ? "%.2f %%"
-                                       : size < 99.95 ? "%.1f %%"
-                                                      : "%.0f %%",
-                                       size);
+  const std::string digits = decimal(size, size < 9.995 ? 2 : size < 99.95 ? 1 : 0) + " %";
   return (sign ? value < 0 ? "\u2212" : "+" : "") + digits;
 }
 
@@ -129,11 +125,11 @@ std::vector<std::string> caption_of(ColourBy colour_by, const LiveFigures& live)
       return {"max |ε| = " + strain_text(live.max_strain, false),
               "mean ε = " + strain_text(live.mean_strain, true)};
     case ColourBy::penetration:
-      return {"max depth = " + formatted("%.3g mm", 1e3 * live.max_depth)};
+      return {"max depth = " + general(1e3 * live.max_depth, 3) + " mm"};
     case ColourBy::speed:
       break;
   }
-  return {"max |v| = " + formatted("%.3g m/s", live.max_speed)};
+  return {"max |v| = " + general(live.max_speed, 3) + " m/s"};
 }
 
 int PageLayout::columns_of(int panels) { return panels == 4 ? 2 : std::min(panels, 3); }
@@ -242,7 +238,7 @@ void mark_stop(Image& panel, const RecordedRun::Stop& stop, double unit) {
   canvas.fill(0, height - edge, width, edge, kAlarm);
   canvas.fill(0, 0, edge, height, kAlarm);
   canvas.fill(width - edge, 0, edge, height, kAlarm);
-  plate(panel, stop.why + formatted(" after t = %.2f s: last good state", stop.t), kAlarm, unit);
+  plate(panel, stop.why + " after t = " + decimal(stop.t, 2) + " s: last good state", kAlarm, unit);
 }
 
 void mark_absence(Image& panel, const SceneRenderer& renderer, std::size_t run, double t,

@@ -1,7 +1,6 @@
 // Cases in the model: a single case, the settings of several, and the counts over a scene's cases.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -13,7 +12,6 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut::report {
 
@@ -31,10 +29,6 @@ std::string range_of(const std::set<double>& values, const Quantity& q) {
 }
 
 }  // namespace
-
-double rounded(double value, int digits) {
-  return std::strtod(formatted("%.*g", digits, value).c_str(), nullptr);
-}
 
 Table resolved_settings_table(const QuotedScene& quoted, const ComparedSolvers& compared,
                               CaseList& refs) {
@@ -112,7 +106,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
   for (const auto& [name, value] : r.values)
     if (const ValueSpec* known = find_value(name).second;
         std::isfinite(value) && !(of_maps && known && known->role == Role::none)) {
-      one["values"][name] = rounded(value);
+      one["values"][name] = rounded_to(value, 7);  // more digits than a page shows
       refs.use(name);
     }
   if (timed && timed->stable()) {

@@ -69,9 +69,9 @@ Json json_of(const TimeSeries& series, Variants& variants, CaseList& refs) {
   Json one{{"solver", series.solver},
            {"label", series.label},
            {"dash", dash_of(series.solver, variants.of(series.solver, series.label))}};
-  for (const double t : series.t) one["t"].push_back(rounded(t, 5));
+  for (const double t : series.t) one["t"].push_back(rounded_to(t, 5));
   for (const double y : series.y)
-    one["y"].push_back(std::isfinite(y) ? Json(rounded(y, 4)) : Json());
+    one["y"].push_back(std::isfinite(y) ? Json(rounded_to(y, 4)) : Json());
   add_if(one, "case", refs.key(series.key));
   return one;
 }
@@ -236,7 +236,7 @@ Json json_of(const StatusMap& map, const std::string& id, CaseList& refs) {
     add_if(at, "reason", status.reason.text());
     if (const double error = cell.record->value(kErrorMetric);
         completed(status) && std::isfinite(error))
-      at["value"] = rounded(error, 3);
+      at["value"] = rounded_to(error, 3);
     one["cells"].push_back(std::move(at));
   }
   return one;

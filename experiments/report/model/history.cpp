@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
 #include "experiments/history/history_answer.hpp"
 #include "experiments/report/chart/wording.hpp"
@@ -93,7 +94,7 @@ Json json_of_study(const History& history, const std::map<std::string, const Rec
       const auto* point = row.points[i].get();
       const auto at = point ? point->values.find(kErrorMetric) : MetricValues::const_iterator();
       const bool has = point && at != point->values.end() && std::isfinite(at->second);
-      line["values"].push_back(has ? Json(rounded(at->second, 5)) : Json());
+      line["values"].push_back(has ? Json(rounded_to(at->second, 5)) : Json());
     }
     add_if(line, "steps", json_of_row_steps(history, r, first, listed, refs));
     one["rows"].push_back(std::move(line));

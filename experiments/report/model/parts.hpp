@@ -25,8 +25,6 @@ void add_figure(DrawnCharts&, std::string_view of, const Figure&, CaseList&);
 void add_table(Json& part, Table, Answer& tables);
 /// The tables of an answer, by name, in the form that `taut --json` always writes.
 Json json_of_tables(const Answer&);
-/// Rounds to more significant digits than a page shows, which saves two thirds of the bytes.
-double rounded(double, int digits = 7);
 /// {low, mid, high, n}, as MODEL.md defines intervals.
 Json json_interval(const Interval&, std::size_t n);
 

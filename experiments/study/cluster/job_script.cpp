@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
@@ -73,38 +72,37 @@ std::string job_script(const Plan& plan, Scheduler on) {
   const bool slurm = on == Scheduler::slurm;
   // Memory beside the case: the program that runs the shard, its records and its scenes.
   const std::size_t bytes = plan.case_memory + (std::size_t{192} << 20);
-  std::ostringstream text;
-  text << "#!/bin/bash\n";
+  std::string text = "#!/bin/bash\n";
   if (slurm)
-    text << "#SBATCH --job-name=" << slug("taut-" + plan.study) << "\n#SBATCH --array=1-"
-         << plan.shards << "\n#SBATCH --time=" << shard_minutes(plan)
-         << "\n#SBATCH --mem=" << (bytes >> 20) << "M\n#SBATCH --ntasks=1 --cpus-per-task=1\n"
-         << "#SBATCH --requeue --open-mode=append --output=log/%a.txt --signal=B:USR1@60\n";
+    text += "#SBATCH --job-name=" + slug("taut-" + plan.study) + "\n#SBATCH --array=1-" +
+            std::to_string(plan.shards) +
+            "\n#SBATCH --time=" + std::to_string(shard_minutes(plan)) +
+            "\n#SBATCH --mem=" + std::to_string(bytes >> 20) +
+            "M\n#SBATCH --ntasks=1 --cpus-per-task=1\n" +
+            "#SBATCH --requeue --open-mode=append --output=log/%a.txt --signal=B:USR1@60\n";
   const std::string run = shell_word("./" + plan.study + ".toml") +
                           (plan.preset.empty() ? "" : " --preset " + shell_word(plan.preset)) +
                           " -j 1 --timeout " + shortest(plan.limits.seconds) + " --memory " +
                           std::to_string(plan.limits.bytes >> 20);
-  text << kHead << (slurm ? kSlurm : kParallel);
-  return filled(text.str(), {{"@RUN@", run},
-                             {"@SHARDS@", std::to_string(plan.shards)},
-                             {"@BUILD@", program_digest().substr(0, 10)}});
+  text += std::string(kHead) + (slurm ? kSlurm : kParallel);
+  return filled(text, {{"@RUN@", run},
+                       {"@SHARDS@", std::to_string(plan.shards)},
+                       {"@BUILD@", program_digest().substr(0, 10)}});
 }
 
 std::string readme(const Plan& plan, Scheduler on) {
   const bool slurm = on == Scheduler::slurm;
-  std::ostringstream text;
-  text << "Study " << plan.study << (plan.preset.empty() ? "" : " --preset " + plan.preset) << ": "
-       << plan.cases << " cases in " << plan.shards << " shards, for taut build "
-       << program_digest().substr(0, 10)
-       << " (`taut --version`; $TAUT names it if it is not in the PATH).\n"
-       << "Start, or go on where it stopped: " << (slurm ? "sbatch job.sh" : "./job.sh")
-       << " in this folder.\n"
-       << "Progress, failures and what to start again: taut cluster status .\n"
-       << "All results into one file, if none is missing: taut cluster merge . --out results/runs\n"
-       << "results.db: the plan; " << plan.study << ".toml: the study; shards/: results; "
-       << (slurm ? "log/: output of the jobs.\n"
-                 : "joblog: GNU parallel's list of ended shards.\n");
-  return text.str();
+  return "Study " + plan.study + (plan.preset.empty() ? "" : " --preset " + plan.preset) + ": " +
+         std::to_string(plan.cases) + " cases in " + std::to_string(plan.shards) +
+         " shards, for taut build " + program_digest().substr(0, 10) +
+         " (`taut --version`; $TAUT names it if it is not in the PATH).\n" +
+         "Start, or go on where it stopped: " + (slurm ? "sbatch job.sh" : "./job.sh") +
+         " in this folder.\n" +
+         "Progress, failures and what to start again: taut cluster status .\n" +
+         "All results into one file, if none is missing: taut cluster merge . --out "
+         "results/runs\n" +
+         "results.db: the plan; " + plan.study + ".toml: the study; shards/: results; " +
+         (slurm ? "log/: output of the jobs.\n" : "joblog: GNU parallel's list of ended shards.\n");
 }
 
 }  // namespace taut::cluster

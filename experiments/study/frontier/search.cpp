@@ -12,7 +12,6 @@
 #include "core/model/text.hpp"
 #include "core/reference/linear_stability.hpp"
 #include "experiments/study/frontier/frontier.hpp"
-#include "experiments/system/text.hpp"
 
 namespace taut {
 
@@ -42,7 +41,7 @@ class BorderSearch {
     if (range_.whole) return std::round(value);
     const int digits =
         std::clamp(3 - static_cast<int>(std::floor(std::log10(range_.tolerance))), 3, 17);
-    return std::strtod(formatted("%.*g", digits, value).c_str(), nullptr);
+    return rounded_to(value, digits);
   }
 
   std::vector<double> coarse_values() const {
@@ -150,7 +149,7 @@ double FrontierQuestion::setting(double value) const {
   if (direction == Direction::up) return value;
   if (direction == Direction::down_in_whole_numbers) return std::round(1 / value);
   // Six digits are more than a bracket has.
-  return std::strtod(formatted("%.6g", 1 / value).c_str(), nullptr);
+  return rounded_to(1 / value, 6);
 }
 
 CaseSpec FrontierQuestion::at(double value) const {

@@ -1,17 +1,17 @@
 #include "experiments/truths/assertions/judged.hpp"
 
 #include "core/model/solver.hpp"
-#include "experiments/system/text.hpp"
+#include "core/model/text.hpp"
 
 namespace taut {
 
 namespace {
 
 std::string figure_text(const Finding& f) {
-  return solver_name(f.subject) + ": " + f.quantity + formatted(" %.4g", f.measured) +
+  return solver_name(f.subject) + ": " + f.quantity + " " + general(f.measured, 4) +
          (f.unit == "1" ? "" : " " + f.unit) +
-         (f.expected == 0 ? formatted(" (at most %.3g)", f.tolerance)
-                          : formatted(" (%.4g +- %.3g)", f.expected, f.tolerance));
+         (f.expected == 0 ? " (at most " + general(f.tolerance, 3) + ")"
+                          : " (" + general(f.expected, 4) + " +- " + general(f.tolerance, 3) + ")");
 }
 
 /// The finding to quote for an assertion: one that breaks it, otherwise the first measured one, of

@@ -6,6 +6,7 @@
 #include <taut/model/index.hpp>
 #include <taut/model/input_error.hpp>
 #include <taut/model/solver.hpp>
+#include <taut/model/text.hpp>
 
 int main(int argc, char** argv) try {
   if (argc < 2) throw taut::InputError("usage: stretch SCENE.toml [SOLVER]");
@@ -25,8 +26,9 @@ int main(int argc, char** argv) try {
       const taut::Vec3 along = state.x[taut::to_index(link.b)] - state.x[taut::to_index(link.a)];
       sum += std::pow(along.norm() / link.rest - 1, 2);
     }
-    std::printf("%.17g s: strain %.17g\n", step * scene.dt,
-                std::sqrt(sum / static_cast<double>(scene.links.size())));
+    const double strain = std::sqrt(sum / static_cast<double>(scene.links.size()));
+    std::printf("%s s: strain %s\n", taut::shortest(step * scene.dt).c_str(),
+                taut::shortest(strain).c_str());
   }
 } catch (const taut::InputError& error) {
   std::fprintf(stderr, "%s\n", error.what());
