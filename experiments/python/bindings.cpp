@@ -5,10 +5,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <filesystem>
 #include <string>
 #include <utility>
 
 #include "core/io/scene_io.hpp"
+#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -17,6 +19,7 @@
 #include "experiments/python/python_solver.hpp"
 #include "experiments/python/runs.hpp"
 #include "experiments/python/sourced_scene.hpp"
+#include "experiments/python/unlocked.hpp"
 #include "experiments/python/values.hpp"
 #include "experiments/system/data.hpp"
 
@@ -119,6 +122,9 @@ void define_module(py::module_& m) {
   PyModule_AddFunctions(m.ptr(), kPlainFunctions);
   m.def("set_data_folder", set_data_folder);
   m.def("register_solver", register_solver);
+  m.def("fail_in",
+        [](const std::filesystem::path& file, const std::string& why) { fail_in(file, why); });
+  wait_for_unlocked_at_exit();
 
   g_input_error =
       PyErr_NewExceptionWithDoc("taut.InputError", doc::kInputError, PyExc_ValueError, nullptr);

@@ -19,6 +19,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/python/docstrings.hpp"
 #include "experiments/python/sourced_scene.hpp"
+#include "experiments/python/unlocked.hpp"
 #include "experiments/python/values.hpp"
 
 namespace taut::python {
@@ -34,7 +35,8 @@ struct RunResult {
   State last;
 };
 
-/// Keeps frames, and ends the run if a signal handler raises, as that of Ctrl-C does.
+/// Keeps frames, and ends the run if a signal handler raises, as that of Ctrl-C does, or if Python
+/// ends.
 class Watcher {
  public:
   Watcher(int every, int steps) : every_(every), steps_(steps) {
@@ -48,6 +50,7 @@ class Watcher {
       t_.push_back(moment.t);
       for (const Vec3& x : moment.state.x) x_.insert(x_.end(), x.begin(), x.end());
     }
+    leave_if_python_ends();
     const auto now = std::chrono::steady_clock::now();
     if (now - checked_ < std::chrono::milliseconds(50)) return;
     checked_ = now;
@@ -82,7 +85,7 @@ RunResult watched(const Scene& scene, int every, const Run& run) {
       .every = every, .timed = true, .watch = [&](const Snapshot& moment) { watcher.see(moment); }};
   std::optional<CaseRun> done;
   {
-    const py::gil_scoped_release others_run;
+    const Unlocked others_run;
     done = run(options);
   }
   return watcher.result(std::move(*done), scene.mesh.size());
@@ -121,9 +124,14 @@ void check_finite(PositionReader& positions) {
 }
 
 double above_zero(const py::object& value, const char* what) {
-  const auto number = py::cast<double>(value);
-  if (std::isfinite(number) && number > 0) return number;
-  throw InputError(std::string(what) + ": " + shortest(number) + "; must be above 0");
+  const std::string wrong = std::string(what) + ": " + py::cast<std::string>(py::repr(value));
+  try {
+    const auto number = py::cast<double>(value);
+    if (std::isfinite(number) && number > 0) return number;
+  } catch (const py::cast_error&) {
+    throw InputError(wrong + " is a " + type_of(value) + "; must be a number above 0");
+  }
+  throw InputError(wrong + "; must be above 0");
 }
 
 RunResult simulate(const py::object& scene, const std::string& solver, const py::object& dt,

@@ -9,6 +9,7 @@
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/python/docstrings.hpp"
+#include "experiments/python/unlocked.hpp"
 #include "experiments/system/data.hpp"
 
 namespace taut::python {
@@ -22,7 +23,7 @@ SourcedScene SourcedScene::replaced(const SceneSettings& more) const {
     throw InputError("this scene belongs to a solver: call replace() of the scene that you gave");
   SourcedScene other = *this;
   other.settings = taut::replaced(std::move(other.settings), more);
-  const py::gil_scoped_release others_run;
+  const Unlocked others_run;
   other.scene = std::make_shared<const Scene>(read(other.settings));
   return other;
 }

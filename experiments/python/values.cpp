@@ -15,6 +15,16 @@ std::string shape_of(const py::array& array) {
   return py::cast<std::string>(py::repr(array.attr("shape")));
 }
 
+/// Whether it is a masked array or a list of such. As an array it would lose the mask, and what the
+/// mask hides would count.
+bool has_mask(py::handle value, py::handle masked) {
+  if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
+    return py::isinstance(value, masked);
+  for (const py::handle part : value)
+    if (has_mask(part, masked)) return true;
+  return false;
+}
+
 /// The value as TOML. Throws InputError that names `key`.
 std::string toml_of(py::handle value, const std::string& key) {
   const auto all = [&](py::handle list) {
@@ -54,6 +64,8 @@ std::string type_of(py::handle value) {
 
 py::array points_of(py::handle value, const std::string& what, py::ssize_t dimensions,
                     std::optional<py::ssize_t> count, const std::string& wanted, bool floats) {
+  if (has_mask(value, py::module_::import("numpy.ma").attr("MaskedArray")))
+    throw InputError(what + ": a masked array; give its values without a mask: filled() or a part");
   const py::array array = py::array::ensure(value);
   if (!array) {
     PyErr_Clear();

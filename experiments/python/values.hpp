@@ -26,7 +26,8 @@ py::str text_of(std::string_view);
 std::string type_of(py::handle value);
 
 /// The value as an array of numbers with this many dimensions, the last two being [count][3].
-/// Throws InputError that names `what`, its type and its shape. `floats` refuses integers too.
+/// Throws InputError that names `what`, its type and its shape. A masked array is refused. `floats`
+/// refuses integers too.
 py::array points_of(py::handle value, const std::string& what, py::ssize_t dimensions,
                     std::optional<py::ssize_t> count, const std::string& wanted,
                     bool floats = false);

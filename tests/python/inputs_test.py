@@ -145,8 +145,9 @@ class Inputs(module.Case):
         self.assertTrue(frame.equals(taut.results()))
         (self.folder / "text.db").write_text("no database at all, but a text of some length\n" * 9)
         for wrong in ("nowhere", self.folder, "text.db"):
-            with self.refused(str(wrong), "no results file"):
+            with self.refused(str(wrong), "no results file") as refused:
                 taut.results(wrong)
+            self.assertEqual([one.file for one in refused.error.diagnostics], [str(wrong)])
         before = sorted(p.name for p in (self.folder / "runs").iterdir())
         subprocess.run(["chmod", "-R", "a-w", self.folder / "runs"], check=True)
         self.assertTrue(frame.equals(taut.results("runs")))

@@ -122,6 +122,37 @@ class Runs(module.Case):
         self.assertLess(time.monotonic() - begin, 3)
         self.assertEqual(taut.simulate(taut.scene(module.SMALL)).status, "ok")
 
+    def test_python_ends_while_a_daemon_thread_runs(self):
+        """Python would end the thread where it next takes the interpreter's lock, in the middle of C++."""
+        for solver in ("jakobsen:threads=2", "bullet", "idle"):
+            with self.subTest(solver):
+                begin = time.monotonic()
+                done = self.python("import threading, time, taut\n"
+                                   "@taut.solver('idle')\n"
+                                   "class Idle:\n"
+                                   "    def load(self, scene, x, v): self.x, self.v = x, v\n"
+                                   "    def step(self, t, dt): time.sleep(0)\n"
+                                   "    def store(self): return self.x, self.v\n"
+                                   "begun = threading.Event()\n"
+                                   "def run():\n"
+                                   "    while True:\n"
+                                   "        begun.set()\n"
+                                   f"        taut.simulate('hang', {solver!r}, duration=2000, every=100000)\n"
+                                   "for _ in range(2): threading.Thread(target=run, daemon=True).start()\n"
+                                   "begun.wait()\n"
+                                   "time.sleep(0.2)\n"
+                                   "print('the end')")
+                self.assertEqual((done.stdout, done.stderr), ("the end\n", ""))
+                self.assertLess(time.monotonic() - begin, 20)
+
+    def test_a_process_that_was_forked_meanwhile_ends(self):
+        done = self.python("import os, sys, threading, time, taut\n"
+                           "threading.Thread(target=lambda: taut.simulate('hang', duration=2000, every=100000), daemon=True).start()\n"
+                           "time.sleep(0.2)\n"
+                           "if os.fork() == 0: sys.exit()  # which waits for no thread of its parent\n"
+                           "print(os.wait()[1])")
+        self.assertEqual((done.stdout, done.stderr), ("0\n", ""))
+
     def test_no_memory_grows(self):
         scene = taut.scene(module.SMALL, {"cloth.grid": [12, 12]})
 

@@ -94,11 +94,18 @@ class Scores(module.Case):
                             (bad, ("positions", "frame 7, vertex 3", "not finite", "allow_nan")), (x + 1, ("positions", "does not begin", "vertex 0"))):
             with self.subTest(said), self.refused(*said):
                 taut.score(scene, array)
+        hidden = numpy.ma.masked_invalid(bad)
+        for array in (hidden, list(hidden), numpy.ma.array(x)):
+            with self.refused("positions: a masked array"):
+                taut.score(scene, array)
+        with self.refused("rest: a masked array"):
+            taut.score(scene, x, rest=hidden[7])
         torn = x.copy()
         torn[20:, scene.pins[0]] += 0.1
         with self.refused("pins", "vertex 0"):
             taut.score(scene, torn)
         for said, parts in (({"fps": 0}, ("fps", "0")), ({"fps": math.nan}, ("fps", "nan")), ({"scale": -1}, ("scale", "-1")), ({"up": "x"}, ("up", "'x'")),
+                            ({"fps": "1/24"}, ("fps: '1/24' is a str",)), ({"scale": None}, ("scale: None is a NoneType",)),
                             ({"rest": x[0, :-1]}, ("rest", "(63, 3)", "(64, 3)")), ({"every": -1}, ("every", "-1"))):
             with self.subTest(said), self.refused(*parts):
                 taut.score(scene, x, **said)

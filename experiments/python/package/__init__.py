@@ -74,7 +74,7 @@ def results(folder=None):
     path = pathlib.Path(folder or pathlib.Path(os.environ.get("TAUT_RESULTS") or "results", "runs"))
     file = path / "results.db" if path.is_dir() else path
     if not file.is_file():
-        raise InputError(f"{path}: no results file, seen from {os.getcwd()}")
+        _taut.fail_in(path, f"no results file, seen from {os.getcwd()}")
     try:
         connection = sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
         try:
@@ -82,4 +82,4 @@ def results(folder=None):
         finally:
             connection.close()
     except (sqlite3.Error, pandas.errors.DatabaseError) as error:
-        raise InputError(f"{path}: no results file of taut: {error}") from error
+        _taut.fail_in(path, f"no results file of taut: {error}")
