@@ -4,11 +4,13 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <thread>
@@ -129,6 +131,8 @@ void borrow(const fs::path& repository, const fs::path& checkout) {
   write_file(own / "packed-refs", packed);
 }
 
+constexpr const char* kFormat = "--format=%H%x09%ct%x09%s";
+
 /// Seconds since 1970 as "2026-05-04T10:11:12Z".
 std::string iso_time(const std::string& seconds) {
   const std::time_t time = whole<long long>(seconds).value_or(0);
@@ -137,6 +141,15 @@ std::string iso_time(const std::string& seconds) {
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
   return text;
+}
+
+/// From a line of kFormat.
+Build build_of(const std::string& line) {
+  const std::vector<std::string> parts = parts_of(stripped_end(line), '\t');
+  return {.id = parts.at(0),
+          .made = iso_time(parts.at(1)),
+          .place = 0,
+          .subject = parts.size() > 2 ? printable(parts[2], 200) : ""};
 }
 
 double bytes_in(const fs::path& folder) {
@@ -184,28 +197,48 @@ bool Repository::is_ancestor(const std::string& a, const std::string& b) const {
   return git(own_->path(), {"merge-base", "--is-ancestor", a, b}).good;
 }
 
+std::vector<Build> Repository::broken_line(const std::string& a, const std::string& b) const {
+  if (git(own_->path(), {"rev-list", "--count", "--first-parent", b}).good) return {};
+  std::vector<Build> builds;
+  for (std::string id = b; !id.empty();) {
+    const GitAnswer one = git(own_->path(), {"log", "--no-walk", "--format=%P%x09%ct%x09%s", id});
+    if (!one.good) {  // it is missing, and with it what lies before
+      if (builds.empty()) return {};
+      builds.push_back(
+          {.id = id, .made = builds.back().made, .subject = "a commit that is missing"});
+      break;
+    }
+    const std::string parents = one.text.substr(0, one.text.find('\t'));
+    builds.push_back(build_of(id + one.text.substr(parents.size())));
+    id = parents.substr(0, parents.find(' '));
+    if (id.empty()) return {};
+  }
+  builds.push_back(build_of(git_or_throw(own_->path(), {"log", "--no-walk", kFormat, a})));
+  std::ranges::reverse(builds);
+  for (Build& build : builds) build.place = &build - builds.data();
+  return builds;
+}
+
 std::vector<Build> Repository::line(const std::string& range) const {
   const std::size_t dots = range.find("..");
   if (dots == range.npos || dots == 0 || range.find('.', dots + 2) == dots + 2)
     throw InputError("--commits " + range + ": expected A..B, the first and the last commit");
   const std::string a = commit(range.substr(0, dots)), b = commit(range.substr(dots + 2));
   if (a == b) throw InputError("--commits " + range + ": both are the same commit");
-  if (!is_ancestor(a, b))
+  if (!is_ancestor(a, b)) {
+    if (std::vector<Build> known = broken_line(a, b); !known.empty()) return known;
     throw InputError("--commits " + range + ": " +
                      (is_ancestor(b, a) ? "the wrong way round: the last is older than the first"
                                         : "the first does not lead to the last"));
-  const std::string log = git_or_throw(own_->path(), {"log", "--first-parent", "--reverse",
-                                                      "--format=%H%x09%ct%x09%s", a + ".." + b});
-  std::istringstream lines(
-      git_or_throw(own_->path(), {"log", "-1", "--format=%H%x09%ct%x09%s", a}) + log);
+  }
+  const std::string log =
+      git_or_throw(own_->path(), {"log", "--first-parent", "--reverse", kFormat, a + ".." + b});
+  std::istringstream lines(git_or_throw(own_->path(), {"log", "-1", kFormat, a}) + log);
   std::vector<Build> builds;
   for (std::string line; std::getline(lines, line);) {
-    const std::vector<std::string> parts = parts_of(line, '\t');
-    if (parts.size() < 2) continue;
-    builds.push_back({.id = parts[0],
-                      .made = iso_time(parts[1]),
-                      .place = static_cast<std::int64_t>(builds.size()),
-                      .subject = parts.size() > 2 ? printable(parts[2], 200) : ""});
+    if (line.empty()) continue;
+    builds.push_back(build_of(line));
+    builds.back().place = std::ssize(builds) - 1;
   }
   return builds;
 }
@@ -245,9 +278,12 @@ std::string Checkout::build(const std::string& commit, const std::string& comman
                             const BuildLimits& limits) {
   if (const std::string why = full(folder_); !why.empty()) throw InputError(why);
   commit_.clear();
-  if (const GitAnswer got = git(folder_, {"checkout", "--quiet", "--force", "--detach", commit});
-      !got.good)
-    return "git cannot check it out: " + got.complaint;
+  // Where the commit's own tree is missing, checkout is content and status is not.
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"checkout", "--quiet", "--force", "--detach", commit},
+        {"status", "--porcelain", "--untracked-files=no"}})
+    if (const GitAnswer got = git(folder_, words); !got.good)
+      return "git cannot check it out: " + got.complaint;
   if (!command.empty()) {
     const fs::path log = folder_.string() + ".log";
     const SteadyClock::time_point start = SteadyClock::now();

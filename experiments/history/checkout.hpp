@@ -27,6 +27,9 @@ class Repository {
  private:
   std::string commit(const std::string& name) const;
   bool is_ancestor(const std::string& a, const std::string& b) const;
+  /// The line to b if a commit of it is missing, and so what lies between that one and a. Empty if
+  /// none is.
+  std::vector<Build> broken_line(const std::string& a, const std::string& b) const;
   std::filesystem::path folder_;
   std::shared_ptr<Scratch> own_;  ///< a checkout over its objects, without its configuration
 };

@@ -312,6 +312,17 @@ class BadInput(Repository):
         self.assertIn("git cannot check it out", gaps["change 1"])
         self.assertFalse((self.folder / "started").exists())
 
+    def test_a_commit_that_is_missing_is_a_gap_and_so_is_one_without_its_tree(self):
+        made = self.repository({}, commits=5)
+        repo = self.folder / "repo"
+        for lost in (made[2], git(repo, "rev-parse", f"{made[3]}^{{tree}}")):
+            (repo / ".git/objects" / lost[:2] / lost[2:]).unlink()
+        answer = self.found(commits=f"{made[0]}..{made[4]}", expect=3)
+        self.assertEqual([row["subject"] for row in rows_of(answer, "builds")],
+                         ["change 0", "a commit that is missing", "change 3", "change 4"])
+        gaps = {row["subject"]: row["gap"] for row in rows_of(answer, "builds") if row["gap"]}
+        self.assertEqual(list(gaps), ["a commit that is missing", "change 3"])
+
     def test_a_program_that_only_the_store_names_is_not_started(self):
         self.repository({0: [("# START", f"open({str(self.folder / 'started')!r}, 'a').write('x')")]}, commits=2)
         self.history(commits="HEAD~1..HEAD")
