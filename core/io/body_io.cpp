@@ -13,9 +13,10 @@ namespace taut {
 namespace {
 
 /// The surface in the file, or nothing if it cannot be read; errors are reported at file and line.
-std::optional<BodySurface> read_file(Section& section, const std::filesystem::path& path) {
+std::optional<BodySurface> read_file(Section& section, const std::filesystem::path& path,
+                                     MeshBody::Sides sides) {
   try {
-    return read_body_obj(path);
+    return read_body_obj(path, sides == MeshBody::Sides::out);
   } catch (const InputError& error) {
     for (const Diagnostic& d : error.diagnostics())
       if (d.line > 0)
@@ -53,8 +54,8 @@ std::shared_ptr<const TriangleMesh> solid(const std::filesystem::path& path, Bod
     section.diagnostics().report(
         {{path.string(), surface.triangle_lines[to_index(mesh->open_edge())], 1,
           "an edge of the face has no other face that goes along it the "
-          "other way: with sides = \"out\" a body is closed; close it, or "
-          "set sides = \"both\""}});
+          "other way (where solids touch: one each way by turns): with sides = \"out\" a body is "
+          "closed; close it, or set sides = \"both\""}});
     return nullptr;
   }
   const double size = mesh->box().sizes().prod();
@@ -63,7 +64,10 @@ std::shared_ptr<const TriangleMesh> solid(const std::filesystem::path& path, Bod
     return nullptr;
   }
   if (mesh->volume() > 0) return mesh;
-  section.diagnostics().remark(path.string() + ": its faces look inward, and were turned");
+  section.diagnostics().remark(path.string() +
+                                   ": its faces look inward, and were turned; cloth that is to be "
+                                   "inside, as in a room, needs sides = \"both\"",
+                               section.place());
   for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
   return std::make_shared<const TriangleMesh>(std::move(surface.vertices),
                                               std::move(surface.triangles));
@@ -75,9 +79,13 @@ std::shared_ptr<const TriangleMesh> read_mesh(Section& section, const std::files
   const auto name = section.string("file");
   if (!name) return nullptr;
   const std::filesystem::path path = folder / *name;
-  std::optional<BodySurface> surface = read_file(section, path);
+  std::optional<BodySurface> surface = read_file(section, path, sides);
   if (!surface) return nullptr;
   if (!surface->skipped.empty()) section.diagnostics().remark(remark_on(path.string(), *surface));
+  if (surface->inner_faces > 0)
+    section.diagnostics().remark(path.string() + ": left out " +
+                                 std::to_string(surface->inner_faces) +
+                                 " faces that lie on each other where solids touch");
   if (!scaled(surface->vertices, scale, section, "file")) return nullptr;
   if (sides == MeshBody::Sides::out) return solid(path, std::move(*surface), section);
   return std::make_shared<const TriangleMesh>(std::move(surface->vertices),

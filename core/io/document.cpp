@@ -274,6 +274,13 @@ std::string to_toml(const Value& root) {
   return out.str();
 }
 
+std::string Diagnostics::remarks_at(const SourceLocation& place) const {
+  std::string all;
+  for (const auto& [at, sentence] : remarks_at_)
+    if (at == place) all += "; " + sentence;
+  return all;
+}
+
 void Diagnostics::throw_if_any() {
   if (found_.empty()) return;
   // Settings have no line and come last, in the order of the command line.

@@ -19,6 +19,7 @@ struct SourceLocation {
   int line = 0;      ///< 1-based; 0: unknown
   int column = 0;    ///< 1-based; 0: unknown
   int setting = -1;  ///< index into Document::settings; -1: the file itself
+  bool operator==(const SourceLocation&) const = default;
 };
 
 /// A key of a table.
@@ -84,9 +85,15 @@ class Diagnostics {
     for (Diagnostic& d : more) found_.push_back(std::move(d));
   }
   bool clean() const { return found_.empty(); }
-  /// Adds a sentence for the user about something that is not wrong, but not used either.
-  void remark(const std::string& sentence) { remarks_.push_back(sentence); }
+  /// Adds a sentence for the user about something that is not wrong, but not used either, or was
+  /// changed. `place`: what is reported of that place repeats it.
+  void remark(const std::string& sentence, const SourceLocation& place = {}) {
+    remarks_.push_back(sentence);
+    if (place.line > 0 || place.setting >= 0) remarks_at_.emplace_back(place, sentence);
+  }
   const std::vector<std::string>& remarks() const { return remarks_; }
+  /// "; " and a sentence, for each remark of that place.
+  std::string remarks_at(const SourceLocation&) const;
   /// Throws InputError with everything that was reported, in the order of the file, if anything
   /// was.
   void throw_if_any();
@@ -95,6 +102,7 @@ class Diagnostics {
   const Document& document_;
   std::vector<Diagnostic> found_;
   std::vector<std::string> remarks_;
+  std::vector<std::pair<SourceLocation, std::string>> remarks_at_;
 };
 
 /// Reads the keys of one table. Every key that is asked for becomes known; finish() reports the

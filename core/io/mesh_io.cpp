@@ -234,6 +234,51 @@ std::vector<int> joined(const std::vector<Vec3>& x, double reach) {
   return to;
 }
 
+/// Leaves out pairs of faces that lie on each other, look opposite ways, and have other faces at
+/// all their edges. Returns how many faces that are. `first`: the vertex at each one's place.
+int leave_out_inner_faces(Polygons& p, const std::vector<int>& first) {
+  std::map<std::pair<int, int>, int> faces_at;                // by the ends of an edge
+  std::map<std::vector<int>, std::vector<std::size_t>> like;  // by the corners, the smallest first
+  const auto corners_of = [&](const std::vector<int>& face) {
+    std::vector<int> all;
+    for (const int v : face) all.push_back(first[to_index(v)]);
+    std::rotate(all.begin(), std::ranges::min_element(all), all.end());
+    return all;
+  };
+  for (std::size_t f = 0; f < p.faces.size(); ++f) {
+    const std::vector<int> all = corners_of(p.faces[f]);
+    for (std::size_t k = 0; k < all.size(); ++k)
+      ++faces_at[std::minmax(all[k], all[(k + 1) % all.size()])];
+    like[all].push_back(f);
+  }
+  std::vector<bool> inner(p.faces.size());
+  for (std::size_t f = 0; f < p.faces.size(); ++f) {
+    std::vector<int> turned = corners_of(p.faces[f]);
+    const auto touches_others = [&](std::size_t k) {
+      return faces_at[std::minmax(turned[k], turned[(k + 1) % turned.size()])] > 2;
+    };
+    bool all_edges = true;
+    for (std::size_t k = 0; k < turned.size(); ++k) all_edges = all_edges && touches_others(k);
+    std::reverse(turned.begin() + 1, turned.end());
+    const auto opposite = like.find(turned);
+    if (inner[f] || !all_edges || opposite == like.end()) continue;
+    const auto other =
+        std::ranges::find_if(opposite->second, [&](std::size_t g) { return !inner[g]; });
+    if (other == opposite->second.end()) continue;
+    inner[f] = inner[*other] = true;
+  }
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < p.faces.size(); ++f) {
+    if (inner[f]) continue;
+    p.faces[kept] = p.faces[f];
+    p.face_lines[kept++] = p.face_lines[f];
+  }
+  const auto left_out = static_cast<int>(p.faces.size() - kept);
+  p.faces.resize(kept);
+  p.face_lines.resize(kept);
+  return left_out;
+}
+
 /// Joins vertices within `reach` of each other; the remaining ones keep their order.
 void weld(Polygons& p, double reach, SurfaceErrors& errors) {
   const std::vector<int> to = joined(p.vertices, reach);
@@ -271,11 +316,12 @@ void weld(Polygons& p, double reach, SurfaceErrors& errors) {
 /// Keywords that do not affect the shape.
 constexpr std::string_view kOfOthers[] = {"vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib"};
 /// Keywords that other programs add for what no cloth of taut has: plastic and moving cloth, its
-/// edges and neighbours (ArcSim), seams, lines and points, detail levels. They are skipped, and
-/// counted.
-constexpr std::string_view kCounted[] = {"vv", "ny", "nv",   "vl",    "e",      "ea",
-                                         "ed", "tl", "adje", "adjf",  "stitch", "l",
-                                         "p",  "mg", "lod",  "usemap"};
+/// edges and neighbours (ArcSim), seams, lines and points; how it is shown (the format's section on
+/// display attributes). They are skipped, and counted.
+constexpr std::string_view kCounted[] = {
+    "vv",     "ny",    "nv",       "vl",       "e",          "ea",        "ed",    "tl",
+    "adje",   "adjf",  "stitch",   "l",        "p",          "mg",        "lod",   "usemap",
+    "maplib", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "ctech", "stech"};
 
 bool is_among(std::span<const std::string_view> all, std::string_view word) {
   return std::ranges::find(all, word) != all.end();
@@ -460,21 +506,25 @@ Polygons read_obj(const std::filesystem::path& path, double weld) {
   return parse_obj(path.string(), read_text(path, kMostMeshBytes), weld);
 }
 
-BodySurface parse_body_obj(const std::string& file, const std::string& text) {
+BodySurface parse_body_obj(const std::string& file, const std::string& text, bool solid) {
   SurfaceErrors errors(file);
   ObjReader reader(file, errors);
   reader.read(text);
-  const Polygons polygons = reader.take();
+  Polygons polygons = reader.take();
   errors.throw_if_any();
   if (polygons.faces.empty()) errors.report(1, "no face: a body needs one at least");
   judge_faces(polygons, errors);
   errors.throw_if_any();
-  BodySurface body{
-      polygons.vertices, make_mesh(polygons, 1, Lumping::equal).triangles, {}, polygons.skipped};
+  const std::vector<int> first = first_at_each_place(polygons.vertices);
+  const int inner = solid ? leave_out_inner_faces(polygons, first) : 0;
+  BodySurface body{polygons.vertices,
+                   make_mesh(polygons, 1, Lumping::equal).triangles,
+                   {},
+                   inner,
+                   polygons.skipped};
   for (std::size_t f = 0; f < polygons.faces.size(); ++f)
     body.triangle_lines.insert(body.triangle_lines.end(), polygons.faces[f].size() - 2,
                                polygons.face_lines[f]);
-  const std::vector<int> first = first_at_each_place(body.vertices);
   for (std::size_t t = 0; t < body.triangles.size(); ++t) {
     std::array<Vec3, 3> x;
     double longest2 = 0;
@@ -491,8 +541,8 @@ BodySurface parse_body_obj(const std::string& file, const std::string& text) {
   return body;
 }
 
-BodySurface read_body_obj(const std::filesystem::path& path) {
-  return parse_body_obj(path.string(), read_text(path, kMostMeshBytes));
+BodySurface read_body_obj(const std::filesystem::path& path, bool solid) {
+  return parse_body_obj(path.string(), read_text(path, kMostMeshBytes), solid);
 }
 
 }  // namespace taut

@@ -41,6 +41,7 @@ struct BodySurface {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
   std::vector<int> triangle_lines;  ///< line of each triangle's face in the file
+  int inner_faces = 0;              ///< number of faces left out
   std::map<std::string, int> skipped;
 };
 
@@ -48,10 +49,14 @@ struct BodySurface {
 /// become one, and any number of faces may share an edge. Throws InputError, with file and line,
 /// for everything malformed, for faces that refer to a vertex that does not exist or to the same
 /// vertex twice, cross themselves or have no area, and for a file without a face.
-BodySurface read_body_obj(const std::filesystem::path&);
+///
+/// `solid`: faces where two solids touch, which lie on each other and look opposite ways, are left
+/// out, so that the solids become one. The two sides of a sheet have no other faces at their edges,
+/// and stay.
+BodySurface read_body_obj(const std::filesystem::path&, bool solid = false);
 
 /// read_body_obj() for text in memory.
-BodySurface parse_body_obj(const std::string& file, const std::string& text);
+BodySurface parse_body_obj(const std::string& file, const std::string& text, bool solid = false);
 
 /// Area of the surface [m^2] if the vertices are in m.
 double area(const Polygons&);

@@ -73,7 +73,8 @@ void resolve(Scene& scene) {
 
 /// Reports free vertices inside a collider. A pinned vertex may be inside: that is how a cloth is
 /// fixed to an obstacle.
-void judge_start(const Value& item, Section& root, const Collider& collider, const Scene& scene) {
+void judge_start(const Value& item, Section& root, const FileKeys& said, const Collider& collider,
+                 const Scene& scene) {
   const Shape shape = shape_at(collider, 0);
   const double rounding = 1e-9 * extent(scene);  // rounding of the file's numbers
   double deepest = 0;
@@ -91,8 +92,11 @@ void judge_start(const Value& item, Section& root, const Collider& collider, con
   root.diagnostics().report(
       item.place, "the cloth starts inside this " + std::string(type_name(collider.shape)) + ": " +
                       std::to_string(count) + " vertices, vertex " + std::to_string(vertex) + " " +
-                      as_typed(std::round(1e9 * deepest) / 1e9) +
-                      " m deep; move one of them, or set start_inside = \"resolve\" in [cloth]");
+                      as_typed(std::round(1e9 * deepest) / 1e9) + " m deep; " +
+                      (said.start_inside == FileKeys::Inside::resolve
+                           ? "start_inside = \"resolve\" found no way out: move one of them"
+                           : "move one of them, or set start_inside = \"resolve\" in [cloth]") +
+                      root.diagnostics().remarks_at(item.place));
 }
 
 /// Reports a thin body without thickness: the side of the cloth is only known while the cloth keeps
@@ -187,7 +191,7 @@ void check_contact(Section& root, const FileKeys& said, Scene& scene) {
   if (said.start_inside == FileKeys::Inside::resolve) resolve(scene);
   const auto items = root.tables("collider");
   for (std::size_t k = 0; k < items.size() && k < scene.colliders.size(); ++k) {
-    judge_start(*items[k], root, scene.colliders[k], scene);
+    judge_start(*items[k], root, said, scene.colliders[k], scene);
     judge_path(*items[k], root, scene.colliders[k], scene);
     judge_frames(*items[k], root, scene.colliders[k], scene);
     judge_thin(*items[k], root, scene.colliders[k], scene);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace taut {
@@ -116,12 +117,6 @@ void TriangleMesh::refit(std::vector<Vec3> vertices) {
 }
 
 void TriangleMesh::join_edges() {
-  struct Side {
-    int low, high;
-    std::int32_t triangle;
-    bool upward;  ///< the triangle goes from low to high
-    std::uint8_t edge;
-  };
   std::vector<Side> sides;
   sides.reserve(3 * triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t)
@@ -137,13 +132,69 @@ void TriangleMesh::join_edges() {
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && edge_of(sides[end]) == edge_of(sides[begin])) ++end;
     const Side &a = sides[begin], &b = sides[end - 1];
-    if (end - begin == 2 && a.upward != b.upward) {
-      across_[to_place(a.triangle)][a.edge] = 3 * b.triangle + b.edge;
-      across_[to_place(b.triangle)][b.edge] = 3 * a.triangle + a.edge;
-    } else if (open_edge_ < 0 || a.triangle < open_edge_) {
+    if (end - begin == 2 && a.upward != b.upward)
+      join(a, b);
+    else if (!join_round(std::span(sides).subspan(begin, end - begin)) &&
+             (open_edge_ < 0 || a.triangle < open_edge_))
       open_edge_ = a.triangle;
-    }
   }
+  std::ranges::sort(round_);
+}
+
+void TriangleMesh::join(const Side& a, const Side& b) {
+  across_[to_place(a.triangle)][a.edge] = 3 * b.triangle + b.edge;
+  across_[to_place(b.triangle)][b.edge] = 3 * a.triangle + a.edge;
+}
+
+Vec3 TriangleMesh::away_from_edge(int triangle, std::size_t k) const {
+  const Vec3& from = corner(triangle, k);
+  const Vec3 along = (corner(triangle, (k + 1) % 3) - from).normalized();
+  const Vec3 to = corner(triangle, (k + 2) % 3) - from;
+  return (to - along.dot(to) * along).normalized();
+}
+
+bool TriangleMesh::join_round(std::span<Side> sides) {
+  const auto first = std::ranges::find(sides, true, &Side::upward);
+  if (sides.size() < 4 || first == sides.end()) return false;
+  // Behind a triangle that goes upward is its solid, which ends at the next triangle round the
+  // edge.
+  const Vec3 along = vertices_[to_place(first->high)] - vertices_[to_place(first->low)];
+  const Vec3 ahead = away_from_edge(first->triangle, first->edge);
+  const Vec3 behind = ahead.cross(along).normalized();
+  std::vector<std::pair<double, Side>> round;
+  for (const Side& side : sides) {
+    const Vec3 away = away_from_edge(side.triangle, side.edge);
+    const double angle = std::atan2(away.dot(behind), away.dot(ahead));
+    round.emplace_back(side.triangle == first->triangle ? 0
+                       : angle < 0                      ? angle + 2 * std::numbers::pi
+                                                        : angle,
+                       side);
+  }
+  std::ranges::sort(round, {},
+                    [](const auto& one) { return std::pair(one.first, one.second.triangle); });
+  constexpr double kOnEachOther = 1e-9;  // rad
+  for (std::size_t k = 0; k < round.size(); ++k) {
+    const double next = k + 1 < round.size() ? round[k + 1].first : 2 * std::numbers::pi;
+    if (round[k].second.upward != (k % 2 == 0) || next - round[k].first < kOnEachOther)
+      return false;
+  }
+  if (round.size() % 2 != 0) return false;
+  std::vector<std::int32_t> all;
+  for (const auto& [angle, side] : round) all.push_back(3 * side.triangle + side.edge);
+  for (std::size_t k = 0; k < round.size(); ++k) {
+    if (k % 2 == 0) join(round[k].second, round[k + 1].second);
+    round_.emplace_back(all[k], all);
+  }
+  return true;
+}
+
+int TriangleMesh::nearest_in_angle(int edge, const Vec3& out) const {
+  const auto found =
+      std::ranges::lower_bound(round_, edge, {}, [](const auto& one) { return one.first; });
+  if (found == round_.end() || found->first != edge) return -1;
+  return *std::ranges::max_element(found->second, {}, [&](std::int32_t one) {
+    return out.dot(away_from_edge(one / 3, to_place(one % 3)));
+  }) / 3;
 }
 
 void TriangleMesh::build(std::int32_t begin, std::int32_t end, std::span<const Vec3> middles) {
@@ -244,6 +295,9 @@ NearestPlace TriangleMesh::seen_from(const Vec3& p, int triangle) const {
     pseudo = corner_normals_.empty()
                  ? normal_round(triangle, place.which, vertices_, triangles_, across_, normals_)
                  : corner_normals_[to_place(triangles_[to_place(triangle)][place.which])];
+  else if (const int side = nearest_in_angle(3 * triangle + static_cast<int>(place.which), out);
+           side >= 0)
+    pseudo = normals_[to_place(side)];
   else if (const auto beyond = across_[to_place(triangle)][place.which]; beyond >= 0)
     pseudo += normals_[to_place(beyond / 3)];
   const double length = out.norm();

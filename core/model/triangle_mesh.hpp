@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/model/mesh.hpp"
@@ -46,7 +47,8 @@ class TriangleMesh {
   const Eigen::AlignedBox3d& box() const { return box_; }
   double reach() const { return reach_; }  ///< m, from the frame's origin to the farthest vertex
   /// Whether every edge has a triangle on either side, and these go along it in opposite
-  /// directions.
+  /// directions. Solids that touch in an edge have four or more there, in turn of one direction and
+  /// the other as one goes round it.
   bool closed() const { return open_edge_ < 0; }
   /// The first triangle with an edge that has no such counterpart; negative: closed.
   int open_edge() const { return open_edge_; }
@@ -56,7 +58,8 @@ class TriangleMesh {
   /// Angle-weighted normal, not normalised. Precondition: a triangle has the vertex.
   Vec3 corner_normal(int vertex) const;
   /// Edges are numbered 3 triangle + k, from corner k of the triangle to the next. Returns the
-  /// number of this edge in the triangle beyond it; negative if there is no such triangle.
+  /// number of this edge in the triangle beyond it; negative if there is no such triangle. Where
+  /// solids touch, the triangle beyond is one of the same solid.
   int beyond(int triangle, int k) const { return across_[to_place(triangle)][to_place(k)]; }
 
   /// Moves the vertices and keeps the triangles. Boxes and normals are recomputed, the shape of the
@@ -148,7 +151,23 @@ class TriangleMesh {
   template <class Visit>
   void along(const Vec3& from, const Vec3& to, const Visit& visit) const;
 
+  /// An edge of a triangle with a smaller and a larger end.
+  struct Side {
+    int low, high;
+    std::int32_t triangle;
+    bool upward;  ///< the triangle goes from low to high
+    std::uint8_t edge;
+  };
   void join_edges();
+  void join(const Side&, const Side&);
+  /// Joins four or more triangles round an edge in pairs that enclose a solid. Returns false if
+  /// they do not.
+  bool join_round(std::span<Side> sides);
+  /// Where an edge has more than two triangles: the one whose side of the edge is nearest in angle
+  /// to `out`, the way from the edge to a point. Otherwise negative.
+  int nearest_in_angle(int edge, const Vec3& out) const;
+  /// Unit vector in the triangle, across this edge of it and away from the edge.
+  Vec3 away_from_edge(int triangle, std::size_t k) const;
   void build(std::int32_t begin, std::int32_t end, std::span<const Vec3> middles);
   void make_boxes();
   void make_normals();
@@ -156,7 +175,9 @@ class TriangleMesh {
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<std::array<std::int32_t, 3>> across_;  ///< see beyond()
-  std::vector<Vec3> normals_;                        ///< [triangles] unit
+  /// Edges with more than two triangles, each with all that are in the same place; sorted.
+  std::vector<std::pair<std::int32_t, std::vector<std::int32_t>>> round_;
+  std::vector<Vec3> normals_;            ///< [triangles] unit
   std::vector<Vec3> corner_normals_;     ///< [n] corner_normal(); empty: computed when asked for
   std::vector<std::int32_t> corner_at_;  ///< [n] 3 triangle + k of some triangle there
   std::vector<std::int32_t> order_;      ///< triangles in the order of the leaves

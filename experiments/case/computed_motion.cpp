@@ -188,8 +188,10 @@ void ComputedMotion::find_place(const Scene& scene) {
       match_vertices(converted(first, frames_.scale, frames_.z_up),
                      at_rest ? scene.mesh.rest : scene.start.x, 1e-4 * extent(scene));
   if (!match.mismatch.empty()) {
-    misfits_.push_back(frames_.name + " does not begin as " + scene.name + " does, at " + place() +
-                       ": " + match.mismatch);
+    misfits_.push_back((at_rest
+                            ? frames_.rest_name + " is not " + scene.name + " at rest, at "
+                            : frames_.name + " does not begin as " + scene.name + " does, at ") +
+                       place() + ": " + match.mismatch);
     return;
   }
   order_said_ = std::string(match.same_order() ? "as in the scene" : "matched by position") +

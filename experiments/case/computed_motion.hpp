@@ -20,6 +20,7 @@ struct ComputedFrames {
   std::shared_ptr<PositionReader> positions;  ///< the start first
   std::shared_ptr<PositionReader> rest;       ///< its first frame is the cloth at rest, in the same
                                               ///< order; null: `positions` begin at the start
+  std::string rest_name = "rest";             ///< in messages
   double fps = 0;                             ///< frames in a second; 0: one a step of the scene
   double scale = 1;                           ///< m per unit
   bool z_up = false;                          ///< else y

@@ -1,12 +1,15 @@
 #include "experiments/command_line/parser.hpp"
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <locale>
 #include <optional>
 #include <span>
 #include <sstream>
 #include <type_traits>
 
+#include "core/io/scene_io.hpp"
+#include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
@@ -27,6 +30,21 @@ CLI::Validator validator(const Condition& condition) {
       condition.shown);
 }
 
+/// Lets a real be a quotient, such as 24000/1001. What is no number is left for the conditions.
+std::string evaluated(std::string& word) {
+  try {
+    word = shortest(parse_number(word));
+  } catch (const InputError&) {
+  }
+  return "";
+}
+
+template <class Value>
+constexpr bool kIsReal =
+    std::is_same_v<Value, double*> || std::is_same_v<Value, std::optional<double>*> ||
+    std::is_same_v<Value, std::vector<double>*> ||
+    std::is_same_v<Value, std::function<void(double)>>;
+
 template <class Value>
 CLI::Option* add(CLI::App& app, const Argument& one, Value* to) {
   if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::string>)
@@ -42,6 +60,9 @@ void add_argument(CLI::App& app, const Argument& one) {
   CLI::Option* const option =
       std::visit([&](const auto& to) { return add(app, one, to); }, one.target);
   option->required(one.is_required);
+  if (std::visit([](const auto& to) { return kIsReal<std::remove_cvref_t<decltype(to)>>; },
+                 one.target))
+    option->transform(CLI::Validator(evaluated, ""));
   for (const Condition& condition : one.conditions) option->check(validator(condition));
   if (one.separator) option->delimiter(one.separator);
   if (one.counts) option->expected(one.counts->first, one.counts->second);

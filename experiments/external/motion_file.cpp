@@ -83,7 +83,9 @@ ComputedFrames opened(const MotionOptions& options) {
                         .scale = options.scale,
                         .z_up = options.z_up};
   frames.positions = open_positions(options.file);
-  if (!options.rest.empty()) frames.rest = open_positions(options.rest);
+  if (options.rest.empty()) return frames;
+  frames.rest = open_positions(options.rest);
+  frames.rest_name = options.rest.string();
   return frames;
 }
 

@@ -105,8 +105,8 @@ fs::path folder_of_build(const fs::path& results, const std::string& text) {
   for (const auto& entry : fs::directory_iterator(results / "builds", none))
     known.push_back(entry.path().filename());
   std::ranges::sort(known);
-  throw InputError("build '" + text +
-                   "': no folder with a program taut, and none is kept of that " + "name; " +
+  throw InputError("build '" + text + "': no program taut in " + fs::absolute(text).string() +
+                   ", and none is kept in " + fs::absolute(kept).string() + "; " +
                    (known.empty() ? "taut bench --keep-build NAME keeps one before it is changed"
                                   : "kept are " + join(known, ", ")));
 }

@@ -101,6 +101,7 @@ class Files(CommandLine):
         every = self.write("half.npy", self.frames[::2])
         record = self.score(every, "--fps", 32)
         self.assertEqual((record["dt"], record["steps"]), (1 / 32, (len(self.frames) - 1) // 2))
+        self.assertEqual(self.score(every, "--fps", "32032/1001")["dt"], self.score(every, "--fps", 32032 / 1001)["dt"])
         record = self.score(self.write("short.npy", self.frames[:9]))
         self.assertEqual((record["dt"], record["steps"]), (1 / 64, 8))
 

@@ -262,6 +262,9 @@ TEST_F(MotionFiles, WhatWasSaidReadOrDerivedIsInTheSettings) {
   });
   EXPECT_EQ(misfit(scene, turned).substr(folder_.string().size(), 54),
             "/b.npy does not begin as sheet does, at 1 unit is 1 m,");
+  EXPECT_EQ(
+      misfit(scene, {.file = plain.file, .rest = turned.file}).substr(folder_.string().size(), 46),
+      "/b.npy is not sheet at rest, at 1 unit is 1 m,");
   turned.scale = 0.01;
   turned.z_up = true;
   EXPECT_EQ(setting(scene, turned, "unit"), "1 unit is 0.01 m, z up");

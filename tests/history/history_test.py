@@ -481,7 +481,7 @@ for line in sys.stdin:
 
     def test_check_times_beside_the_kept_build(self):
         self.taut("baseline", "update", "./study.toml", "--why", "first", "--baselines", "kept", "--out", "out")
-        self.assertIn("none is kept of that name", self.taut("check", "./study.toml", "--baselines", "kept", "--out", "out", "--speed",
+        self.assertIn("none is kept in", self.taut("check", "./study.toml", "--baselines", "kept", "--out", "out", "--speed",
                                                             expect=2).err)
         self.taut("bench", "--keep-build", "before", "--out", "out")
         answer = self.answer("check", "./study.toml", "--baselines", "kept", "--out", "out", "--speed")

@@ -7,6 +7,7 @@
 
 #include "core/io/scene_io.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/text.hpp"
 #include "core/model/triangle_mesh.hpp"
 #include "tests/support/bodies.hpp"
 
@@ -83,6 +84,66 @@ TEST_F(BodyFiles, FacesThatLookInwardAreTurned) {
   const auto& body = std::get<MeshBody>(s.colliders.at(0).shape);
   EXPECT_NEAR(body.mesh->volume(), 1.0 / 6, 1e-15);
   EXPECT_TRUE(body.mesh->closed());
+}
+
+/// The six faces of a box as an OBJ file has them, with vertices of its own; `first`: where the
+/// corners of its faces along x begin.
+std::string box_obj(const Vec3& from, const Vec3& to, int before, int first = 0) {
+  std::string text;
+  for (int v = 0; v < 8; ++v) {
+    text += "v";
+    for (int k = 0; k < 3; ++k) text += " " + shortest((v >> k & 1) != 0 ? to[k] : from[k]);
+    text += "\n";
+  }
+  const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  for (int f = 0; f < 6; ++f) {
+    text += "f";
+    for (int k = 0; k < 4; ++k)
+      text += " " + std::to_string(before + 1 + faces[f][(k + (f < 2 ? first : 0)) % 4]);
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(BodyFiles, BoxesMayTouch) {
+  const std::string box = box_obj({0, 0, 0}, {1, 1, 1}, 0);
+  const auto body_of = [&](const std::string& other) {
+    write("b.obj", box + other);
+    const Scene s = scene("file = \"b.obj\"\n");
+    return std::get<MeshBody>(s.colliders.at(0).shape).mesh;
+  };
+  const auto at_edge = body_of(box_obj({1, 1, 0}, {2, 2, 1}, 8));
+  EXPECT_TRUE(at_edge->closed());
+  EXPECT_EQ(at_edge->triangles().size(), 24u);
+  EXPECT_NEAR(at_edge->volume(), 2, 1e-15);
+  for (const int first : {0, 1, 2}) {  // the two faces are cut along other diagonals, or the same
+    const auto at_face = body_of(box_obj({1, 0, 0}, {3, 1, 1}, 8, first));
+    EXPECT_TRUE(at_face->closed());
+    EXPECT_EQ(at_face->triangles().size(), 20u) << "the faces between them are left out";
+    EXPECT_NEAR(at_face->volume(), 3, 1e-15);
+    EXPECT_NEAR(at_face->nearest({1.01, 0.4, 0.45}).distance, -0.4, 1e-15);
+  }
+  const auto four =
+      body_of(box_obj({1, 0, 0}, {2, 1, 1}, 8, 1) + box_obj({0, 1, 0}, {1, 2, 1}, 16) +
+              box_obj({1, 1, 0}, {2, 2, 1}, 24, 1));
+  EXPECT_EQ(four->triangles().size(), 48u - 16u);
+  EXPECT_NEAR(four->nearest({1, 1.01, 0.4}).distance, -0.4, 1e-15);
+  std::string cut = box_obj({1, 0, 0}, {2, 1, 1}, 8);
+  cut.replace(cut.find("f 9 13 15 11"), 12, "f 9 13 11\nf 13 15 11");  // cut the other way
+  EXPECT_SAYS(errors_of_file(box + cut), "an edge of the face") << "faces that lie on each other";
+}
+
+TEST_F(BodyFiles, ARoomIsToldHowToBeOne) {
+  std::string room = box_obj({0, 0, 0}, {20, 20, 20}, 0);
+  const std::string outward = room;
+  for (std::size_t at = room.find("f "); at != room.npos; at = room.find("f ", at + 1)) {
+    std::swap(room[at + 2], room[at + 6]);  // the faces look inward
+  }
+  EXPECT_SAYS(errors_of_file(room), "look inward, and were turned");
+  EXPECT_SAYS(errors_of_file(room), "sides = \"both\"");
+  EXPECT_EQ(errors_of_file(outward).find("sides"), std::string::npos);
+  EXPECT_EQ(errors("file = \"b.obj\"\nsides = \"both\"\n", "thickness = 0.01\n"), "");
 }
 
 TEST_F(BodyFiles, TheContentIsThatOfTheTriangles) {

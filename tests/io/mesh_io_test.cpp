@@ -230,9 +230,11 @@ TEST(MeshFromObj, WhatOtherProgramsAddIsSkippedAndCounted) {
   const Polygons p = parse_obj("x.obj", sheet +
                                             "nv 0\nvl 1\ne 1 2\nea 0\ned 0\ntl 1\nadje 0\nadjf 0\n"
                                             "stitch 1 2\nl 1 2\np 1\nmg 1\nlod 1\nusemap x\nvt 0\n"
+                                            "bevel on\nc_interp on\nd_interp on\nshadow_obj x\n"
+                                            "trace_obj x\n"
                                             "f 1 2 3\n");
   EXPECT_EQ(p.faces.size(), 1u);
-  EXPECT_EQ(p.skipped.size(), 16u);
+  EXPECT_EQ(p.skipped.size(), 21u);
   EXPECT_EQ(p.skipped.at("vv"), 2);
   EXPECT_EQ(errors_of(sheet + "vvv 1\nf 1 2 3\n"),
             "x.obj:7:1: 'vvv' is not read: a cloth is made of 'v' and 'f' lines");

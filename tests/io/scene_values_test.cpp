@@ -279,6 +279,12 @@ TEST(SceneValues, AStartInsideAColliderIsMeasured) {
   EXPECT_EQ(problems(level("pins = 'right'", plane)),
             "x:6:1: the cloth starts inside this plane: 3 vertices, vertex 1 0.25" + advice);
   EXPECT_EQ(problems(level("", plane), {"collider.0.offset=-1"}), "none") << "touches";
+  // between two planes that leave no room
+  EXPECT_EQ(
+      problems(level("start_inside = 'resolve'",
+                     plane + "[[collider]]\ntype = \"plane\"\nnormal = [1, 0, 0]\noffset = 0.5\n"))
+              .find("start_inside = \"resolve\" found no way out") == std::string::npos,
+      false);
   const Scene moved =
       parse_scene("x", level("pins = [2]\nthickness = 0.125\nstart_inside = 'resolve'", plane));
   expect_near(moved.start.x[2], Vec3(1, 0, 0));

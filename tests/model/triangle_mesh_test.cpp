@@ -301,6 +301,58 @@ TEST(TriangleMesh, SaysWhereItIsOpen) {
   EXPECT_FALSE(box.mesh()->closed());
 }
 
+/// Prism along z, from -1 to 1, over an outline that all of can be seen from its first corner.
+Triangles prism(const std::vector<std::array<double, 2>>& outline) {
+  Triangles made;
+  for (const double z : {-1.0, 1.0})
+    for (const auto& [x, y] : outline) made.vertices.emplace_back(x, y, z);
+  const int n = static_cast<int>(outline.size());
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    made.triangles.push_back({k, next, next + n});
+    made.triangles.push_back({k, next + n, k + n});
+    if (k == 0 || next == 0) continue;
+    made.triangles.push_back({0, next, k});
+    made.triangles.push_back({n, k + n, next + n});
+  }
+  return made;
+}
+
+// The notch of an L and a wedge in it have an edge in common, with four faces. Inside the L that
+// edge is the nearest place of many points, and the faces of the wedge look at them from outside.
+TEST(TriangleMesh, SolidsMayTouchInAnEdge) {
+  const Triangles notched = prism({{0, 0}, {0, 2}, {-2, 2}, {-2, -2}, {2, -2}, {2, 0}});
+  const Triangles wedge = prism({{0, 0}, {2, 1}, {1, 2}});
+  for (const bool wedge_first : {false, true}) {
+    Triangles both = wedge_first ? wedge : notched;
+    const Triangles& other = wedge_first ? notched : wedge;
+    const int own = static_cast<int>(both.vertices.size());
+    const int before = static_cast<int>(other.vertices.size()) / 2;
+    const auto joined = [&](int v) { return v == 0 ? 0 : v == before ? own / 2 : own + v; };
+    for (const auto& [a, b, c] : other.triangles)
+      both.triangles.push_back({joined(a), joined(b), joined(c)});
+    both.vertices.insert(both.vertices.end(), other.vertices.begin(), other.vertices.end());
+    const auto mesh = both.mesh();
+    ASSERT_TRUE(mesh->closed());
+    EXPECT_NEAR(mesh->volume(), notched.mesh()->volume() + wedge.mesh()->volume(), 1e-14);
+    EXPECT_LT(mesh->nearest({-0.1, -0.1, 0}).distance, -0.14);
+    Random random;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p = i % 2 == 0 ? random.point(2.5) : random.point(0.3);
+      const double one = notched.mesh()->nearest(p).distance,
+                   two = wedge.mesh()->nearest(p).distance;
+      ASSERT_NEAR(mesh->nearest(p).distance, std::min(one, two), 1e-12) << p.transpose();
+    }
+    for (std::size_t t = 0; t < mesh->triangles().size(); ++t)  // those of one solid are joined
+      for (int k = 0; k < 3; ++k)
+        EXPECT_EQ(mesh->beyond(static_cast<int>(t), k) / 3 <
+                      static_cast<int>((wedge_first ? wedge : notched).triangles.size()),
+                  t < (wedge_first ? wedge : notched).triangles.size());
+    std::swap(both.triangles[0][0], both.triangles[0][1]);
+    EXPECT_FALSE(both.mesh()->closed());
+  }
+}
+
 TEST(TriangleMesh, AThinBodyIsAtADistanceOnBothSides) {
   Triangles half = box_of_triangles(kHalf);
   half.triangles = {half.triangles[6], half.triangles[7]};  // its top alone

@@ -61,6 +61,9 @@ TEST(TwoBuilds, ABuildIsAFolderOrAKeptOne) {
     }
   };
   EXPECT_NE(said("before").find("--keep-build NAME"), std::string::npos);
+  for (const std::filesystem::path& looked :
+       {std::filesystem::absolute("before"), scratch.path() / "builds" / "before"})
+    EXPECT_NE(said("before").find(looked.string()), std::string::npos) << said("before");
   const std::filesystem::path kept = keep_build(scratch.path(), "fast");
   EXPECT_NE(said("before").find("kept"), std::string::npos);
   std::filesystem::create_directories(scratch.path() / "tree");

@@ -61,7 +61,8 @@ void add_options(Arguments& args, Options& o) {
   add_scene(args, o.scene).required();
   args.add_option("POSITIONS", o.motion.file, "A .npy, a .pc2, or one .obj of a sequence")
       .required();
-  args.add_option("--fps", o.motion.fps, "Frames in a second (default: one a step of the scene)")
+  args.add_option("--fps", o.motion.fps,
+                  "Frames in a second, as 24 or 24000/1001 (default: one a step of the scene)")
       .check(above_zero());
   args.add_option(
           "--scale", o.motion.scale,
