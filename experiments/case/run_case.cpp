@@ -7,6 +7,7 @@
 #include "experiments/case/case.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/divergence.hpp"
+#include "experiments/system/clock.hpp"
 
 namespace taut {
 
@@ -15,48 +16,49 @@ namespace {
 /// All metrics that this scene has something for.
 class SceneMetrics {
  public:
-  SceneMetrics(const Scene& scene, bool measure) {
+  SceneMetrics(const Scene& scene, bool measure, const MeasuringTime& time) : time_(time) {
     if (!measure) return;
     for (const MetricEntry* entry : metrics())
       if (auto metric = entry->make(scene)) watching_.push_back({entry, std::move(metric)});
   }
 
   void observe(const Snapshot& moment) {
-    for (auto& [entry, metric] : watching_) metric->observe(moment);
+    for (Watching& one : watching_) timed(one, [&] { one.metric->observe(moment); });
+    leave_out_what_is_too_dear(moment.step);
   }
   void declare(const DeclaredStep& step) {
-    for (auto& [entry, metric] : watching_) metric->declare(step);
+    for (Watching& one : watching_) one.metric->declare(step);
   }
   bool follow_path(int step) const {
-    return std::any_of(watching_.begin(), watching_.end(), [&](const Watching& w) {
-      return w.entry->follows_path && w.metric->follows(step);
-    });
+    return std::any_of(watching_.begin(), watching_.end(),
+                       [&](const Watching& one) { return one.follows(step); });
   }
   void observe_within(const Snapshot& moment) {
-    for (auto& [entry, metric] : watching_)
-      if (entry->follows_path && metric->follows(moment.step)) metric->observe_within(moment);
+    for (Watching& one : watching_)
+      if (one.follows(moment.step)) timed(one, [&] { one.metric->observe_within(moment); });
   }
   /// Adds the metrics' remarks, which are those of a run that was observed to its end.
   void add_remarks(ResolvedSettings& settings) const {
-    for (const auto& [entry, metric] : watching_)
-      if (const std::string remark = metric->remark(); !remark.empty())
-        settings.emplace_back(entry->values.front().name, remark);
+    for (const Watching& one : watching_)
+      if (const std::string remark = one.remark(); !remark.empty())
+        settings.emplace_back(one.entry->values.front().name, remark);
   }
 
   std::vector<std::string> series_columns() const {
     std::vector<std::string> columns{"step", "t"};
-    for (const auto& [entry, metric] : watching_)
-      for (const ValueSpec& value : entry->values)
+    for (const Watching& one : watching_)
+      for (const ValueSpec& value : one.entry->values)
         if (value.in_series) columns.emplace_back(value.name);
     return columns;
   }
 
-  std::vector<double> series_row(const Snapshot& moment) const {
+  std::vector<double> series_row(const Snapshot& moment) {
     std::vector<double> row{static_cast<double>(moment.step), moment.t};
-    for (const auto& [entry, metric] : watching_) {
-      const std::vector<double> now = metric->now(moment);
-      for (std::size_t i = 0; i < entry->values.size(); ++i)
-        if (entry->values[i].in_series) row.push_back(now[i]);
+    for (Watching& one : watching_) {
+      std::vector<double> now = one.none();
+      timed(one, [&] { now = one.metric->now(moment); });
+      for (std::size_t i = 0; i < now.size(); ++i)
+        if (one.entry->values[i].in_series) row.push_back(now[i]);
     }
     return row;
   }
@@ -65,11 +67,11 @@ class SceneMetrics {
   /// observed to its end.
   std::map<std::string, double> values(bool complete) {
     std::map<std::string, double> all;
-    for (auto& [entry, metric] : watching_) {
-      const std::vector<double> final_values = complete ? metric->finish() : std::vector<double>{};
-      for (std::size_t i = 0; i < entry->values.size(); ++i)
-        all[std::string(entry->values[i].name)] =
-            complete ? final_values[i] : std::numeric_limits<double>::quiet_NaN();
+    for (Watching& one : watching_) {
+      std::vector<double> final_values = one.none();
+      if (complete) timed(one, [&] { final_values = one.metric->finish(); });
+      for (std::size_t i = 0; i < final_values.size(); ++i)
+        all[std::string(one.entry->values[i].name)] = final_values[i];
     }
     return all;
   }
@@ -78,8 +80,44 @@ class SceneMetrics {
   struct Watching {
     const MetricEntry* entry;
     std::unique_ptr<Metric> metric;
+    double seconds = 0;       ///< of CPU time
+    int too_dear_after = -1;  ///< step after which it saw no more; negative: none
+
+    bool follows(int step) const {
+      return too_dear_after < 0 && entry->follows_path && metric->follows(step);
+    }
+    std::vector<double> none() const {
+      return std::vector<double>(entry->values.size(), std::numeric_limits<double>::quiet_NaN());
+    }
+    std::string remark() const {
+      if (too_dear_after < 0) return metric->remark();
+      return "no value: too dear for this case, " + general(seconds, 2) +
+             " s of CPU time until step " + std::to_string(too_dear_after);
+    }
   };
+
+  template <class Call>
+  void timed(Watching& one, const Call& call) {
+    if (one.too_dear_after >= 0) return;
+    if (time_.tell) time_.tell(one.entry, seconds_);
+    const double begin = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    call();
+    const double took = seconds_of(CLOCK_THREAD_CPUTIME_ID) - begin;
+    one.seconds += took;
+    seconds_ += took;
+    if (time_.tell) time_.tell(nullptr, seconds_);
+  }
+  void leave_out_what_is_too_dear(int step) {
+    if (seconds_ < allowed_) return;
+    allowed_ = seconds_ + time_.most;
+    const auto left = [](const Watching& one) { return one.too_dear_after < 0 ? one.seconds : -1; };
+    std::ranges::max_element(watching_, {}, left)->too_dear_after = step;
+  }
+
   std::vector<Watching> watching_;
+  const MeasuringTime& time_;
+  double seconds_ = 0;  ///< of all metrics
+  double allowed_ = time_.most;
 };
 
 }  // namespace
@@ -127,7 +165,7 @@ void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions&
   record.resolved_settings = choice.entry->resolved_settings(scene, choice.params);
 
   DivergenceDetector detector(scene, record.step_cost, choice.substeps());
-  SceneMetrics scene_metrics(scene, options.measure);
+  SceneMetrics scene_metrics(scene, options.measure, options.measuring);
   const bool in_rows = options.every > 0 || options.series_rows > 0;
   if (in_rows) run.series.columns = scene_metrics.series_columns();
   const int stride = options.every > 0

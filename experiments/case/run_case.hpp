@@ -21,6 +21,15 @@ struct Series {
 /// Rows of the values over time that results and files of a case have: RunOptions::series_rows.
 inline constexpr int kSeriesRows = 120;
 
+/// CPU time of metrics, which is not the solver's.
+struct MeasuringTime {
+  /// s; once all metrics together have taken as long, the dearest of them has no value, and says
+  /// so.
+  double most = std::numeric_limits<double>::infinity();
+  /// Gets the metric that is at work (null: none is) and the time [s] of all of them until now.
+  std::function<void(const MetricEntry*, double)> tell = {};
+};
+
 struct RunOptions {
   int series_rows = 0;  ///< about this many rows, evenly spaced, first and last included; 0: none
   int every = 0;  ///< a row every so many steps instead, first and last included; 0: series_rows
@@ -28,6 +37,7 @@ struct RunOptions {
   bool measure = true;  ///< let all metrics() observe; without them `values` stays empty
   std::function<void(const Snapshot&)>
       watch;  ///< also sees every stable boundary, the start included
+  MeasuringTime measuring = {};
 };
 
 /// What became of a case: the record and what is too big for it.

@@ -1,6 +1,9 @@
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "core/model/deforming_body.hpp"
 #include "core/model/index.hpp"
@@ -15,7 +18,8 @@ struct StraightEdge {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< m
 };
 
-/// The edges of a solid in its own frame; the edge of a capsule is its axis. If a thread gets
+/// The edges of a solid in its own frame; the edge of a capsule is its axis. Of a body of triangles
+/// only those near a path are looked up (edges_near). If a thread gets
 /// through the solid between two of the thread's vertices, it passes through one of these edges.
 std::vector<StraightEdge> solid_edges(const Shape& shape) {
   if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return {{capsule->from, capsule->to}};
@@ -31,14 +35,6 @@ std::vector<StraightEdge> solid_edges(const Shape& shape) {
           start[axis] = -start[axis];
           edges.push_back({start, end});
         }
-  if (const MeshBody* body = std::get_if<MeshBody>(&shape)) {
-    std::set<std::pair<int, int>> known;
-    for (const Triangle& t : body->mesh->triangles())
-      for (std::size_t k = 0; k < 3; ++k)
-        if (const auto side = std::minmax(t[k], t[(k + 1) % 3]); known.insert(side).second)
-          edges.push_back({body->mesh->vertices()[to_index(side.first)],
-                           body->mesh->vertices()[to_index(side.second)]});
-  }
   return edges;
 }
 
@@ -150,6 +146,10 @@ class Edges final : public Metric {
         body.emplace(c);
         return;
       }
+      if (const MeshBody* b = std::get_if<MeshBody>(&c.shape)) {
+        mesh = b->mesh;
+        box = mesh->box();
+      }
       edges = solid_edges(c.shape);
       for (const StraightEdge& edge : edges) box.extend(edge.from).extend(edge.to);
     }
@@ -166,13 +166,24 @@ class Edges final : public Metric {
       return start;
     }
     Collider collider;
-    /// Set for a body that deforms; otherwise edges and box are.
-    std::optional<DeformingBody> body;
-    std::vector<StraightEdge> edges;
+    std::optional<DeformingBody> body;         ///< one that deforms
+    std::shared_ptr<const TriangleMesh> mesh;  ///< of a rigid body of triangles
+    std::vector<StraightEdge> edges;           ///< of another shape
     Eigen::AlignedBox3d box;
     std::vector<Vec3> last;  ///< empty: none yet
     double last_t = 0;       ///< s
   };
+
+  /// Puts the edges of triangles in a box into `near_`, by the vertices at their ends.
+  void find_near(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box) {
+    near_.clear();
+    mesh.in_box(box, [&](int triangle) {
+      const Triangle& t = mesh.triangles()[to_index(triangle)];
+      for (std::size_t k = 0; k < 3; ++k) near_.push_back(std::minmax({t[k], t[(k + 1) % 3]}));
+    });
+    std::ranges::sort(near_);
+    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+  }
 
   void count(const Followed& collider, const std::vector<Vec3>& now) {
     for (const auto& [a, b] : edges_) {
@@ -181,10 +192,15 @@ class Edges final : public Metric {
       Eigen::AlignedBox3d way(is.from);
       way.extend(is.to).extend(was.from).extend(was.to);
       if (!way.intersects(collider.box)) continue;
-      for (const StraightEdge& fixed : collider.edges) {
+      const auto pass = [&](const StraightEdge& fixed) {
         Eigen::AlignedBox3d around(fixed.from);
         if (around.extend(fixed.to).intersects(way)) passages_ += times_through(was, is, fixed);
-      }
+      };
+      std::ranges::for_each(collider.edges, pass);
+      if (!collider.mesh) continue;
+      find_near(*collider.mesh, way);
+      for (const auto& [from, to] : near_)
+        pass({collider.mesh->vertices()[to_index(from)], collider.mesh->vertices()[to_index(to)]});
     }
   }
 
@@ -193,23 +209,14 @@ class Edges final : public Metric {
     body.move(collider.last_t, t);
     const TriangleMesh &mesh = body.after(), &before = body.before();
     const Vec3 wider = Vec3::Constant(body.longest_way());
-    std::set<int> near;  // 3 triangle + side, in the first of the side's triangles
     for (const auto& [a, b] : edges_) {
       const MovingEdge edge{{collider.last[to_index(a)], collider.last[to_index(b)]},
                             {now[to_index(a)], now[to_index(b)]}};
       Eigen::AlignedBox3d way(edge.before[0]);
       way.extend(edge.before[1]).extend(edge.now[0]).extend(edge.now[1]);
-      near.clear();
-      mesh.in_box({way.min() - wider, way.max() + wider}, [&](int triangle) {
-        for (int side = 0; side < 3; ++side) {
-          const int number = 3 * triangle + side, beyond = mesh.beyond(triangle, side);
-          near.insert(beyond < 0 ? number : std::min(number, beyond));
-        }
-      });
-      for (const int number : near) {
-        const Triangle& corners = mesh.triangles()[to_index(number / 3)];
-        const std::size_t from = to_index(corners[to_index(number % 3)]),
-                          to = to_index(corners[to_index((number + 1) % 3)]);
+      find_near(mesh, {way.min() - wider, way.max() + wider});
+      for (const auto& [low, high] : near_) {
+        const std::size_t from = to_index(low), to = to_index(high);
         passages_ += times_through(edge, {{before.vertices()[from], before.vertices()[to]},
                                           {mesh.vertices()[from], mesh.vertices()[to]}});
       }
@@ -218,6 +225,7 @@ class Edges final : public Metric {
 
   std::vector<std::pair<int, int>> edges_;
   std::vector<Followed> colliders_;
+  std::vector<std::pair<int, int>> near_;
   int passages_ = 0;
 };
 

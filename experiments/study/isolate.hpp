@@ -12,7 +12,7 @@ namespace taut {
 
 /// Resources that one case may use.
 struct Limits {
-  double seconds = 120;                      ///< CPU time
+  double seconds = 120;                      ///< CPU time of the solver; metrics may take as much
   std::size_t bytes = std::size_t{2} << 30;  ///< private memory
 
   double wall_seconds() const { return kWallPerCpu * seconds; }
@@ -30,21 +30,35 @@ inline constexpr int kEndedFromOutside = 78;
 /// File of a case's Heartbeat, in its folder while it runs.
 inline constexpr const char* kHeartbeatFile = "heartbeat";
 
-/// The step that a case has reached. It is kept in a mapped file of 4 bytes that outlives the case,
-/// so that reporting costs one store to memory.
+/// The step that a case has reached, and what its metrics do. It is kept in a small mapped file
+/// that outlives the case, so that reporting costs one store to memory.
 class Heartbeat {
  public:
+  struct Measuring {
+    double seconds = 0;  ///< CPU time of all metrics until now
+    int metric = 0;      ///< the one at work, its place in metrics() from 1; 0: none is
+  };
   explicit Heartbeat(const std::filesystem::path&);  ///< throws InputError if it cannot be made
   ~Heartbeat();
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
-  void beat(int step) { *step_ = step; }
+  void beat(int step) { page_->step = step; }
+  void measures(const Measuring& now) {
+    page_->seconds = now.seconds;
+    page_->metric = now.metric;
+  }
   static constexpr int kCannotWrite = -2;  ///< in place of a step: the folder cannot be written
   /// The step in the file; -1: none yet; kCannotWrite if there is no such file.
   static int last(const std::filesystem::path&);
+  static Measuring last_measuring(
+      const std::filesystem::path&);  ///< zeros if there is no such file
 
  private:
-  volatile int* step_;
+  struct Page {
+    int step, metric;
+    double seconds;
+  };
+  volatile Page* page_;
 };
 
 /// A case in a process of its own: `taut case SCENE SOLVER --into FOLDER`, or the sibling program
@@ -67,12 +81,15 @@ class IsolatedCase {
   const Case& of() const { return case_; }
 
  private:
+  /// When it has to end. The time of its metrics, and of the one at work, is not the solver's.
+  std::chrono::steady_clock::time_point deadline() const;
   /// `end` is empty if its time was up.
   Record record_of(const std::optional<ProcessEnd>& end) const;
   [[noreturn]] void fail_from_outside(const std::string& how) const;
   Case case_;
   std::filesystem::path folder_;
-  std::chrono::steady_clock::time_point deadline_;
+  std::chrono::steady_clock::time_point deadline_;  ///< of a case without metrics
+  double seconds_;
   std::size_t bytes_;
   Process process_;
 };

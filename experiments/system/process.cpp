@@ -96,16 +96,18 @@ struct Pipes {
   setsid();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
-  const auto limit = [](auto what, double most, rlim_t grace) {
+  const auto limit = [](auto what, double most, rlim_t grace, bool may_be_raised = false) {
     if (most <= 0) return;
     const auto soft = static_cast<rlim_t>(std::ceil(most));
-    const rlimit both{soft, soft + grace};
+    rlimit both{soft, soft + grace}, inherited{};
+    if (may_be_raised && getrlimit(what, &inherited) == 0)
+      both.rlim_max = std::max(both.rlim_max, inherited.rlim_max);
     setrlimit(what, &both);
   };
 #ifndef TAUT_SANITIZED  // the sanitizer's shadow memory takes terabytes
   limit(RLIMIT_DATA, static_cast<double>(options.limits.memory), 0);
 #endif
-  limit(RLIMIT_CPU, options.limits.cpu_seconds, 1);
+  limit(RLIMIT_CPU, options.limits.cpu_seconds, 1, options.limits.may_take_more);
   limit(RLIMIT_FSIZE, static_cast<double>(options.limits.file_bytes), 0);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);

@@ -22,6 +22,7 @@ inline constexpr double kWallPerCpu = 5;
 /// Limits on a process; 0: the same as this process.
 struct ProcessLimits {
   double cpu_seconds = 0;      ///< SIGXCPU at the limit, SIGKILL a second later
+  bool may_take_more = false;  ///< it may raise cpu_seconds itself: no SIGKILL
   std::size_t memory = 0;      ///< bytes of private data; address space alone does not count
   std::size_t file_bytes = 0;  ///< size of each file that it writes
 };

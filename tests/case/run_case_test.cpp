@@ -39,6 +39,34 @@ Status verdict_on(const Scene& scene, const std::string& solver) {
   return run_case(scene, parse_solver(solver)).record.status;
 }
 
+TEST(RunCase, AMetricThatIsTooDearSaysSoAndTheCaseGoesOn) {
+  const Scene scene = chain(4, 1.0 / 64);
+  const CaseRun all = run_case(scene, parse_solver("jakobsen"));
+  std::vector<const MetricEntry*> at_work;
+  double seconds = 0;
+  const MeasuringTime none{.most = 0, .tell = [&](const MetricEntry* metric, double now) {
+                             at_work.push_back(metric);
+                             EXPECT_GE(now, seconds);
+                             seconds = now;
+                           }};
+  const CaseRun run =
+      run_case(scene, parse_solver("jakobsen"), {.series_rows = 9, .measuring = none});
+  EXPECT_EQ(run.record.status, all.record.status);
+  EXPECT_EQ(run.record.digest, all.record.digest);
+  EXPECT_GT(seconds, 0);
+  EXPECT_EQ(at_work.back(), nullptr);
+  ASSERT_EQ(run.record.values.size(), all.record.values.size());
+  for (const auto& [name, value] : run.record.values) EXPECT_TRUE(std::isnan(value)) << name;
+  for (const std::vector<double>& row : run.series.rows)
+    EXPECT_EQ(row.size(), run.series.columns.size());
+  const auto dear = std::ranges::count_if(run.record.resolved_settings, [](const auto& one) {
+    return one.text.starts_with("no value: too dear for this case, ");
+  });
+  EXPECT_EQ(dear, std::ranges::count_if(metrics(), [&](const MetricEntry* entry) {
+              return entry->make(scene) != nullptr;
+            }));
+}
+
 TEST(DivergenceDetector, TheSameMotionHasTheSameStatusInAnySteps) {
   Scene scene;
   scene.name = "two";

@@ -10,6 +10,7 @@
 #include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/results/store.hpp"
 #include "experiments/system/clock.hpp"
 #include "tests/support/scripted.hpp"
@@ -88,6 +89,29 @@ TEST_F(Isolated, EveryEndHasItsStatus) {
     EXPECT_EQ(record.id, one_.id);
     fs::remove_all(folder_);
   }
+}
+
+// Limits of time are the solver's. `at_work` is a metric, 1/16 s has been spent on metrics.
+TEST_F(Isolated, TheTimeOfMetricsIsNotTheSolvers) {
+  const auto with_metric = [](const std::string& at_work, const std::string& script) {
+    return "printf '\\007\\0\\0\\0" + at_work +
+           "\\0\\0\\0\\0\\0\\0\\0\\0\\0\\260\\077' >$5/heartbeat; " + script;
+  };
+  const std::string name(metrics()[1]->name);
+  for (const char* script : {"kill -XCPU $$", "sleep 9"}) {
+    const Record record = record_of(with_metric("\\002", script), {.seconds = 0.05});
+    EXPECT_EQ(record.status.kind, Kind::error);
+    EXPECT_EQ(record.status.reason.text(),
+              "the metric '" + name + "' takes longer than the solver may");
+    EXPECT_EQ(record.status.step, 7);
+    fs::remove_all(folder_);
+  }
+  EXPECT_EQ(record_of(with_metric("\\0", "kill -XCPU $$"), {}).status.kind, Kind::timeout);
+  fs::remove_all(folder_);
+  EXPECT_EQ(
+      record_of(with_metric("\\0", "sleep 0.4; exit 3"), {.seconds = 0.05}).status.reason.text(),
+      "exit code 3")
+      << "a quarter of a second is the solver's alone";
 }
 
 // A case that was ended from outside has no record and runs again the next time.
@@ -233,7 +257,11 @@ TEST(Heartbeats, AreReadWhileTheyBeat) {
   EXPECT_EQ(Heartbeat::last(file), -1);
   heart.beat(123456);
   EXPECT_EQ(Heartbeat::last(file), 123456);
-  EXPECT_EQ(fs::file_size(file), sizeof(int));
+  heart.measures({2.5, 3});
+  EXPECT_EQ(Heartbeat::last_measuring(file).seconds, 2.5);
+  EXPECT_EQ(Heartbeat::last_measuring(file).metric, 3);
+  EXPECT_EQ(Heartbeat::last(file), 123456);
+  EXPECT_EQ(Heartbeat::last_measuring(scratch.path() / "none").metric, 0);
 }
 
 }  // namespace
