@@ -128,7 +128,8 @@ inline constexpr ParamSpec kFaces =
     ParamSpec::choice(
         "faces", "off", "off|edges|on",
         "keep edges of the cloth (edges), or faces and edges (on), not only vertices, "
-        "out of balls, capsules, boxes and solid bodies of triangles")
+        "out of balls, capsules, boxes and solid bodies of triangles; rigid links longer than the "
+        "radius of what they run over catch on it until the load pulls them over")
         .as(ParamSpec::Role::face_contact);
 inline constexpr ParamSpec kSelf = ParamSpec::choice(
     "self", "grid", "grid|octree|off",
