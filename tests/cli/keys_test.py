@@ -92,7 +92,7 @@ def main():
         scenes = replaced(scenes, f"\n### {heading}\n", table)
     studies = replaced(studies, "# Studies\n", markdown(
         ["key", "meaning"], [[f"`{row['key']}`", row["help"]] for row in rows_of(answer, "study_keys")]))
-    verbs = replaced(verbs, "\n## A record\n", markdown(["key", "column", "type", "meaning"], [
+    verbs = replaced(verbs, "\n### A record\n", markdown(["key", "column", "type", "meaning"], [
         [f"`{row['key']}`", f"`{row['column']}`" if row["column"] else "", row["type"], row["help"]] for row in fields]))
     schema = re.search(r"\bkRecordSchema = (\d+);", (ROOT / "experiments/case/record_io.hpp").read_text())[1]
     verbs = re.sub(r"(?<=`schema` is )\d+(?=;)", schema, verbs)

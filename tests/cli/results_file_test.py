@@ -58,12 +58,11 @@ class ResultsFile(CommandLine):
         rest = 'set = ["cloth.grid=[4, 4]", "time.duration=0.25"]\naxes.iterations = [1, 4]\n'
         self.taut("run", self.study("iterations.toml", ["hang"], ["jakobsen:substeps=1"], rest),
                   self.study("other.toml", ["hang"], ["jakobsen:substeps=3"], rest))
-        for document in (ROOT / "README.md").read_text(), DOCUMENT:
-            line, = re.findall(r'^sqlite3 [^"]*"(.*)"$', document, re.MULTILINE)
-            asked, = re.findall(r'read_sql\("([^"]*)"', document)
-            for sql in line, asked:
-                self.assertEqual(len(self.query(sql)), 2, sql)
-            self.assertIn('study == "iterations")', document, "of R")
+        line, = re.findall(r'^sqlite3 [^"]*"(.*)"$', DOCUMENT, re.MULTILINE)
+        asked, = re.findall(r'read_sql\("([^"]*)"', DOCUMENT)
+        for sql in line, asked:
+            self.assertEqual(len(self.query(sql)), 2, sql)
+        self.assertIn('study == "iterations")', DOCUMENT, "of R")
         both = self.query("select * from results where metric = 'stretch.rms' and scene = 'hang'")
         self.assertEqual(len(both), 4)
 

@@ -20,7 +20,10 @@ OF_PROGRAM = {"command_line": "cli"}
 
 
 def git(*words):
-    done = subprocess.run(["git", "-C", ROOT, *words], text=True, capture_output=True)
+    try:
+        done = subprocess.run(["git", "-C", ROOT, *words], text=True, capture_output=True)
+    except FileNotFoundError:
+        sys.exit("changed.py: git is missing")
     return done.stdout.split("\n")[:-1] if done.returncode == 0 else None
 
 
