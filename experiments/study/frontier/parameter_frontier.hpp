@@ -35,7 +35,7 @@ inline constexpr double kBracketWidth = 0.02;
 /// Theories:
 ///   time step, stiffness, bending, mass ratio: linear_stability, for springs
 ///   wind: c h/sigma < 2, explicit drag of a face across the wind; h: substep (truth wind-face)
-///   distance: in float, g h^2 above half a unit in the last place (truth float-gravity)
+///   distance: in float, g h^2 above four units in the last place (truth float-gravity)
 ///   speed: D/h, beyond which tests at step boundaries miss a plate of thickness D (truth
 ///          tunnelling); only with contact=discrete
 /// Throws InputError if there is no such solver.

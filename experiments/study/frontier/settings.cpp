@@ -114,9 +114,9 @@ class FrontierSettings {
     if (precision.empty() || !choice_.params.is(precision, "float")) return;
     // The unit in the last place of a binary32 number x is 2^(floor(log2 x) - 23).
     const double g = -Scene().gravity.y();  // m/s^2, which the standard scene keeps
-    const double unit = 2 * g * substep() * substep();
+    const double unit = g * substep() * substep() / 4;
     one.theory = {Frontier::Kind::bracketed, std::exp2(std::floor(std::log2(unit)) + 1 + 23), 0,
-                  "float: g h^2 is below half a unit in the last place"};
+                  "float: rounding changes g h^2 by more than an eighth"};
   }
 
   SolverChoice choice_;
