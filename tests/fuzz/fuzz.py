@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the built program with generated and damaged inputs: fuzz.py BUILD [--seconds N] [--seed S] [--only KIND[:NUMBER]].
+"""Runs the built program with generated and damaged inputs: fuzz.py BUILD [--seconds N] [--seed S] [--only KIND[:NUMBER]|KIND,KIND...].
 
 Each attempt has a folder of its own with inputs and one or two commands. A finding is a signal, an undocumented exit code, a refusal
 without a message, a run that does not end, output that is not strict JSON, a non-finite number, or a file that a text of an input
@@ -76,16 +76,16 @@ class Attempt:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(data.encode('utf-8', 'surrogatepass') if isinstance(data, str) else data)
 
-    def taut(self, *words, program='taut'):
+    def taut(self, *words):
         """Runs the command in this folder and returns its output."""
         words = [str(word) for word in words]
-        self.last = f'cd {shlex.quote(str(self.folder))} && {shlex.join([str(self.build / program), *words])}'
+        self.last = f'cd {shlex.quote(str(self.folder))} && {shlex.join([str(self.build / PROGRAM), *words])}'
 
         def limit():
             if not self.sanitized:  # shadow memory alone takes terabytes
                 resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        process = subprocess.Popen([self.build / program, *words], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        process = subprocess.Popen([self.build / PROGRAM, *words], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, start_new_session=True, preexec_fn=limit)
         try:
             out, err = process.communicate(timeout=SECONDS * (5 if self.sanitized else 1))
@@ -261,19 +261,24 @@ def baseline(attempt):
         strict(said)
 
 
-def program(attempt):
-    """An external solver with one damaged answer."""
+def probe(attempt):
+    """An external solver with one damaged answer. Returns it as a solver's text."""
     attempt.write('small.toml', SMALL)
     hostile = SOURCES / 'tests/external/hostile.py'
     text = f'''external:cmd='python3 "{hostile}" random {attempt.random.randrange(10**9)}',timeout=1'''
+    attempt.taut('external', 'probe', text, '--json')
+    return text
+
+
+def program(attempt):
+    text = probe(attempt)
     attempt.write('study.toml', f'question = "?"\nscenes = ["./small.toml"]\nsolvers = {toml([text, "jakobsen"])}\n')
     attempt.run('./study.toml')
-    attempt.taut('external', 'probe', text, '--json')
 
 
 def listed(build, what, *names):
     """The rows of these tables of `taut list`."""
-    tables = json.loads(subprocess.run([build / 'taut', 'list', what, '--json'], capture_output=True, check=True).stdout)['tables']
+    tables = json.loads(subprocess.run([build / PROGRAM, 'list', what, '--json'], capture_output=True, check=True).stdout)['tables']
     return [[dict(zip((column['name'] for column in tables[name]['columns']), row)) for row in tables[name]['rows']] for name in names]
 
 
@@ -290,8 +295,9 @@ def listed_solvers(build):
 
 
 KINDS = {each.__name__: each for each in (scene_made, scene_damaged, mesh, solver, study_made, study_damaged, arguments, record,
-                                          baseline, program)}
+                                          baseline, program, probe)}
 SOLVERS = []
+PROGRAM = 'taut'
 
 
 def main():
@@ -299,12 +305,15 @@ def main():
     parser.add_argument('build', type=pathlib.Path)
     parser.add_argument('--seconds', type=float, default=60)
     parser.add_argument('--seed', default=str(random.SystemRandom().randrange(10**9)))
-    parser.add_argument('--only', default='')
+    parser.add_argument('--only', default='', help='a kind, with the number of an attempt; or kinds')
+    parser.add_argument('--program', default='taut', help="the program's name within BUILD")
     parser.add_argument('--most', type=int, default=5, help='findings before it stops')
     options = parser.parse_args()
     build = options.build.resolve()
     kind, _, number = options.only.partition(':')
-    kinds = [kind] if kind else list(KINDS)
+    kinds = kind.split(',') if kind else [each for each in KINDS if each != 'probe']  # which is the half of `program`
+    global PROGRAM
+    PROGRAM = options.program
     scratch = pathlib.Path(tempfile.mkdtemp(prefix='taut-fuzz.'))
     SOLVERS.extend(listed_solvers(build))
     STATUSES.update(listed_statuses(build))
@@ -326,7 +335,7 @@ def main():
                 shutil.copytree(folder, kept)
                 again = attempt.last.replace(str(folder), str(kept))
                 print(f'FINDING {each}: {finding}\n  input   {kept}\n  command {again}\n'
-                      f'  again   fuzz.py {build} --seed {options.seed} --only {each}:{i}', flush=True)
+                      f'  again   fuzz.py {build} --program {PROGRAM} --seed {options.seed} --only {each}:{i}', flush=True)
             for code in attempt.codes:
                 codes[each][code] = codes[each].get(code, 0) + 1
         i += 1
