@@ -214,6 +214,8 @@ struct SolverEntry {
   /// Reasons why it would get this scene wrong, a sentence each; empty: it supports the scene.
   std::function<std::vector<std::string>(const Scene&, const Params&)> unsupported;
   std::function<ResolvedSettings(const Scene&, const Params&)> resolved_settings;
+  /// The start of a run that does not begin as the scene does. Null: all begin as the scene does.
+  std::function<State(const Scene&, const Params&)> start = nullptr;
   /// Null: it declares none.
   DeclaredStep (*declared_step)(const Scene&, const Params&) = nullptr;
   /// The program that can run this choice: kProgram, kFloatProgram, or "" for either. Null: either.

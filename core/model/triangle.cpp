@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
+
+#include "core/model/triangle_mesh.hpp"
 
 namespace taut {
 
@@ -189,6 +192,31 @@ Deepest deepest_in(const Box& box, const Corners& t, double at_least) {
   if (best.depth < ceiling) candidates(depths, improve);
   best.at.position = at(t, best.at.weights);
   return best;
+}
+
+double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_least) {
+  double longest = 0;
+  Eigen::AlignedBox3d around;
+  for (std::size_t c = 0; c < 3; ++c) {
+    longest = std::max(longest, (triangle[(c + 1) % 3] - triangle[c]).norm());
+    around.extend(triangle[c]);
+  }
+  if (around.exteriorDistance(body.box()) > std::max(0.0, -at_least)) return at_least;
+  double deepest = at_least;
+  std::vector<Corners> parts{triangle};
+  while (!parts.empty()) {
+    const Corners t = parts.back();
+    parts.pop_back();
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    double reach = 0;
+    for (const Vec3& corner : t) reach = std::max(reach, (corner - middle).norm());
+    const double depth = -body.nearest(middle).distance;
+    deepest = std::max(deepest, depth);
+    if (depth + reach <= deepest + kDepthError * longest) continue;
+    const Vec3 ab = (t[0] + t[1]) / 2, bc = (t[1] + t[2]) / 2, ca = (t[2] + t[0]) / 2;
+    parts.insert(parts.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
+  }
+  return deepest;
 }
 
 double enclosing_radius(const Corners& t) {

@@ -38,6 +38,15 @@ Deepest deepest_in(const Capsule&, const Corners&);
 /// with depth = at_least and the weights of its first corner.
 Deepest deepest_in(const Box&, const Corners&, double at_least = 0);
 
+/// Error of deepest_in() of a body of triangles, as a share of the triangle's longest side.
+inline constexpr double kDepthError = 0.01;
+
+/// Depth [m] of the deepest point of a triangle in a solid body of triangles, to kDepthError of its
+/// longest side, negative outside; `at_least` if it is no deeper. Both are in the body's frame. By
+/// bisection: two points at distance d differ in depth by at most d, so a part that cannot be
+/// deeper than the known maximum is not examined further.
+double deepest_in(const TriangleMesh&, const Corners&, double at_least = 0);
+
 /// Radius of the smallest ball around a triangle [m]: that of its circumscribed circle or, if it is
 /// obtuse, half its longest edge.
 double enclosing_radius(const Corners&);

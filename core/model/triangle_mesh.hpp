@@ -22,6 +22,9 @@ struct NearestPlace {
   int triangle = 0;
 };
 
+/// A way out of a body over an edge or a corner is no detour up to this many times the depth.
+inline constexpr double kDetour = 5;
+
 /// Where a straight path meets a triangle.
 struct MeshHit {
   double share = 0;  ///< of the path

@@ -141,6 +141,9 @@ VertexMatch match_vertices(const std::vector<Vec3>& file, const std::vector<Vec3
   return match;
 }
 
+/// Largest distance [m] of a file's vertex from the scene's.
+double tolerance(const Scene& scene) { return 1e-4 * extent(scene); }
+
 /// Plays a motion as a solver would compute it.
 class Playback final : public Solver {
  public:
@@ -184,9 +187,8 @@ ComputedMotion::ComputedMotion(const Scene& scene, ComputedFrames frames)
 void ComputedMotion::find_place(const Scene& scene) {
   const bool at_rest = frames_.rest != nullptr;
   const std::vector<Vec3> first = (at_rest ? frames_.rest : frames_.positions)->read(0);
-  VertexMatch match =
-      match_vertices(converted(first, frames_.scale, frames_.z_up),
-                     at_rest ? scene.mesh.rest : scene.start.x, 1e-4 * extent(scene));
+  VertexMatch match = match_vertices(converted(first, frames_.scale, frames_.z_up),
+                                     at_rest ? scene.mesh.rest : scene.start.x, tolerance(scene));
   if (!match.mismatch.empty()) {
     misfits_.push_back((at_rest
                             ? frames_.rest_name + " is not " + scene.name + " at rest, at "
@@ -201,7 +203,7 @@ void ComputedMotion::find_place(const Scene& scene) {
 }
 
 void ComputedMotion::check_pins(const Scene& scene) {
-  double farthest = 1e-4 * extent(scene);
+  double farthest = tolerance(scene);
   std::string where;
   std::vector<int> holding = scene.pins;
   auto release = scene.releases.begin();
@@ -235,6 +237,17 @@ std::vector<Vec3> ComputedMotion::frame(int k) {
   ordered.reserve(x.size());
   for (const std::size_t i : of_scene_) ordered.push_back(x[i]);
   return ordered;
+}
+
+State ComputedMotion::start(const Scene& scene) {
+  State first{frame(0), scene.start.v};
+  const std::vector<Vec3> next = frame(1);
+  bool later = false;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    later = later || (first.x[i] - scene.start.x[i]).norm() > tolerance(scene);
+    if (next[i].allFinite()) first.v[i] = (next[i] - first.x[i]) / scene.dt;
+  }
+  return later ? first : scene.start;
 }
 
 StrainFloor ComputedMotion::floor(const Scene& scene) {
@@ -303,6 +316,10 @@ SolverEntry player(std::function<ComputedFrames(const Params&)> open) {
           .resolved_settings =
               [open](const Scene& scene, const Params& params) {
                 return ComputedMotion(scene, open(params)).settings(scene);
+              },
+          .start =
+              [open](const Scene& scene, const Params& params) {
+                return ComputedMotion(scene, open(params)).start(scene);
               },
           .declared_step = implicit_euler_of_a_frame};
 }

@@ -43,6 +43,9 @@ class ComputedMotion {
   double frame_dt() const { return frame_dt_; }  ///< [s] as given, or the scene's
   /// Positions at t = k frame_dt [m]. Precondition: no misfits.
   std::vector<Vec3> frame(int k);
+  /// The scene's start, or what follows it if the frames begin later, with the velocity at which
+  /// they go on. Precondition: no misfits.
+  State start(const Scene&);
   StrainFloor floor(const Scene&);
   /// The settings that were given, read or derived, for the record and for people.
   ResolvedSettings settings(const Scene&);

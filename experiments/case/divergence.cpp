@@ -4,8 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/model/bending.hpp"
 #include "core/model/body_frames.hpp"
 #include "core/model/index.hpp"
+#include "core/model/triangle.hpp"
+#include "core/model/triangle_mesh.hpp"
 
 namespace taut {
 
@@ -143,29 +146,81 @@ double motion_speed(const Scene& scene) {
   return speed;
 }
 
-/// How far relaxation may move a vertex in one step because the start breaks constraints [m].
-double repair(const Scene& scene) {
-  const auto& x = scene.start.x;
-  double excess = 0, depth = 0;
-  for (const Link& link : scene.links)
-    excess += std::abs((x[to_index(link.b)] - x[to_index(link.a)]).norm() - link.rest);
-  for (const Collider& collider : scene.colliders)
-    for (const Vec3& p : x)
-      depth = std::max(depth, scene.thickness - surface(collider.shape, p).distance);
-  return std::min(excess, extent(scene) + diameter(x)) + depth +
-         (scene.self_collision ? 2 * scene.self_collision->radius : 0);
+/// Longest way [m] of a face or an edge out of a solid shape, to the thickness above its surface:
+/// from below the surface it may lead over an edge or a corner. At most 0: none.
+double way_out(const Shape& shape, const Corners& piece, double thickness) {
+  const auto below = [&](auto round) {
+    round.radius += thickness;
+    return deepest_in(round, piece).depth;
+  };
+  if (const Ball* ball = std::get_if<Ball>(&shape)) return below(*ball);
+  if (const Capsule* capsule = std::get_if<Capsule>(&shape)) return below(*capsule);
+  double depth = -thickness;
+  if (const Box* box = std::get_if<Box>(&shape)) {
+    Box larger = *box;
+    larger.half_extents.array() += thickness;
+    depth = deepest_in(larger, piece).depth - thickness;
+  }
+  const MeshBody* body = std::get_if<MeshBody>(&shape);
+  if (body && body->sides == MeshBody::Sides::out) {
+    Corners local;
+    for (std::size_t c = 0; c < 3; ++c)
+      local[c] = body->rotation.conjugate() * (piece[c] - body->center);
+    depth = deepest_in(*body->mesh, local, depth);
+  }
+  return thickness + (depth > 0 ? kDetour * depth : depth);
 }
 
-/// Energy [J] that strained links store if they are the stiffest springs that a step can hold.
-double stored(const Scene& scene, const std::vector<double>& w, double dt) {
+/// Faces, and edges (faces whose last two corners are one vertex).
+std::vector<Triangle> pieces(const Scene& scene) {
+  std::vector<Triangle> all = scene.mesh.triangles;
+  for (const Link& link : scene.links)
+    if (link.family == Family::structural && !is_seam(link))
+      all.push_back({link.a, link.b, link.b});
+  return all;
+}
+
+/// Longest way [m] of a vertex, an edge or a face out of the colliders at the start.
+double longest_way_out(const Scene& scene) {
   const auto& x = scene.start.x;
-  double energy = 0;
-  for (const auto& [a, b, rest, family] : scene.links) {
-    const double yielding = w[to_index(a)] + w[to_index(b)];
-    if (yielding > 0)
-      energy += 2 * square((x[to_index(b)] - x[to_index(a)]).norm() - rest) / yielding;
+  const std::vector<Triangle> all =
+      scene.colliders.empty() ? std::vector<Triangle>{} : pieces(scene);
+  double longest = 0;
+  for (const Collider& collider : scene.colliders) {
+    const Shape shape = shape_at(collider, 0);
+    for (const Vec3& p : x)
+      longest = std::max(longest, scene.thickness - surface(shape, p).distance);
+    if (std::holds_alternative<Plane>(shape)) continue;  // a vertex is the deepest
+    for (const auto& [a, b, c] : all)
+      longest = std::max(longest, way_out(shape, {x[to_index(a)], x[to_index(b)], x[to_index(c)]},
+                                          scene.thickness));
   }
-  return energy / square(dt);
+  return longest;
+}
+
+/// What the start of a scene holds besides its height.
+struct Held {
+  double kinetic = 0;  ///< J
+  double bending = 0;  ///< J
+  double links = 0;    ///< J, if they are the stiffest springs that a step can hold
+  double way = 0;      ///< m, of a vertex in one step because the start breaks constraints
+};
+/// w: inverse masses [1/kg].
+Held held_at_start(const Scene& scene, const std::vector<double>& w, double dt) {
+  const auto& x = scene.start.x;
+  Held held{.bending = bending_energy(make_bending(scene), x)};
+  double excess = 0;
+  for (const auto& [a, b, rest, family] : scene.links) {
+    const double longer = (x[to_index(b)] - x[to_index(a)]).norm() - rest,
+                 yielding = w[to_index(a)] + w[to_index(b)];
+    excess += std::abs(longer);
+    if (yielding > 0) held.links += 2 * square(longer) / (yielding * square(dt));
+  }
+  held.way = std::min(excess, extent(scene) + diameter(x)) + longest_way_out(scene) +
+             (scene.self_collision ? 2 * scene.self_collision->radius : 0);
+  for (std::size_t i = 0; i < w.size(); ++i)
+    if (w[i] > 0) held.kinetic += scene.mesh.mass[i] * scene.start.v[i].squaredNorm() / 2;
+  return held;
 }
 
 double area(const Scene& scene) {
@@ -193,14 +248,15 @@ EnergyBudget::EnergyBudget(const Scene& scene, int substeps)
     mass += m;
     lightest = lightest == 0 ? m : std::min(lightest, m);
     (hanging.hops[i] < 0 ? free_mass_ : hung_mass_) += m;
-    constant_ += m * scene.start.v[i].squaredNorm() / 2;
   }
   reach_ = 2 * (hanging.longest() + softest(last, hanging, dt_).extension);
   const double rounding = 1e-6 * (farthest + extent(scene));
-  constant_ +=
+  const Held held = held_at_start(last, w, dt_);
+  constant_ =
+      held.kinetic + held.bending +
       mass / 2 *
-      (square(2 * motion_speed(scene)) + (square(repair(scene)) + square(rounding)) / square(dt_));
-  stored_ = stored(scene, w, dt_);
+          (square(2 * motion_speed(scene)) + (square(held.way) + square(rounding)) / square(dt_));
+  stored_ = held.links;
   size_ = farthest + extent(scene);
   speed_ = fastest + motion_speed(scene);
   if (!scene.wind) return;

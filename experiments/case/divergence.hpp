@@ -29,8 +29,9 @@ namespace taut {
 ///            change of a prescribed velocity counts
 ///   repair   (D/dt)^2 M/2, D the way that relaxation may move a vertex in one step because the
 ///            start breaks constraints: the summed excess of the links (at most the extent of the
-///            cloth, at start and at rest), the deepest penetration, twice the self-collision
-///            radius
+///            cloth, at start and at rest), the longest way of a vertex, an edge or a face out of a
+///            collider, twice the self-collision radius
+///   bending  the scene's bending energy at the start
 ///   stored   energy of links that the start strains by e, k e^2/2. Solvers choose k; the largest
 ///            stable one is taken, 4/((w1 + w2) dt^2). Up to it the motion stays bounded, but grows
 ///            over n steps by a factor of at most 2n + 1: x_n = x_0 cos((n + 1/2) a)/cos(a/2),
@@ -45,7 +46,7 @@ class EnergyBudget {
   double farthest(double t) const;
 
  private:
-  double constant_ = 0;           ///< start, motion, repair, rounding [J]
+  double constant_ = 0;           ///< start, motion, repair, bending, rounding [J]
   double stored_ = 0;             ///< J, before the first step
   double gravity_ = 0;            ///< |g| [m/s^2]
   double dt_ = 0;                 ///< s, of a substep

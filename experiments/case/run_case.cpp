@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "core/model/text.hpp"
 #include "experiments/case/case.hpp"
@@ -150,19 +151,25 @@ Record describe(const Scene& scene, const SolverChoice& choice) {
 namespace {
 
 /// Runs all steps. `step` is always the step that is being computed.
-void run_steps(const Scene& scene, const SolverChoice& choice, const RunOptions& options,
-               CaseRun& run, std::unique_ptr<Solver>& solver, int& step) {
+void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& options, CaseRun& run,
+               std::unique_ptr<Solver>& solver, int& step) {
   Record& record = run.record;
-  const std::string cannot = join(choice.entry->unsupported(scene, choice.params), "; ");
+  const std::string cannot = join(choice.entry->unsupported(of, choice.params), "; ");
   if (!cannot.empty()) {
     record.status = {Status::Kind::unsupported, cannot};
     return;
   }
-  solver = choice.entry->make(scene, choice.params);
+  std::optional<Scene> later;
+  if (choice.entry->start) {
+    later = of;
+    later->start = choice.entry->start(of, choice.params);
+  }
+  const Scene& scene = later ? *later : of;
+  solver = choice.entry->make(of, choice.params);
   solver->load(scene.start);
   record.step_cost = solver->step_cost();
   record.projections = projections_per_step(*solver);
-  record.resolved_settings = choice.entry->resolved_settings(scene, choice.params);
+  record.resolved_settings = choice.entry->resolved_settings(of, choice.params);
 
   DivergenceDetector detector(scene, record.step_cost, choice.substeps());
   SceneMetrics scene_metrics(scene, options.measure, options.measuring);

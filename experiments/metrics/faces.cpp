@@ -11,38 +11,6 @@ namespace taut {
 
 namespace {
 
-/// Error of a face's depth in a body of triangles, as a share of the face's longest side.
-constexpr double kDepthError = 0.01;
-
-/// Depth of the deepest point of a triangle in a solid body, to kDepthError of its longest side;
-/// `at_least` if it is no deeper. Both are in the body's frame. Two points at distance d differ in
-/// depth by at most d, so a part that cannot be deeper than the known maximum is not examined
-/// further.
-double deepest_in(const TriangleMesh& body, const Corners& triangle, double at_least) {
-  double longest = 0;
-  Eigen::AlignedBox3d around;
-  for (std::size_t c = 0; c < 3; ++c) {
-    longest = std::max(longest, (triangle[(c + 1) % 3] - triangle[c]).norm());
-    around.extend(triangle[c]);
-  }
-  if (!around.intersects(body.box())) return at_least;
-  double deepest = at_least;
-  std::vector<Corners> parts{triangle};
-  while (!parts.empty()) {
-    const Corners t = parts.back();
-    parts.pop_back();
-    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-    double reach = 0;
-    for (const Vec3& corner : t) reach = std::max(reach, (corner - middle).norm());
-    const double depth = -body.nearest(middle).distance;
-    deepest = std::max(deepest, depth);
-    if (depth + reach <= deepest + kDepthError * longest) continue;
-    const Vec3 ab = (t[0] + t[1]) / 2, bc = (t[1] + t[2]) / 2, ca = (t[2] + t[0]) / 2;
-    parts.insert(parts.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
-  }
-  return deepest;
-}
-
 class Faces final : public Metric {
  public:
   static inline const ValueSpec kValues[] = {

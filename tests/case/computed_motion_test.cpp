@@ -64,6 +64,33 @@ TEST(ComputedMotions, AreScoredAsTheSolverThatMadeThem) {
   EXPECT_TRUE(std::isnan(scored.cpu_seconds));
 }
 
+// The cloth at rest says which vertex is which; the motion itself begins where its first frame is.
+TEST(ComputedMotions, ThatBeginLaterThanTheSceneBeginAsTheyDo) {
+  const Scene whole = small({"time.duration=1"}), scene = small({"time.duration=0.5"});
+  const Computed made = computed(whole);
+  const auto all = std::span(made.x).subspan(32 * 64 * 3);
+  std::vector<double> rest;
+  for (const Vec3& x : scene.mesh.rest) rest.insert(rest.end(), x.begin(), x.end());
+  const auto later = [&](std::vector<double> x) {
+    ComputedFrames frames = in_memory(x, scene);
+    frames.rest = positions_in(std::span<const double>(rest), 64, "rest");
+    std::vector<Vec3> first;
+    const CaseRun run = score(scene, frames, {.watch = [&](const Snapshot& m) {
+                                if (m.step == 0) first = m.state.x;
+                              }});
+    EXPECT_EQ(first[63], Vec3(all[63 * 3], all[63 * 3 + 1], all[63 * 3 + 2]));
+    return run;
+  };
+  const CaseRun run = later({all.begin(), all.end()});
+  EXPECT_EQ(run.record.status.kind, Status::Kind::ok) << run.record.status.reason.text();
+  EXPECT_EQ(run.last.x, made.run.last.x);
+  std::vector<double> gaining(all.begin(), all.end());
+  for (std::size_t k = 2; k < 33; ++k) gaining[(k * 64 + 63) * 3] += 0.02 * std::pow(2, k);
+  const Status gained = later(gaining).record.status;
+  EXPECT_EQ(gained.kind, Status::Kind::exploded);
+  EXPECT_EQ(gained.vertex, 63);
+}
+
 TEST(ComputedMotions, ThatDoNotFitAreRefusedByName) {
   const Scene scene = small();
   Computed made = computed(scene);

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/model/bending.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/divergence.hpp"
 #include "experiments/case/record_io.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/cloths.hpp"
 
 namespace taut::run_case_test {
@@ -102,15 +104,17 @@ struct Scripted final : Solver {
   int steps = 0;
 };
 
+SolverEntry scripted() {
+  return {.name = "scripted",
+          .make = [](const Scene& s, const Params&) -> std::unique_ptr<Solver> {
+            return std::make_unique<Scripted>(s);
+          },
+          .unsupported = [](const Scene&, const Params&) { return std::vector<std::string>{}; },
+          .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
+}
+
 CaseRun run_scripted(const Scene& scene, std::function<void(int, State&)> script,
-                     const RunOptions& options = {}) {
-  static const SolverEntry entry{
-      .name = "scripted",
-      .make = [](const Scene& s, const Params&) -> std::unique_ptr<Solver> {
-        return std::make_unique<Scripted>(s);
-      },
-      .unsupported = [](const Scene&, const Params&) { return std::vector<std::string>{}; },
-      .resolved_settings = [](const Scene&, const Params&) { return ResolvedSettings{}; }};
+                     const RunOptions& options = {}, const SolverEntry& entry = scripted()) {
   Scripted::script = std::move(script);
   return run_case(scene, {&entry, Params("scripted", {}, "")}, options);
 }
@@ -195,6 +199,67 @@ TEST(DivergenceDetector, AStartFarFromRestMaySnapBack) {
   scene.gravity.setZero();
   for (Vec3& x : scene.start.x) x *= 2.5;
   EXPECT_EQ(verdict_on(scene, listing("iterations=16,projection=exact")).kind, Status::Kind::ok);
+}
+
+/// A weightless strip of 0.4 m by 0.2 m that starts as a part of a tube of 0.2 m.
+Scene bent_strip() {
+  Scene scene = at_rest({.nu = 9, .nv = 5, .width = 0.4, .height = 0.2, .mass = 0.016});
+  for (Vec3& x : scene.start.x)
+    x = {0.2 * std::sin(x.x() / 0.2), x.y(), 0.2 - 0.2 * std::cos(x.x() / 0.2)};
+  for (Link& link : scene.links)  // bending is all that it holds
+    link.rest = (scene.start.x[to_index(link.b)] - scene.start.x[to_index(link.a)]).norm();
+  scene.bending = Bending{.warp = 1e-4, .weft = 1e-4};
+  scene.gravity.setZero();
+  scene.steps = 32;
+  return scene;
+}
+
+TEST(DivergenceDetector, ABentStartMaySpringBackAndNoMore) {
+  const Scene scene = bent_strip();
+  const double energy = bending_energy(make_bending(scene), scene.start.x);
+  EXPECT_NEAR(energy, 1e-4 / 2 * 0.08 / (0.2 * 0.2), 0.2e-4) << "less at its edges";
+  for (const char* solver : {"jakobsen", "xpbd", "implicit", "pd", "vbd", "avbd", "mass-spring"}) {
+    double fastest = 0;
+    const CaseRun run =
+        run_case(scene, parse_solver(solver), {.measure = false, .watch = [&](const Snapshot& m) {
+                                                 double sum = 0;
+                                                 for (const Vec3& v : m.state.v)
+                                                   sum += v.squaredNorm() / 45;
+                                                 fastest = std::max(fastest, std::sqrt(sum));
+                                               }});
+    EXPECT_EQ(run.record.status.kind, Status::Kind::ok) << solver;
+    EXPECT_GT(fastest, 1e-4) << solver;
+    EXPECT_LT(fastest, 1.2 * std::sqrt(2 * energy / 0.016)) << solver;
+  }
+  const auto gains = [&](double times) {
+    const double speed = std::sqrt(2 * times * energy / 0.016);
+    return run_scripted(scene, [&](int, State& s) { s.v.assign(45, Vec3(speed, 0, 0)); })
+        .record.status;
+  };
+  EXPECT_EQ(gains(9).kind, Status::Kind::ok);
+  EXPECT_EQ(gains(11).reason, Reason::energy);
+}
+
+// No vertex starts in the bodies, which the middle of a face and of an edge do.
+TEST(DivergenceDetector, FacesAndEdgesMayLeaveTheBodyThatTheyStartIn) {
+  Scene scene = at_rest({.nu = 2, .nv = 2, .width = 0.2, .height = 0.2, .mass = 0.016});
+  for (Vec3& x : scene.start.x) x = {x.x() - 0.1, 0, x.y() + 0.1};
+  scene.gravity.setZero();
+  scene.steps = 8;
+  const Box box{.center = {0.02, -0.05, 0.03}, .half_extents = {0.02, 0.06, 0.02}};
+  for (const Shape& shape :
+       {Shape(box), Shape(Ball{{0.02, -0.03, 0.03}, 0.04}),
+        Shape(Capsule{{-0.2, -0.03, 0.02}, {0.2, -0.03, 0.02}, 0.04}),
+        Shape(MeshBody{.mesh = box_of_triangles(box.half_extents).mesh(), .center = box.center})}) {
+    scene.colliders = {{.shape = shape}};
+    for (const char* solver : {"jakobsen", "xpbd", "mass-spring"}) {
+      EXPECT_EQ(verdict_on(scene, std::string(solver) + ":faces=on").kind, Status::Kind::ok)
+          << solver << " at a " << type_name(shape);
+    }
+    const Status gained =
+        run_scripted(scene, [](int, State& s) { s.v.assign(4, Vec3(0, 50, 0)); }).record.status;
+    EXPECT_EQ(gained.reason, Reason::energy) << type_name(shape);
+  }
 }
 
 TEST(DivergenceDetector, SettlingTimeIsKnownForHangingClothOnly) {

@@ -332,7 +332,6 @@ class BodyFeatures {
 
   /// Whether the point is inside, and the path out to an edge or a corner is no detour.
   static bool is_inside_at(const TriangleMesh& mesh, const Vec3& place, double way) {
-    constexpr double kDetour = 5;
     return way < kDetour * -mesh.nearest(place).distance;
   }
 
