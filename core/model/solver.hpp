@@ -231,6 +231,11 @@ struct SolverEntry {
   std::string_view build = "";
   /// Parameters that only say where an external solver is; `implementation` identifies it.
   std::string_view place = "";
+  /// Largest distance [m] of a pin from its place. Null: rounding in its precision.
+  double (*pins_within)(const Scene&) = nullptr;
+
+  /// Whether its code is not part of this program.
+  bool foreign() const { return !implementation.empty(); }
 };
 
 /// A parameter of solvers whose links may be compliant.

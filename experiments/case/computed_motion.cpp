@@ -8,6 +8,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/input_error.hpp"
+#include "core/model/pin_places.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record.hpp"
 
@@ -203,28 +204,18 @@ void ComputedMotion::find_place(const Scene& scene) {
 }
 
 void ComputedMotion::check_pins(const Scene& scene) {
-  double farthest = tolerance(scene);
-  std::string where;
-  std::vector<int> holding = scene.pins;
-  auto release = scene.releases.begin();
-  for (int k = 0; !holding.empty() && k <= scene.steps; ++k) {
-    const std::vector<Vec3> x = frame(k);
-    for (const int pin : holding) {
-      if (!x[to_index(pin)].allFinite()) continue;  // how the run ends, not how the file begins
-      const Vec3 held = pin_position(scene, pin, k * scene.dt);
-      const double distance = (x[to_index(pin)] - held).norm();
-      if (distance <= farthest) continue;
-      farthest = distance;
-      where = "vertex " + std::to_string(pin) + " is " + general(distance, 3) + " m from " +
-              coordinates(held) + " at t = " + general(k * scene.dt, 4) + " s";
+  if (scene.pins.empty()) return;
+  const PinPlaces pins(scene);
+  PinPlaces::Stray farthest;
+  double when = 0;
+  for (int k = 0; k <= scene.steps; ++k)
+    if (const auto stray = pins.farthest(k, frame(k), tolerance(scene), 0);
+        stray.distance > farthest.distance) {
+      farthest = stray;
+      when = k * scene.dt;
     }
-    if (release != scene.releases.end() && release->step == k) {
-      for (const int free : release->vertices) std::erase(holding, free);
-      ++release;
-    }
-  }
-  if (!where.empty())
-    misfits_.push_back(frames_.name + " does not hold the scene's pins: " + where);
+  if (farthest.vertex >= 0)
+    misfits_.push_back(frames_.name + " does not hold the scene's pins: " + said(farthest, when));
 }
 
 std::string ComputedMotion::place() const {
@@ -321,7 +312,8 @@ SolverEntry player(std::function<ComputedFrames(const Params&)> open) {
               [open](const Scene& scene, const Params& params) {
                 return ComputedMotion(scene, open(params)).start(scene);
               },
-          .declared_step = implicit_euler_of_a_frame};
+          .declared_step = implicit_euler_of_a_frame,
+          .pins_within = tolerance};
 }
 
 SceneSettings fitted(const LoadScene& load, SceneSettings settings, const ComputedFrames& frames) {

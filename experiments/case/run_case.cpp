@@ -123,6 +123,13 @@ class SceneMetrics {
 
 }  // namespace
 
+std::string said(const PinPlaces::Stray& stray, double t) {
+  std::string place;
+  for (const double x : stray.place) place += (place.empty() ? "(" : ", ") + general(x, 6);
+  return "vertex " + std::to_string(stray.vertex) + " is " + general(stray.distance, 3) +
+         " m from " + place + ") at t = " + general(t, 4) + " s";
+}
+
 void describe_solver(Record& record, const SolverChoice& choice) {
   record.solver = choice.entry->name;
   for (const ParamSpec& param : choice.entry->params)
@@ -150,6 +157,21 @@ Record describe(const Scene& scene, const SolverChoice& choice) {
 
 namespace {
 
+/// Largest distance of a pin from its place [m], and share of the coordinates that rounding may
+/// change. Nothing is known of a foreign solver's precision.
+double pins_within(const Scene& scene, const SolverChoice& choice) {
+  return choice.entry->pins_within ? choice.entry->pins_within(scene) : 0;
+}
+double pin_rounding(const SolverChoice& choice) {
+  if (choice.entry->pins_within) return 0;
+  const auto in_float = [&](const ParamSpec& spec) {
+    return spec.role == ParamSpec::Role::precision && choice.params.is(spec.name, "float");
+  };
+  const bool single =
+      choice.entry->foreign() || std::ranges::any_of(choice.entry->params, in_float);
+  return single ? 1e-5 : 1e-9;
+}
+
 /// Runs all steps. `step` is always the step that is being computed.
 void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& options, CaseRun& run,
                std::unique_ptr<Solver>& solver, int& step) {
@@ -171,6 +193,7 @@ void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& op
   record.projections = projections_per_step(*solver);
   record.resolved_settings = choice.entry->resolved_settings(of, choice.params);
 
+  const PinPlaces pins(of);
   DivergenceDetector detector(scene, record.step_cost, choice.substeps());
   SceneMetrics scene_metrics(scene, options.measure, options.measuring);
   const bool in_rows = options.every > 0 || options.series_rows > 0;
@@ -181,6 +204,7 @@ void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& op
   if (options.timed) run.cpu_seconds = 0;
   State state;
   bool stable = true;
+  std::optional<Status> strayed;
   scene_metrics.declare(declared_step(*choice.entry, scene, choice.params));
   if (options.measure)
     solver->visit_substeps([&](double t) {
@@ -198,14 +222,23 @@ void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& op
     const Snapshot moment{step, step * scene.dt, state};
     stable = detector.observe(step, moment.t, state);
     if (!stable) break;
+    const auto stray =
+        pins.farthest(step, state.x, pins_within(scene, choice), pin_rounding(choice));
+    if (stray.vertex >= 0) {
+      strayed =
+          Status{choice.entry->foreign() ? Status::Kind::protocol : Status::Kind::error,
+                 "does not hold the scene's pins: " + said(stray, moment.t), step, stray.vertex};
+      break;
+    }
     scene_metrics.observe(moment);
     if (in_rows && (step % stride == 0 || step == scene.steps))
       run.series.rows.push_back(scene_metrics.series_row(moment));
     if (options.watch) options.watch(moment);
     run.last = state;
   }
+  stable = stable && !strayed;
   if (stable) detector.finish();
-  record.status = detector.status();
+  record.status = strayed.value_or(detector.status());
   record.values = scene_metrics.values(stable);
   scene_metrics.add_remarks(record.resolved_settings);
   record.digest = digest(run.last);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/pin_places.hpp"
 #include "core/model/scene.hpp"
 #include "core/model/solver.hpp"
 #include "experiments/case/record.hpp"
@@ -55,10 +56,15 @@ struct CaseRun {
 
 /// Runs one case in this process, step by step: load, then for every step `step` and `store`, with
 /// the detector of divergence and every metric at every boundary. A run that explodes ends there
-/// with values NaN. A scene that the solver cannot represent gives `unsupported` and no run; a
-/// SolverFailure the status that it names and the last stable step. Numerical failure never throws;
-/// what make() throws (InputError, bad_alloc) passes through.
+/// with values NaN. So does one whose pins are not where the scene has them: `protocol`, or `error`
+/// if the solver is part of this program. A scene that the solver cannot represent gives
+/// `unsupported` and no run; a SolverFailure the status that it names and the last stable step.
+/// Numerical failure never throws; what make() throws (InputError, bad_alloc) passes through.
 CaseRun run_case(const Scene&, const SolverChoice&, const RunOptions& = {});
+
+/// A pin that is not where the scene has it at time t [s]: "vertex 3 is 0.2 m from (0, 1, 0) at t =
+/// 0.5 s".
+std::string said(const PinPlaces::Stray&, double t);
 
 /// What is known of a case before it runs.
 Record describe(const Scene&, const SolverChoice&);

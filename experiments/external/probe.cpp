@@ -5,6 +5,7 @@
 
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
+#include "core/model/pin_places.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/json.hpp"
@@ -177,15 +178,33 @@ std::string holds_pins(Prober& probe) {
   const Scene scene = sheet(4, {0, 3});
   probe.give(scene);
   const State end = probe.run(scene, kSteps);
-  for (const int pin : scene.pins)
-    if (const double off = (end.x[to_index(pin)] - scene.start.x[to_index(pin)]).norm();
-        !(off <= 1e-6))
-      throw CheckFailed{"vertex " + std::to_string(pin) +
-                        " is pinned (its inverse mass is 0), but after " + std::to_string(kSteps) +
-                        " steps it is " + text(off) + " m away"};
+  const auto stray = PinPlaces(scene).farthest(kSteps, end.x, 1e-6, 0);
+  if (stray.vertex >= 0)
+    throw CheckFailed{"vertex " + std::to_string(stray.vertex) +
+                      " is pinned (its inverse mass is 0), but after " + std::to_string(kSteps) +
+                      " steps it is " + text(stray.distance) + " m away"};
   if (farthest(end.x, scene.start.x).second < 1e-6)
     throw CheckFailed{"a sheet on two pins does not sag at all: nothing moves"};
   return "two pinned vertices stay where they are";
+}
+
+/// One pin goes straight and by a path, the other turns.
+std::string moves_pins(Prober& probe) {
+  Scene scene = sheet(4, {0, 3});
+  scene.pin_motions = {
+      {{0}, {.velocity = {0.1, 0, 0.2}, .path = {{0.125, {0, 0, 0}}, {0.375, {0, 0.05, 0}}}}},
+      {{3}, {.spin = {0, 1, 0.5}, .pivot = {0.5, 0, 0}}}};
+  probe.give(scene);
+  const PinPlaces pins(scene);
+  for (int n = 1; n <= kSteps; ++n) {
+    const State now = probe.run(scene, 1, n == 1);
+    const auto stray = pins.farthest(n, now.x, 1e-6, 0);
+    if (stray.vertex >= 0)
+      throw CheckFailed{"vertex " + std::to_string(stray.vertex) +
+                        " is a pin that moves, but after " + std::to_string(n) + " steps it is " +
+                        text(stray.distance) + " m from " + text(stray.place)};
+  }
+  return "two pins follow their motions";
 }
 
 std::string repeats(Prober& probe) {
@@ -284,6 +303,7 @@ void physics(Prober& probe) {
   probe.check("free fall", [&] { return falls(probe, kDt); });
   probe.check("time step", [&] { return falls(probe, kDt / 2); });
   probe.check("pins", [&] { return holds_pins(probe); });
+  probe.check("moving pins", [&] { return moves_pins(probe); });
   probe.check("same bits", [&] { return repeats(probe); });
   probe.check("restart", [&] { return restarts(probe); });
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/model/bending.hpp"
+#include "core/model/index.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/divergence.hpp"
 #include "experiments/case/record_io.hpp"
@@ -260,6 +261,43 @@ TEST(DivergenceDetector, FacesAndEdgesMayLeaveTheBodyThatTheyStartIn) {
         run_scripted(scene, [](int, State& s) { s.v.assign(4, Vec3(0, 50, 0)); }).record.status;
     EXPECT_EQ(gained.reason, Reason::energy) << type_name(shape);
   }
+}
+
+TEST(RunCase, ComparesPinsWithTheScenesAfterEveryStep) {
+  Scene scene = chain(4, 1.0 / 64);
+  scene.pins = {0, 3};
+  scene.steps = 16;
+  scene.pin_motions = {{{3}, {.velocity = {0.5, 0, 0}, .spin = {0, 0, 1}, .pivot = {0, 1, 0}}}};
+  scene.releases = {{8, {3}}};
+  SolverEntry foreign = scripted();
+  foreign.implementation = "another program";
+  const auto ends = [&](const SolverEntry& entry, int vertex, int from, double off) {
+    return run_scripted(
+               scene,
+               [&](int step, State& s) {
+                 const double t = step * scene.dt;
+                 if (step <= 8) s.x[3] = scene.pin_motions[0].motion.moved(scene.start.x[3], t);
+                 if (step >= from) s.x[to_index(vertex)] += Vec3(0, 0, off);
+               },
+               {}, entry)
+        .record;
+  };
+  EXPECT_EQ(ends(scripted(), 0, 99, 0).status.kind, Status::Kind::ok);
+  EXPECT_EQ(ends(scripted(), 0, 16, 1e-10).status.kind, Status::Kind::ok);
+  EXPECT_EQ(ends(foreign, 0, 16, 1e-6).status.kind, Status::Kind::ok);
+  for (const int vertex : {0, 3}) {
+    const Record ours = ends(scripted(), vertex, 8, 1e-8), theirs = ends(foreign, vertex, 8, 1e-4);
+    EXPECT_EQ(ours.status.kind, Status::Kind::error);
+    EXPECT_EQ(theirs.status.kind, Status::Kind::protocol);
+    EXPECT_EQ(theirs.status.step, 8);
+    EXPECT_EQ(theirs.status.vertex, vertex);
+    EXPECT_TRUE(theirs.status.reason.text().starts_with("does not hold the scene's pins: vertex " +
+                                                        std::to_string(vertex) +
+                                                        " is 0.0001 m from (0"))
+        << theirs.status.reason.text();
+    EXPECT_TRUE(std::isnan(theirs.value("stretch.rms")));
+  }
+  EXPECT_EQ(ends(foreign, 3, 9, 1e-2).status.kind, Status::Kind::ok) << "it has been let go";
 }
 
 TEST(DivergenceDetector, SettlingTimeIsKnownForHangingClothOnly) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "core/model/solver.hpp"
 #include "experiments/case/record_io.hpp"
@@ -27,11 +28,14 @@ constexpr ParamSpec kParams[] = {
     ParamSpec::integer("variant", "0", 0, 1e6, "makes cases differ"),
 };
 
-/// Falls freely until it misbehaves.
+/// Its free vertices go down at a constant speed until it misbehaves, at one of them.
 class Faulty final : public Solver {
  public:
   Faulty(const Scene& scene, const Params& params)
-      : gravity_(scene.gravity), mode_(params.choice("mode")), at_(params.integer("at")) {}
+      : free_(inverse_masses(scene)),
+        velocity_(0.01 * scene.gravity),
+        mode_(params.choice("mode")),
+        at_(params.integer("at")) {}
   void load(const State& state) override { state_ = state; }
   void store(State& state) const override {
     state = state_;
@@ -47,8 +51,9 @@ class Faulty final : public Solver {
     if (mode_ == "slow") usleep(10'000);
     while (mode_ == "held" && access("go-on", F_OK) != 0) usleep(1000);
     for (std::size_t i = 0; i < state_.x.size(); ++i) {
-      state_.v[i] += gravity_ * dt;
-      state_.x[i] += state_.v[i] * dt;
+      if (free_[i] == 0) continue;
+      state_.v[i] = velocity_;
+      state_.x[i] += velocity_ * dt;
     }
   }
 
@@ -68,7 +73,7 @@ class Faulty final : public Solver {
     if (mode_ == "stretch") state_.x[3].y() = 50;
     if (mode_ == "fork" || mode_ == "daemon") leave_behind();
     if (mode_ == "forge") forge();
-    if (mode_ == "random") state_.x[0].x() += 1e-9 * (1.0 + std::random_device()() % 1'000'000);
+    if (mode_ == "random") state_.x[1].x() += 1e-9 * (1.0 + std::random_device()() % 1'000'000);
     while (mode_ == "hang") usleep(1000);
     for (volatile int spun = 0; mode_ == "spin";) spun = spun + 1;
     while (mode_ == "print") std::cerr << std::string(1 << 20, 'x');
@@ -99,7 +104,8 @@ class Faulty final : public Solver {
     std::_Exit(0);
   }
 
-  Vec3 gravity_;
+  std::vector<double> free_;  ///< 0: a pin
+  Vec3 velocity_;             ///< m/s
   std::string mode_;
   int at_, step_ = 0;
   State state_;

@@ -352,9 +352,23 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
 /// Program that computes exact free fall with pins by symplectic Euler; parameters introduce
 /// errors.
 constexpr const char* kSlightlyWrong = R"(
-import sys
+import math, sys
 sys.path.insert(0, sys.argv[1])
 import taut_solver
+def turned(spin, t, p):
+    rate = math.hypot(*spin)
+    if rate == 0:
+        return p
+    a, c, s = [k / rate for k in spin], math.cos(rate * t), math.sin(rate * t)
+    dot = sum(u * v for u, v in zip(a, p))
+    return [p[k] * c + (a[(k + 1) % 3] * p[(k + 2) % 3] - a[(k + 2) % 3] * p[(k + 1) % 3]) * s
+            + a[k] * dot * (1 - c) for k in range(3)]
+def way(path, t):
+    for a, b in zip(path, path[1:]):
+        if a["t"] <= t <= b["t"]:
+            share = (t - a["t"]) / (b["t"] - a["t"])
+            return [u + share * (v - u) for u, v in zip(a["displacement"], b["displacement"])]
+    return [0] * 3 if not path else path[0 if t < path[0]["t"] else -1]["displacement"]
 class Slightly:
     name, version, scenes = "slightly", "1", 0
     def __init__(self, scene, params):
@@ -362,6 +376,7 @@ class Slightly:
         self.w, self.g = scene["inverse_mass"], scene["gravity"]
         self.off = lambda what: params.get(what, 0)
         self.held = min(self.w) == 0
+        self.moving, self.start = scene["pin_motions"], scene["x"]
     def load(self, x, v):
         self.x, self.v, self.fresh = list(x), list(v), True
     def step(self, t, dt):
@@ -370,6 +385,12 @@ class Slightly:
             if self.w[k // 3] > 0:
                 self.v[k] += dt * self.g[k % 3] * (1 + self.off("gravity"))
                 self.x[k] += dt * self.v[k]
+        for group in self.moving:
+            m, end = group["motion"], (t + dt) * (1 + self.off("clock"))
+            for i in group["vertices"]:
+                p = turned(m["spin"], end, [a - b for a, b in zip(self.start[i], m["pivot"])])
+                d = way(m["path"], end)
+                self.x[3 * i:3 * i + 3] = [p[k] + m["pivot"][k] + m["velocity"][k] * end + d[k] for k in range(3)]
     def store(self):
         x, v = list(self.x), list(self.v)
         if self.held:
@@ -408,7 +429,10 @@ TEST(Probe, DrawsEveryLineWhereItSaysItDoes) {
                     {"place after load", 9e-6},
                     {"velocity after load", 9e-4}}),
             "");
-  EXPECT_EQ(failed({{"pin", 1.1e-6}, {"shape", 1.1e-3}}), "free fall, time step, pins, ");
+  EXPECT_EQ(failed({{"pin", 1.1e-6}, {"shape", 1.1e-3}}),
+            "free fall, time step, pins, moving pins, ");
+  EXPECT_EQ(failed({{"clock", 1e-7}}), "") << "at most 0.5 s x 1.1 m/s x 1e-7";
+  EXPECT_EQ(failed({{"clock", 1e-5}}), "moving pins, ");
   EXPECT_EQ(failed({{"velocity", 0.0451}, {"place after load", 1.1e-5}}), "time step, restart, ");
   EXPECT_EQ(failed({{"velocity", 0.0850}, {"velocity after load", 1.1e-3}}),
             "free fall, time step, restart, ");

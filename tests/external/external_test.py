@@ -424,7 +424,7 @@ class Probe(Programs):
                     "frames": "free fall: .*it advances by 0.5333 s", "forgets": "free fall: .*forgets the velocities",
                     "shrinks": "free fall: .*does not stay in shape.*vertex 1", "frame-velocity": "free fall: .*it reports the velocity",
                     "nan": "free fall: .*does not stay in shape.*vertex 15 is -?nan m off",
-                    "pins": "pins: vertex 0 is pinned", "chance": "same bits: the same load and the same steps give other bits",
+                    "pins": "pins: vertex 0 is pinned", "left": "moving pins: vertex [03] is a pin that moves", "chance": "same bits: the same load and the same steps give other bits",
                     "survives": "same bits: the same load", "restart": "restart: 'store' right after 'load'",
                     "outlives": "end of input: does not end within 5 s"}
         for mode, says in expected.items():
@@ -457,7 +457,7 @@ class Probe(Programs):
         told = self.answer("external", "probe", TOYS["cpp"])
         self.assertIs(facts_of(told)["passed"], True)
         self.assertEqual([c["check"] for c in rows_of(told, "checks")],
-                         ["hello", "free fall", "time step", "pins", "same bits", "restart", "bad requests", "end of input", "own word"])
+                         ["hello", "free fall", "time step", "pins", "moving pins", "same bits", "restart", "bad requests", "end of input", "own word"])
 
 
 if __name__ == "__main__":

@@ -86,6 +86,9 @@ def main():
             answer({"protocol": "taut-solver/1", "name": "hostile", "version": MODE})
         elif op == "scene":
             scene = json.load(open(request["file"]))
+            if scene["pin_motions"]:
+                answer({"cannot": ["pins that move"]})
+                continue
             n, gravity, w, steps = scene["vertices"], scene["gravity"], scene["inverse_mass"], 0
             answer({"vertices": n})
         elif op == "load":

@@ -15,6 +15,7 @@
 #include "experiments/external/external.hpp"
 #include "experiments/external/protocol.hpp"
 #include "experiments/system/data.hpp"
+#include "experiments/system/json.hpp"
 
 namespace taut::external::jolt_test {
 namespace {

@@ -15,6 +15,10 @@ MODE = sys.argv[1]
 class Wrong:
     name, version = "wrong", MODE
 
+    @staticmethod
+    def cannot(scene, params):
+        return ["pins that move"] if scene["pin_motions"] and MODE != "left" else []
+
     def __init__(self, scene, params):
         self.w, self.links, self.g = scene["inverse_mass"], scene["links"], list(scene["gravity"])
         if MODE == "down":

@@ -162,6 +162,24 @@ class Solvers(module.Case):
         run = taut.simulate(scene, "storing")
         self.assertEqual(run.verdict, "exploded (nonfinite) at step 1, vertex 9", "its numbers are a result")
 
+    def test_its_pins_are_those_of_the_scene(self):
+        scene = taut.scene(module.SMALL)
+
+        def falls(self, t, dt):
+            self.x[scene.pins[1], 1] -= 0.1 * dt
+        taut.solver("falls")(still(step=falls))
+        run = taut.simulate(scene, "falls")
+        self.assertEqual((run.status, run.record["status"]["step"], run.record["status"]["vertex"]), ("protocol", 1, scene.pins[1]))
+        self.assertIn("does not hold the scene's pins: vertex 7 is 0.00156 m from", run.record["status"]["reason"])
+        moved = taut.scene(module.SMALL + '[[pin_motion]]\nvertices = ["top-left", "top-right"]\nvelocity = [0, 0, 1]\n')
+        taut.solver("stays")(Still)
+        self.assertEqual(taut.simulate(moved, "stays").status, "protocol")
+
+        def follows(self, t, dt):
+            self.x[moved.pins] = moved.pin_positions(t + dt).astype(numpy.float32)
+        taut.solver("follows")(still(step=follows))
+        self.assertEqual(taut.simulate(moved, "follows", duration=0.1).status, "ok")
+
     def test_two_threads_run_solvers_of_python_at_once(self):
         scene = taut.scene(module.SMALL, {"time.duration": 0.2})
         want = taut.simulate(scene, "textbook:iterations=2").record["digest"]

@@ -16,7 +16,7 @@ namespace taut::judging_test {
 namespace {
 
 constexpr ParamSpec kFlaws[] = {ParamSpec::choice(
-    "flaw", "none", "none|pushes|heavy|restless|loose|fails|refuses", "how it is wrong")};
+    "flaw", "none", "none|pushes|heavy|restless|loose|left|fails|refuses", "how it is wrong")};
 
 /// Verlet integration without links, which is correct for unconnected particles.
 struct FromOutside final : Solver {
@@ -26,7 +26,7 @@ struct FromOutside final : Solver {
     x = before = s.x;
     for (std::size_t i = 0; i < x.size(); ++i) before[i] -= scene.dt * s.v[i];
   }
-  void step(double, double dt) override {
+  void step(double t, double dt) override {
     if (flaw == "fails") throw SolverFailure(Status::Kind::crash, "SIGSEGV");
     const bool rests = scene.gravity.isZero(0);
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -35,7 +35,8 @@ struct FromOutside final : Solver {
         x[i] += now - before[i] + dt * dt * (flaw == "heavy" ? 1.02 : 1) * scene.gravity;
       if (flaw == "pushes" && !rests && w[i] > 0) x[i].z() += 1e-4 * dt;
       if (flaw == "restless" && rests) x[i].x() += 2e-5 * dt;
-      if (flaw == "loose" && w[i] == 0 && i > 0) x[i].y() += 2e-6 * dt;
+      if (w[i] == 0 && flaw != "left") x[i] = pin_position(scene, static_cast<int>(i), t + dt);
+      if (flaw == "loose" && w[i] == 0 && i > 0) x[i].y() += 2e-6 * (t + dt);
       before[i] = now;
     }
   }
@@ -83,7 +84,7 @@ class AnySolver : public testing::Test {
   static std::vector<std::string> broken(const std::string& flaw) {
     std::vector<std::string> quantities;
     const auto all = findings("outside:flaw=" + flaw);
-    EXPECT_EQ(all.size(), 4u);
+    EXPECT_EQ(all.size(), 5u);
     for (const Finding& f : all)
       if (f.verdict == TruthVerdict::broken) quantities.push_back(f.quantity.substr(0, 8));
     return quantities;
@@ -96,7 +97,8 @@ TEST_F(AnySolver, ThatIsWrongInOneWayBreaksOneTruth) {
   EXPECT_EQ(broken("heavy"), Names{"fall of "});
   EXPECT_EQ(broken("pushes"), Names{"its way "});
   EXPECT_EQ(broken("restless"), Names{"way of a"});
-  EXPECT_EQ(broken("loose"), Names{"way of t"});
+  EXPECT_EQ(broken("loose"), (Names{"way of t", "distance"}));
+  EXPECT_EQ(broken("left"), Names{"distance"});
 }
 
 TEST_F(AnySolver, ThatFailsOrRefusesIsSaidSoForEachTruth) {
@@ -104,13 +106,13 @@ TEST_F(AnySolver, ThatFailsOrRefusesIsSaidSoForEachTruth) {
     EXPECT_EQ(f.quantity, "crash: SIGSEGV");
     EXPECT_EQ(f.verdict, TruthVerdict::broken);
   }
-  EXPECT_EQ(findings("outside:flaw=fails").size(), 3u);
+  EXPECT_EQ(findings("outside:flaw=fails").size(), 4u);
   for (const Finding& f : findings("outside:flaw=refuses")) {
     EXPECT_EQ(f.why, "sheets");
     EXPECT_EQ(f.verdict, TruthVerdict::not_applicable);
   }
-  EXPECT_EQ(findings("outside:flaw=refuses").size(), 3u);
-  EXPECT_EQ(findings("jakobsen").size(), 4u) << "one of the tree";
+  EXPECT_EQ(findings("outside:flaw=refuses").size(), 4u);
+  EXPECT_EQ(findings("jakobsen").size(), 5u) << "one of the tree";
   EXPECT_TRUE(findings("reference").empty());
 }
 
