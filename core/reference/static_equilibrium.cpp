@@ -333,7 +333,7 @@ Equilibrium refused(const std::string& reason) {
 
 }  // namespace
 
-std::vector<std::string> refuse_static(const Scene& scene) {
+std::vector<std::string> refuse_rest(const Scene& scene) {
   std::vector<std::string> reasons;
   const auto refuse = [&](bool applies, const char* why) {
     if (applies) reasons.emplace_back(why);
@@ -341,11 +341,6 @@ std::vector<std::string> refuse_static(const Scene& scene) {
   refuse(!scene.colliders.empty(), "contact: where the cloth comes to rest depends on its history");
   refuse(scene.self_collision.has_value(), "self-collision: it depends on its history");
   refuse(scene.wind.has_value(), "wind follows the faces: it has no potential to minimise");
-  refuse(std::any_of(scene.links.begin(), scene.links.end(),
-                     [](const Link& l) { return l.family == Family::bend; }),
-         "bending links push: the sheet buckles, in more than one way");
-  refuse(scene.bending.has_value(), "bending: rods have none");
-  refuse(!elastic_links(scene).empty(), "links are elastic: rods are not");
   refuse(std::any_of(scene.pin_motions.begin(), scene.pin_motions.end(),
                      [](const PinMotion& m) { return !m.motion.at_rest(); }),
          "the pins move");
@@ -354,6 +349,19 @@ std::vector<std::string> refuse_static(const Scene& scene) {
   refuse(!scene.releases.empty(), "its pins let go");
   refuse(scene.pins.empty(), "without pins it falls for ever");
   refuse(!scene.pins.empty() && !hangs_whole(scene), "a piece without a pin falls for ever");
+  return reasons;
+}
+
+std::vector<std::string> refuse_static(const Scene& scene) {
+  std::vector<std::string> reasons = refuse_rest(scene);
+  const auto refuse = [&](bool applies, const char* why) {
+    if (applies) reasons.emplace_back(why);
+  };
+  refuse(std::any_of(scene.links.begin(), scene.links.end(),
+                     [](const Link& l) { return l.family == Family::bend; }),
+         "bending links push: the sheet buckles, in more than one way");
+  refuse(scene.bending.has_value(), "bending: rods have none");
+  refuse(!elastic_links(scene).empty(), "links are elastic: rods are not");
   return reasons;
 }
 

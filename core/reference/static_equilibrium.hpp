@@ -19,10 +19,13 @@ struct Equilibrium {
   double floor = 0;             ///< m, distance between two independent solutions
 };
 
+/// Reasons, one sentence each, why gravity, links and pins do not decide where the cloth rests:
+/// contact, self-collision, wind, moving pins, seams, or no gravity or pins.
+std::vector<std::string> refuse_rest(const Scene&);
+
 /// Reasons, one sentence each, why no unique equilibrium of this scene is known. Empty: one may
-/// exist, and static_equilibrium() decides. Refused here are contact, self-collision, wind,
-/// bending, elastic links, moving pins, and scenes without gravity or pins (truths without a unique
-/// answer).
+/// exist, and static_equilibrium() decides. Refused here are those of refuse_rest(), bending and
+/// elastic links (truths without a unique answer).
 std::vector<std::string> refuse_static(const Scene&);
 
 /// Minimises the potential energy over all positions in which links keep their lengths.

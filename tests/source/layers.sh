@@ -14,7 +14,7 @@ core/solver/simd         | core/solver/simd/
 core/solver/layout       | core/(model|solver/(simd|layout))/
 core/solver/constraints  | core/(model/|solver/((simd|layout|constraints)/|thread_pool))
 core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_pool))
-core/reference           | core/(model|reference)/|core/solver/panel_factor\.hpp
+core/reference           | core/(model|reference)/|core/solver/(panel_factor|newton/hessian)\.hpp
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|deforming_body|text|triangle|triangle_mesh)|reference/step_error)\.hpp|experiments/metrics/
