@@ -103,7 +103,7 @@ Scene coarse_sheet(const Scene& scene, int nu, int nv) {
     out.pins.push_back(
         coarse.index(nearest(pin % fine.nu, fine.nu, nu), nearest(pin / fine.nu, fine.nv, nv)));
   std::ranges::sort(out.pins);
-  out.pins.erase(std::ranges::unique(out.pins).begin(), out.pins.end());
+  out.pins.erase(std::unique(out.pins.begin(), out.pins.end()), out.pins.end());
   const auto has = [&](Family family) {
     return std::ranges::any_of(scene.links, [&](const Link& l) { return l.family == family; });
   };

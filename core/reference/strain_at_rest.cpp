@@ -17,9 +17,6 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// What a sweep visits.
-enum class Visits { links, vertices };
-
 /// A parameter without which the law holds.
 struct Needed {
   std::string_view parameter, values;  ///< values: "a|b"
@@ -156,10 +153,12 @@ SolverChoice one_sweep(const SolverChoice& choice, double stiffness) {
   return one;
 }
 
+}  // namespace
+
 /// The sheet that is run, with rigid links, or springs so stiff that sweeps alone decide. It
 /// starts as the scene does, since sheets that fold may rest in several ways. Damping ends its
 /// swinging.
-class Twin {
+class StrainAtRest::Twin {
  public:
   Twin(const Scene& scene, const SolverChoice& choice, Visits visits)
       : scene_(twin_of(scene)),
@@ -275,8 +274,6 @@ class Twin {
   double c_ = kNone;
   std::map<int, Correction> known_;
 };
-
-}  // namespace
 
 struct StrainAtRest::Work {
   Work(const Scene& of, const SolverChoice& solver)
@@ -459,7 +456,8 @@ std::vector<std::string> StrainAtRest::outside(const Strain& strain, double subs
     if (it) reasons.push_back(std::move(why));
   };
   const auto percent = [](double share) { return shortest(std::round(1e3 * share) / 10) + " %"; };
-  if (std::isnan(work.c)) return {"its twin did not come to rest"};
+  if (std::isnan(work.c))
+    return {"its twin did not come to rest: the sheet folds, or starts far from its rest"};
   if (!strain.found) return {"no rest of the sheet was found: it folds, in more than one way"};
   refuse(strain.s > kMostSaturated && strain.of_sweeps > kSwept,
          "its sweeps leave hardly any strain: s = " + shortest(std::round(100 * strain.s) / 100) +
@@ -476,7 +474,8 @@ std::vector<std::string> StrainAtRest::outside(const Strain& strain, double subs
     double farthest = 0, shortest_link = std::numeric_limits<double>::infinity();
     for (const Vec3& x : work.scene.start.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
     for (const Link& l : work.scene.links) shortest_link = std::min(shortest_link, l.rest);
-    const double rounding = farthest * std::numeric_limits<float>::epsilon() / 2;
+    const double rounding =
+        farthest * static_cast<double>(std::numeric_limits<float>::epsilon()) / 2;
     refuse(rounding > kMostRounding * strain.rms * shortest_link ||
                rounding > kMostRounding * work.fall(work.scene.dt / substeps),
            "float rounds its strain or the fall of a substep by more than " +

@@ -11,6 +11,9 @@
 
 namespace taut::reference {
 
+/// What a sweep visits, one after the other.
+enum class Visits { links, vertices };
+
 /// Strain that k sweeps in each substep of h [s] leave in a cloth at rest under gravity. The scene
 /// is not run.
 ///
@@ -62,6 +65,7 @@ class StrainAtRest {
   std::vector<std::string> outside(const Strain&, double substeps) const;
 
  private:
+  class Twin;
   struct Work;
   std::unique_ptr<Work> work_;
 };

@@ -16,6 +16,7 @@
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/python/docstrings.hpp"
+#include "experiments/python/predictions.hpp"
 #include "experiments/python/python_solver.hpp"
 #include "experiments/python/runs.hpp"
 #include "experiments/python/sourced_scene.hpp"
@@ -139,6 +140,7 @@ void define_module(py::module_& m) {
       .def_property_readonly("message", text_member<&Diagnostic::message>(), "Names the key.");
   define_scene(m);
   define_run(m);
+  define_predict(m);
 
   m.def(
       "scene",

@@ -86,6 +86,26 @@ meanwhile; Ctrl-C ends it after the step.
     run = taut.simulate("hang", "jakobsen:iterations=8", duration=2)
     run.status, run.values["stretch.rms"], run.x.shape)";
 
+inline constexpr const char* kPredict =
+    R"(predict(scene, solver='jakobsen', *, dt=None, error=None, stiffness=None, budget=None, as_stiffness=False)
+--
+
+Strain of the cloth at rest without running the scene, as `taut predict` finds it.
+
+scene, solver, dt  as in taut.simulate().
+error         RMS strain: the fewest sweeps, and the fewest substeps, that have at most this.
+stiffness     N/m: those whose cloth stretches like links of this stiffness.
+budget        s of CPU time a step: the most that take at most this.
+as_stiffness  also find the stiffness of links that stretch like each setting.
+
+Returns a list of dicts, of the setting itself or of the two that were looked for: solver, refused
+(reasons, a list of texts; if there are any, all numbers are NaN), rms and largest strain, sag [m],
+cpu [s a step, timed on the first ones], stiffness [N/m], c and s of the law
+(core/reference/strain_at_rest.hpp). Raises taut.InputError for bad input, and if more than one of
+error, stiffness and budget is given.
+
+    taut.predict("hang", "jakobsen:projection=exact", error=0.01)[0]["solver"])";
+
 inline constexpr const char* kScore =
     R"(score(scene, positions, *, fps=None, scale=1.0, up='y', rest=None, every=1, allow_nan=False)
 --

@@ -52,6 +52,9 @@ class BadInput(CommandLine):
         self.refuse("advise", "hang", "--error", "small", says="expected a number above 0 such as 0.01 or 1%")
         self.refuse("advise", "hang", "--error", "1%", "--solver", "bulet", says="did you mean 'bullet'?")
         self.refuse("advise", "hang", "--error", "1%", "--patience", -3, says="'-3' is not a number above 0")
+        self.refuse("predict", "hang", "bulet", "--error", "1%", says="did you mean 'bullet'?")
+        self.refuse("predict", "hang", "jakobsen", "--error", 5, says="5%")
+        self.refuse("predict", "hang", "jakobsen", "--error", "1%", "--stiffness", 100, says="at most one of --error, --stiffness and --budget")
         self.refuse("run", "iterations", "--timeout", "-3", says="--timeout: '-3' is not a number above 0")
 
     def test_what_contradicts_itself(self):

@@ -36,6 +36,23 @@ class Runs(module.Case):
                 rows = [[float(row[key]) for key in ("x", "y", "z", "vx", "vy", "vz")] for row in csv.DictReader((self.folder / "end.csv").read_text().splitlines())]
                 self.assertTrue(numpy.array_equal(numpy.hstack([run.x_end, run.v_end]), rows))
 
+    def test_a_prediction_is_that_of_the_command_line(self):
+        solver = "jakobsen:projection=exact"
+        asked = json.loads(self.taut("predict", "hang", solver, "--error", "1%", "--set", "cloth.grid=[12, 12]", "--json"))["tables"]["predictions"]
+        names = [column["name"] for column in asked["columns"]]
+        rows = taut.predict(taut.scene("hang", {"cloth.grid": [12, 12]}), solver, error=0.01)
+        for row, cells in zip(rows, asked["rows"], strict=True):
+            said = dict(zip(names, cells, strict=True))
+            self.assertEqual((row["solver"], row["rms"], row["largest"], row["refused"]), (said["setting"], said["rms"], said["largest"], []))
+            self.assertLessEqual(row["rms"], 0.01)
+        refused = taut.predict("ball")[0]
+        self.assertIn("contact: ", refused["refused"][0])
+        self.assertTrue(math.isnan(refused["rms"]))
+        with self.assertRaisesRegex(taut.InputError, "error: -1; must be above 0"):
+            taut.predict("hang", error=-1)
+        with self.assertRaisesRegex(taut.InputError, "at most one of error, stiffness and budget"):
+            taut.predict("hang", error=0.1, budget=1)
+
     def test_the_key_is_the_one_of_the_results_file(self):
         record = json.loads(self.taut("case", "hang", "jakobsen", "--dt", "1/60", "--duration", "0.5", "--json"))
         run = taut.simulate("hang", dt="1/60", duration=0.5)

@@ -21,7 +21,7 @@ experiments/metrics      | core/(model/(bending|crossings|declared_step|index|sc
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
-experiments/python       | (core/(model|io)|experiments/(metrics|case|python))/|experiments/system/data.hpp
+experiments/python       | (core/(model|io)|experiments/(metrics|case|predict|python))/|experiments/system/data.hpp
 experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|case|results))/
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp
@@ -29,6 +29,7 @@ experiments/study/frontier | (core/(model|io|reference)|experiments/(answer|syst
 experiments/timing       | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study|timing|beside))/
 experiments/beside       | beside\.hpp
 experiments/timing/bench | (core/(model|io|solver|reference)|experiments/(answer|system|timing))/
+experiments/predict      | (core/(model|reference)|experiments/predict)/
 experiments/steps        | (core/(model|io|reference)|experiments/(answer|system|case|steps))/
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
 experiments/history      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|baseline|history))/
@@ -154,6 +155,7 @@ experiments/study/cluster/planted.cpp|"experiments/study/frontier/parameter_fron
 experiments/study/frontier/planted.cpp|"experiments/study/cluster/cluster.hpp"
 experiments/history/planted.cpp|"experiments/report/input.hpp"
 experiments/timing/planted.cpp|"core/solver/simd/kernels.hpp"
+experiments/predict/planted.cpp|"experiments/timing/judge.hpp"
 experiments/steps/planted.cpp|"experiments/timing/study_bench.hpp"
 experiments/timing/bench/planted.cpp|"experiments/results/store.hpp"
 experiments/render/picture/planted.cpp|"experiments/render/film/film.hpp"
