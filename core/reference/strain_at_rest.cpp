@@ -56,6 +56,8 @@ const Sweeper* sweeper(const SolverChoice& choice) {
   return at == std::end(kSweepers) ? nullptr : at;
 }
 
+/// A sheet of springs of more vertices would take too much memory, 6 kB each.
+constexpr int kMostVertices = 100'000;
 /// Vertices along a side of the twin, and along one of a strip; the most vertices of a mesh that is
 /// its own twin.
 constexpr int kTwin = 13, kLongTwin = 49, kOwnTwin = 1100;
@@ -442,6 +444,14 @@ std::vector<std::string> StrainAtRest::refuse(const Scene& scene, const SolverCh
       all = own;
     }
   }
+  const std::vector<double> w = inverse_masses(scene);
+  if (std::ranges::none_of(scene.links, [&](const Link& l) {
+        return counts(l) && w[to_index(l.a)] + w[to_index(l.b)] > 0;
+      }))
+    reasons.emplace_back("no structural or shear link of it can stretch");
+  if (scene.mesh.size() > kMostVertices)
+    reasons.push_back("its " + std::to_string(scene.mesh.size()) + " vertices are more than the " +
+                      std::to_string(kMostVertices) + " for which its sheet of springs is solved");
   if (!scene.mesh.grid && scene.mesh.size() > kOwnTwin)
     reasons.push_back("its mesh of " + std::to_string(scene.mesh.size()) +
                       " vertices has no twin: grids have one, and meshes of at most " +

@@ -17,11 +17,9 @@ namespace taut::python {
 
 namespace {
 
-std::optional<double> above_zero(const py::object& value, const char* what) {
+std::optional<double> if_given(const py::object& value, const char* what) {
   if (value.is_none()) return {};
-  const auto number = py::cast<double>(value);
-  if (std::isfinite(number) && number > 0) return number;
-  throw InputError(std::string(what) + ": " + shortest(number) + "; must be above 0");
+  return above_zero(value, what);
 }
 
 py::list predictions(const py::object& scene, const std::string& solver, const py::object& dt,
@@ -29,9 +27,9 @@ py::list predictions(const py::object& scene, const std::string& solver, const p
                      bool as_stiffness) {
   const SourcedScene timed = timed_scene(scene, dt, py::none());
   const SolverChoice choice = parse_solver(solver);
-  const PredictionWanted wanted{.error = above_zero(error, "error"),
-                                .stiffness = above_zero(stiffness, "stiffness"),
-                                .budget = above_zero(budget, "budget"),
+  const PredictionWanted wanted{.error = if_given(error, "error"),
+                                .stiffness = if_given(stiffness, "stiffness"),
+                                .budget = if_given(budget, "budget"),
                                 .as_stiffness = as_stiffness};
   if (wanted.error.has_value() + wanted.stiffness.has_value() + wanted.budget.has_value() > 1)
     throw InputError("predict takes at most one of error, stiffness and budget");

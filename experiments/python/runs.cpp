@@ -123,17 +123,6 @@ void check_finite(PositionReader& positions) {
   }
 }
 
-double above_zero(const py::object& value, const char* what) {
-  const std::string wrong = std::string(what) + ": " + py::cast<std::string>(py::repr(value));
-  try {
-    const auto number = py::cast<double>(value);
-    if (std::isfinite(number) && number > 0) return number;
-  } catch (const py::cast_error&) {
-    throw InputError(wrong + " is a " + type_of(value) + "; must be a number above 0");
-  }
-  throw InputError(wrong + "; must be above 0");
-}
-
 RunResult simulate(const py::object& scene, const std::string& solver, const py::object& dt,
                    const py::object& duration, int every) {
   const SourcedScene timed = timed_scene(scene, dt, duration);

@@ -1,5 +1,6 @@
 #include "experiments/python/values.hpp"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -115,6 +116,17 @@ SceneSettings settings_of(const py::dict& settings) {
     all.emplace_back(key, toml_of(value, key));
   }
   return all;
+}
+
+double above_zero(const py::object& value, const char* what) {
+  const std::string wrong = std::string(what) + ": " + py::cast<std::string>(py::repr(value));
+  try {
+    const auto number = py::cast<double>(value);
+    if (std::isfinite(number) && number > 0) return number;
+  } catch (const py::cast_error&) {
+    throw InputError(wrong + " is a " + type_of(value) + "; must be a number above 0");
+  }
+  throw InputError(wrong + "; must be above 0");
 }
 
 }  // namespace taut::python

@@ -40,6 +40,9 @@ std::vector<Vec3> vectors_of(const Doubles&);
 /// An array of this shape that takes over the numbers without a copy.
 py::array owned(std::vector<double>&&, std::vector<py::ssize_t> shape);
 
+/// The number. Throws InputError that names `what` if it is not above 0.
+double above_zero(const py::object& value, const char* what);
+
 /// Converts {"cloth.grid": [16, 16]} to settings for load_scene(). Throws InputError that names the
 /// key.
 SceneSettings settings_of(const py::dict& settings);

@@ -154,6 +154,11 @@ TEST(StrainAtRest, RefusesWithTheReason) {
   Scene moving = good;
   moving.pin_motions = {{{0}, {.spin = {0, 0, 1}}}};
   EXPECT_EQ(reasons(moving, "jakobsen"), std::vector<std::string>{"the pins move"});
+  Scene held = good;
+  held.pins.clear();
+  for (int i = 0; i < held.mesh.size(); ++i) held.pins.push_back(i);
+  EXPECT_EQ(reasons(held, "jakobsen"),
+            std::vector<std::string>{"no structural or shear link of it can stretch"});
   Scene bending = good;
   bending.bending = Bending{1, 1};
   EXPECT_TRUE(reasons(bending, "jakobsen").front().starts_with("bending"));
