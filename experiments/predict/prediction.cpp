@@ -80,7 +80,12 @@ PredictedStrain complete(const Scene& scene, StrainAtRest& law, PredictedStrain 
   return one;
 }
 
-std::string percent(double share) { return shortest(std::round(1e5 * share) / 1e3) + " %"; }
+/// With three digits.
+std::string percent(double share) {
+  if (!(share > 0)) return shortest(share);
+  const double scale = std::pow(10, 2 - std::floor(std::log10(100 * share)));
+  return shortest(std::round(100 * share * scale) / scale) + " %";
+}
 
 /// The sweeps or substeps that have this strain: the fewest that are below it, or the nearest.
 PredictedStrain with_strain(StrainAtRest& law, const SolverChoice& choice, const Work& work,
@@ -134,13 +139,22 @@ std::vector<PredictedStrain> predict(const Scene& scene, const SolverChoice& cho
     plain.refused = law.outside({}, 1);
     return {plain};
   }
+  double like_springs = 0;
+  if (wanted.stiffness) {
+    const StrainAtRest::Strain strain = law.of_springs(*wanted.stiffness);
+    like_springs = strain.rms;
+    if (!strain.found || !(like_springs > 0) || !std::isfinite(like_springs)) {
+      plain.refused = {"no rest was found for links of " + shortest(*wanted.stiffness) + " N/m"};
+      return {plain};
+    }
+  }
   std::vector<PredictedStrain> all;
   for (const bool of_substeps : {false, true}) {
     const Work work{of_substeps};
     if (wanted.error)
       all.push_back(with_strain(law, choice, work, *wanted.error, false));
     else if (wanted.stiffness)
-      all.push_back(with_strain(law, choice, work, law.of_springs(*wanted.stiffness).rms, true));
+      all.push_back(with_strain(law, choice, work, like_springs, true));
     else if (wanted.budget)
       all.push_back(within(scene, choice, work, *wanted.budget));
     else if (all.empty())
