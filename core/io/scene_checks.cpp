@@ -7,6 +7,7 @@
 #include "core/model/body_frames.hpp"
 #include "core/model/crossings.hpp"
 #include "core/model/index.hpp"
+#include "core/model/move_out.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -19,56 +20,23 @@ bool starts_pinned(const Scene& scene, std::size_t i) {
   return std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i));
 }
 
-/// Points at which p leaves a shape, `thickness` [m] above its surface: the nearest one first, and
-/// of a box also those of its six sides.
-std::vector<Vec3> ways_out(const Shape& shape, const Vec3& p, double thickness) {
-  const Surface s = surface(shape, p);
-  std::vector<Vec3> out{p + (thickness - s.distance) * s.normal};
-  const Box* box = std::get_if<Box>(&shape);
-  if (!box || s.distance > 0) return out;
-  const Vec3 local = box->rotation.conjugate() * (p - box->center);
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      Vec3 at = local;
-      at[axis] = side * (box->half_extents[axis] + thickness);
-      out.push_back(box->center + box->rotation * at);
-    }
-  std::ranges::stable_sort(out, {}, [&](const Vec3& q) { return (q - p).squaredNorm(); });
-  return out;
-}
+/// Rounding of the file's numbers [m].
+double rounding_of(const Scene& scene) { return 1e-9 * extent(scene); }
 
-/// Moves a vertex out of all shapes, in rounds until none moves it. It leaves each shape by the
-/// nearest point that is in no other shape, if there is one.
-Vec3 resolved(const std::vector<Shape>& shapes, Vec3 x, double thickness) {
-  double rounding = 0;  // m
-  const auto inside = [&](const Shape& shape, const Vec3& p) {
-    return surface(shape, p).distance < thickness - rounding;
-  };
-  constexpr int kRounds = 1000;  // a wedge takes the more rounds the narrower it is
-  for (int round = 0; round < kRounds; ++round) {
-    bool moved = false;
-    for (const Shape& shape : shapes) {
-      if (!inside(shape, x)) continue;
-      const std::vector<Vec3> ways = ways_out(shape, x, thickness);
-      const auto free = std::ranges::find_if(ways, [&](const Vec3& p) {
-        return std::ranges::none_of(shapes, [&](const Shape& s) { return inside(s, p); });
-      });
-      x = free != ways.end() ? *free : ways.front();
-      moved = true;
-    }
-    if (!moved) break;
-    rounding = 1e-12 * (1 + x.norm());
-  }
-  return x;
-}
-
-/// Moves the free vertices out of all colliders.
-void resolve(Scene& scene) {
+/// Moves free vertices to the thickness above all colliders: those that are above their surfaces
+/// but closer, or `all`. A step would turn that way into velocity.
+void resolve(Scene& scene, bool all) {
   std::vector<Shape> shapes;
   for (const Collider& collider : scene.colliders) shapes.push_back(shape_at(collider, 0));
-  for (std::size_t i = 0; i < scene.start.x.size(); ++i)
-    if (!starts_pinned(scene, i))
-      scene.start.x[i] = resolved(shapes, scene.start.x[i], scene.thickness);
+  const double rounding = rounding_of(scene);
+  for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
+    if (starts_pinned(scene, i)) continue;
+    double nearest = scene.thickness;
+    for (const Shape& shape : shapes)
+      nearest = std::min(nearest, surface(shape, scene.start.x[i]).distance);
+    if (all || (nearest >= -rounding && nearest < scene.thickness - rounding))
+      scene.start.x[i] = moved_out(shapes, scene.start.x[i], scene.thickness);
+  }
 }
 
 /// Reports free vertices inside a collider. A pinned vertex may be inside: that is how a cloth is
@@ -76,7 +44,7 @@ void resolve(Scene& scene) {
 void judge_start(const Value& item, Section& root, const FileKeys& said, const Collider& collider,
                  const Scene& scene) {
   const Shape shape = shape_at(collider, 0);
-  const double rounding = 1e-9 * extent(scene);  // rounding of the file's numbers
+  const double rounding = rounding_of(scene);
   double deepest = 0;
   std::size_t vertex = 0, count = 0;
   for (std::size_t i = 0; i < scene.start.x.size(); ++i) {
@@ -188,7 +156,7 @@ void check_whole(Section& root, const Scene& scene) {
 }
 
 void check_contact(Section& root, const FileKeys& said, Scene& scene) {
-  if (said.start_inside == FileKeys::Inside::resolve) resolve(scene);
+  resolve(scene, said.start_inside == FileKeys::Inside::resolve);
   const auto items = root.tables("collider");
   for (std::size_t k = 0; k < items.size() && k < scene.colliders.size(); ++k) {
     judge_start(*items[k], root, said, scene.colliders[k], scene);

@@ -35,6 +35,13 @@ void Solver::go_on(const Solver& before) {
   load(state);
 }
 
+void Solver::displace(const std::vector<Vec3>& ways) {
+  State state;
+  store(state);
+  for (std::size_t i = 0; i < ways.size(); ++i) state.x[i] += ways[i];
+  load(state);
+}
+
 void set_solver_source(SolverSource source) { g_source = source; }
 
 void admit_solver(std::string_view text) {

@@ -55,6 +55,9 @@ class Solver {
   /// Continues from the end of `before`, a solver of the same entry and parameters for the previous
   /// stage of the same scene (stages()). By default it takes over only the state.
   virtual void go_on(const Solver& before);
+  /// Moves the vertices by `ways` [n] [m] without changing their velocities. By default it restarts
+  /// from there.
+  virtual void displace(const std::vector<Vec3>& ways);
 
   /// Calls `visit` with the time at the end of every substep inside a step, where store() returns
   /// the state, for callers that need the path between two step boundaries. Not for timed runs.

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "core/model/move_out.hpp"
 #include "core/model/solver.hpp"
 
 namespace taut {
@@ -29,6 +30,7 @@ class StagedSolver final : public Solver {
       const Solver& before = now();
       turn_to(at_ + 1);
       now().go_on(before);
+      let_go(releases_[at_ - 1].vertices, t);
     }
     now().step(t, dt);
   }
@@ -44,6 +46,14 @@ class StagedSolver final : public Solver {
   std::string log() const override { return now().log(); }
 
  private:
+  /// Takes what a collider held inside out of it, before a step turns its depth into velocity.
+  void let_go(const std::vector<int>& vertices, double t) {
+    if (scenes_[at_].colliders.empty()) return;
+    State state;
+    now().store(state);
+    const std::vector<Vec3> ways = ways_out(scenes_[at_], t, state.x, vertices);
+    if (!ways.empty()) now().displace(ways);
+  }
   Solver& now() const { return *solvers_[at_]; }
   /// Turns to another stage. A solver in a process of its own has its own clock.
   void turn_to(std::size_t stage) {

@@ -181,6 +181,14 @@ class Loop final : public Solver {
         }
   }
 
+  void displace(const std::vector<Vec3>& ways) override {
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      const auto way = ways[i].template cast<Real>();
+      p_.x.add(i, way);
+      p_.previous.add(i, way);
+    }
+  }
+
   void store(State& state) const override {
     pool_.finish();  // visitors of substeps come while work is queued
     state.x.resize(p_.size());
