@@ -259,7 +259,7 @@ ResolvedSettings contact_settings(const Scene& scene, const Params& params,
                            as_typed(kTriangleMargin) + " m around it: cloth rests " +
                            as_typed(kTriangleExtrusion) + " to " +
                            as_typed(kTriangleExtrusion + kTriangleMargin) + " m above");
-  if (std::ranges::any_of(scene.colliders, [](const Collider& c) { return c.frames != nullptr; }))
+  if (std::ranges::any_of(scene.colliders, deforms))
     lines.emplace_back("body that deforms",
                        "each contact gets the velocity of the surface where it touches");
   return lines;

@@ -9,6 +9,7 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -217,17 +218,46 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape, const Slab& sla
   return made;
 }
 
-Vec3 middle(const std::vector<Vec3>& points) {
+Eigen::AlignedBox3d extent_of(const std::vector<Vec3>& points) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : points) box.extend(p);
-  return box.center();
+  return box;
+}
+
+/// The rigid motion that takes points nearest to where they are later, by least squares (Umeyama,
+/// Least-Squares Estimation of Transformation Parameters Between Two Point Patterns, 1991).
+RigidPose pose_of(const std::vector<Vec3>& points, const std::vector<Vec3>& later) {
+  const auto columns = [](const std::vector<Vec3>& all) {
+    return Eigen::Map<const Eigen::Matrix3Xd>(all.front().data(), 3,
+                                              static_cast<Eigen::Index>(all.size()));
+  };
+  const Eigen::Matrix4d m = Eigen::umeyama(columns(points), columns(later), false);
+  return {Eigen::Quaterniond(Eigen::Matrix3d(m.topLeftCorner<3, 3>())), m.topRightCorner<3, 1>()};
 }
 
 }  // namespace
 
+bool deforms(const Collider& collider) {
+  if (!collider.frames) return false;
+  const auto& places = collider.frames->places;
+  const std::vector<Vec3>& first = places.front();
+  const double within = 1e-3 * extent_of(first).diagonal().norm();
+  const auto is_off = [&](const std::vector<Vec3>& x) {
+    const RigidPose pose = pose_of(first, x);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (!((pose.rotation * first[i] + pose.origin - x[i]).norm() <= within)) return true;
+    return false;
+  };
+  for (std::size_t k = 1; k < places.size(); ++k)
+    if (is_off(places[k]) ||
+        is_off(collider.frames->at((static_cast<double>(k) - 0.5) / collider.frames->fps)))
+      return true;
+  return false;
+}
+
 bool is_met_by_triangles(const Collider& collider) {
   const auto* body = std::get_if<MeshBody>(&collider.shape);
-  return body && (collider.frames || !is_convex(*body));
+  return body && (!is_convex(*body) || deforms(collider));
 }
 
 struct RigidColliders::Body {
@@ -240,7 +270,7 @@ struct RigidColliders::Body {
                  ? std::make_unique<TriangleShape>(*std::get<MeshBody>(collider.shape).mesh)
                  : nullptr),
         frames(collider.frames),
-        surface(frames ? std::make_unique<DeformingBody>(collider) : nullptr),
+        surface(deforms(collider) ? std::make_unique<DeformingBody>(collider) : nullptr),
         sides(body ? std::get<MeshBody>(collider.shape).sides : MeshBody::Sides::out),
         hull(body || !std::holds_alternative<MeshBody>(collider.shape)
                  ? nullptr
@@ -260,8 +290,15 @@ struct RigidColliders::Body {
 
   bool moves() const { return frames || !motion.at_rest(); }
 
+  /// What the frames of a rigid body have done until time t [s], in its own frame.
+  RigidPose by_frames(double t) const {
+    if (!frames || surface) return {};
+    return pose_of(frames->places.front(), frames->at(t));
+  }
   btTransform at(double t) const {
-    return transform_of(motion.rotation(t) * start.rotation, motion.moved(start.origin, t));
+    const RigidPose own = by_frames(t);
+    return transform_of(motion.rotation(t) * start.rotation * own.rotation,
+                        motion.moved(start.origin + start.rotation * own.origin, t));
   }
 
   /// Shifts a slab along itself to below the cloth's middle at time t [s] if that is far away.
@@ -282,7 +319,7 @@ struct RigidColliders::Body {
   bool is_plane;
   double follows;                            ///< m, for a slab
   std::unique_ptr<TriangleShape> body;       ///< null: not a mesh
-  std::shared_ptr<const BodyFrames> frames;  ///< for a body that deforms
+  std::shared_ptr<const BodyFrames> frames;  ///< null: none
   std::unique_ptr<DeformingBody> surface;    ///< for a body that deforms, in this substep
   MeshBody::Sides sides;                     ///< of a mesh; Bullet does not know it
   /// Mesh whose corners the shape has; null: another shape.
@@ -293,7 +330,8 @@ struct RigidColliders::Body {
 
 RigidColliders::RigidColliders(const Scene& scene, btDiscreteDynamicsWorld& world) : world_(world) {
   for (const Collider& collider : scene.colliders) {
-    bodies_.push_back(std::make_unique<Body>(collider, middle(scene.start.x), slab_for(scene)));
+    bodies_.push_back(
+        std::make_unique<Body>(collider, extent_of(scene.start.x).center(), slab_for(scene)));
     world_.addRigidBody(&bodies_.back()->rigid);
   }
 }
@@ -311,7 +349,7 @@ void RigidColliders::move(double from, double to) {
     if (!body->moves()) continue;
     body->rigid.setInterpolationWorldTransform(body->at(from));
     body->rigid.setWorldTransform(body->at(to));
-    if (body->frames) deform(*body, from, to);
+    if (body->surface) deform(*body, from, to);
   }
 }
 
@@ -326,7 +364,7 @@ void RigidColliders::deform(Body& body, double from, double to) {
 }
 
 bool RigidColliders::deform() const {
-  return std::ranges::any_of(bodies_, [](const auto& body) { return body->frames != nullptr; });
+  return std::ranges::any_of(bodies_, [](const auto& body) { return body->surface != nullptr; });
 }
 
 RigidColliders::Body* RigidColliders::deforming(const void* rigid) const {
@@ -381,11 +419,13 @@ std::vector<Collider> RigidColliders::read_back(double t) const {
     const btTransform& now = body->rigid.getWorldTransform();
     const btQuaternion q = now.getRotation();
     const Eigen::Quaterniond turned = body->motion.rotation(t).conjugate();
-    const Eigen::Quaterniond rotation =
+    const Eigen::Quaterniond turned_back =
         turned * Eigen::Quaternion<btScalar>(q.w(), q.x(), q.y(), q.z()).cast<double>();
     const Vec3& pivot = body->motion.pivot;
     const Vec3 moved = from_bullet(now.getOrigin()) - body->motion.displacement(t);
-    const Vec3 origin = pivot + turned * (moved - pivot);
+    const RigidPose own = body->by_frames(t);
+    const Eigen::Quaterniond rotation = turned_back * own.rotation.conjugate();
+    const Vec3 origin = pivot + turned * (moved - pivot) - rotation * own.origin;
     Collider collider{.motion = body->motion,
                       .friction = static_cast<double>(body->rigid.getFriction()),
                       .frames = body->frames};

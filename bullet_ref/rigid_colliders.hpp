@@ -16,6 +16,10 @@ namespace taut {
 /// margin [m]. No caller can set them; the former is Bullet's BT_SOFTBODY_TRIANGLE_EXTRUSION.
 inline constexpr double kTriangleExtrusion = 0.06, kTriangleMargin = 0.04;
 
+/// Whether the collider has frames that do not move it as a rigid body, to a thousandth of its size
+/// at frames and between them. A body whose frames only move it is rigid.
+bool deforms(const Collider&);
+
 /// Whether Bullet collides with the body triangle by triangle. It does so unless the body is
 /// convex, "out" and does not deform. Each triangle is then a hull of kTriangleExtrusion and
 /// kTriangleMargin, whatever the body's sides are, and cloth rests above it by at least the former

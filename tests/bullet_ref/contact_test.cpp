@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
+#include "bullet_ref/read_back.hpp"
 #include "bullet_ref/rigid_colliders.hpp"
 #include "core/model/body_frames.hpp"
 #include "core/model/solver.hpp"
@@ -269,22 +271,27 @@ TEST(BulletContact, AFinerDistanceFieldLetsTheClothLessIntoABall) {
   EXPECT_GT(fine, 0);
 }
 
-/// Scene of a box that moves for a second, by frames or as a rigid body.
-Scene on_a_box(const Vec3& velocity, bool deforms) {
+enum class Moves { as_a_whole, by_frames, by_frames_that_deform };
+
+/// Scene of a box that moves for a second. What deforms is its lower side, which grows.
+Scene on_a_box(const Vec3& velocity, Moves how, MeshBody::Sides sides = MeshBody::Sides::both) {
   const Triangles box = box_of_triangles({2, 0.2, 2});
-  Collider body{
-      .shape = MeshBody{.mesh = box.mesh(), .center = {0, -0.2, 0}, .sides = MeshBody::Sides::both},
-      .friction = 1};  // contact uses its triangles in both cases
-  if (deforms) {
+  Collider body{.shape = MeshBody{.mesh = box.mesh(), .center = {0, -0.2, 0}, .sides = sides},
+                .friction = 1};
+  if (how == Moves::as_a_whole) {
+    body.motion.velocity = velocity;
+  } else {
     auto frames = std::make_shared<BodyFrames>();
     frames->fps = 1;
     frames->places = {box.vertices, box.vertices};
-    for (Vec3& x : frames->places[1]) x += velocity;
+    for (Vec3& x : frames->places[1]) {
+      if (how == Moves::by_frames_that_deform && x.y() < 0) x.y() -= 0.05;
+      x += velocity;
+    }
     body.frames = frames;
-  } else {
-    body.motion.velocity = velocity;
   }
-  return sheet_above(body, {0, 0.08, 0}, Vec3::UnitX(), Vec3::UnitZ());
+  const double height = sides == MeshBody::Sides::both ? 0.08 : 0.01;
+  return sheet_above(body, {0, height, 0}, Vec3::UnitX(), Vec3::UnitZ());
 }
 
 Vec3 middle_after_a_second(const Scene& scene, const std::string& solver) {
@@ -296,16 +303,54 @@ Vec3 middle_after_a_second(const Scene& scene, const std::string& solver) {
 
 // Bullet's own contact does not know about motion by frames: it would not carry the cloth along,
 // and at 0.3 m/s upwards the body would pass through it.
-TEST(BulletContact, ABodyThatFramesMoveCarriesAndLiftsAsOneThatMovesAsAWhole) {
+TEST(BulletContact, ABodyThatFramesDeformCarriesAndLiftsAsOneThatMovesAsAWhole) {
   for (const char* solver :
        {"bullet:iterations=10", "bullet-deformable:implicit=false,substeps=70"})
     for (const Vec3& velocity : {Vec3(0, 0.1, 0), Vec3(0, 0.5, 0), Vec3(0.4, 0, 0.2)}) {
-      const Vec3 whole = middle_after_a_second(on_a_box(velocity, false), solver),
-                 frames = middle_after_a_second(on_a_box(velocity, true), solver),
-                 still = middle_after_a_second(on_a_box(Vec3::Zero(), true), solver);
+      constexpr Moves kDeforms = Moves::by_frames_that_deform;
+      const Vec3 whole = middle_after_a_second(on_a_box(velocity, Moves::as_a_whole), solver),
+                 frames = middle_after_a_second(on_a_box(velocity, kDeforms), solver),
+                 still = middle_after_a_second(on_a_box(Vec3::Zero(), kDeforms), solver);
       EXPECT_LT((frames - whole).norm(), 0.006) << solver << ' ' << velocity.transpose();
       EXPECT_GT((whole - still).norm(), 0.7 * velocity.norm()) << solver;
     }
+}
+
+// 6 m/s is 0.1 m a step: by triangles, whose hulls are 0.1 m thick, the cloth would be thrown.
+TEST(BulletContact, ABodyThatFramesOnlyMoveIsARigidOne) {
+  for (const MeshBody::Sides sides : {MeshBody::Sides::out, MeshBody::Sides::both})
+    for (const Vec3& velocity : {Vec3(0, 6, 0), Vec3(0.4, 0.5, 0.2)}) {
+      const Scene whole = on_a_box(velocity, Moves::as_a_whole, sides),
+                  frames = on_a_box(velocity, Moves::by_frames, sides);
+      for (const char* solver : {"bullet", "bullet-deformable:implicit=false,substeps=70"})
+        EXPECT_LT(largest_distance(simulate(frames, solver, 20).x, simulate(whole, solver, 20).x),
+                  1e-6)
+            << solver << ' ' << velocity.transpose();
+      EXPECT_EQ(is_met_by_triangles(frames.colliders[0]), sides == MeshBody::Sides::both);
+      EXPECT_FALSE(deforms(frames.colliders[0]));
+    }
+  EXPECT_TRUE(deforms(on_a_box({0, 6, 0}, Moves::by_frames_that_deform).colliders[0]));
+  // A turn of 0.1 rad a frame: between frames, straight ways are 0.05^2/2 of the radius too short.
+  Scene turns = on_a_box(Vec3::Zero(), Moves::as_a_whole, MeshBody::Sides::out), frames = turns;
+  turns.colliders[0].motion = {.spin = {0, 1, 0}, .pivot = {0.3, 0, 0}};
+  auto turning = std::make_shared<BodyFrames>();
+  turning->fps = 10;
+  const MeshBody& body = std::get<MeshBody>(turns.colliders[0].shape);
+  for (int k = 0; k < 12; ++k) {
+    auto& places = turning->places.emplace_back();
+    for (const Vec3& x : body.mesh->vertices())
+      places.push_back(turns.colliders[0].motion.moved(body.center + x, k / 10.0) - body.center);
+  }
+  frames.colliders[0].frames = turning;
+  EXPECT_FALSE(deforms(frames.colliders[0]));
+  EXPECT_LT(largest_distance(simulate(frames, "bullet", 60).x, simulate(turns, "bullet", 60).x),
+            2e-3);
+  const SolverChoice choice = parse_solver("bullet");
+  const auto solver = choice.entry->make(frames, choice.params);
+  solver->load(frames.start);
+  const MeshBody read = std::get<MeshBody>(read_back(*solver).colliders[0].shape);
+  EXPECT_LT((read.center - body.center).norm(), 1e-12);
+  EXPECT_LT(read.rotation.angularDistance(body.rotation), 1e-7);
 }
 
 TEST(BulletContact, RestartingGivesTheSameBits) {
