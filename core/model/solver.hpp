@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -51,6 +52,10 @@ class Solver {
   virtual std::string time_remark() const;
   /// End of the standard error of the solver's own program, if it has one.
   virtual std::string log() const;
+
+  /// Number of steps so far whose iterations ended before their own criterion of convergence held;
+  /// empty: their number is fixed.
+  virtual std::optional<int> unconverged_steps() const { return {}; }
 
   /// Continues from the end of `before`, a solver of the same entry and parameters for the previous
   /// stage of the same scene (stages()). By default it takes over only the state.

@@ -1,3 +1,4 @@
+#include <optional>
 #include <utility>
 
 #include "core/model/move_out.hpp"
@@ -44,6 +45,7 @@ class StagedSolver final : public Solver {
   std::size_t peak_bytes() const override { return now().peak_bytes(); }
   std::string time_remark() const override { return now().time_remark(); }
   std::string log() const override { return now().log(); }
+  std::optional<int> unconverged_steps() const override { return now().unconverged_steps(); }
 
  private:
   /// Takes what a collider held inside out of it, before a step turns its depth into velocity.

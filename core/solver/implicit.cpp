@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,9 @@ namespace {
 /// positions makes of the spring forces. The first iteration is skipped only if |g| is also below
 /// kFirstTolerance of it: a light cloth is driven by less than that rounding.
 constexpr double kTolerance = 1e-9, kFirstTolerance = 1e-6;
+/// Where rounding ends the iterations, they have converged if |g| is below this multiple of the
+/// tolerance.
+constexpr double kOfRounding = 1e3;
 /// Largest number of moving vertices for which linear=auto factors the matrix. The factor is faster
 /// than conjugate gradients at every size that was tried (methods.md); its memory is the limit, 6
 /// kB a vertex at this size.
@@ -96,6 +100,8 @@ class NewtonPass final : public Pass<double> {
   }
 
   Points<double>* target() override { return &step_.y; }
+  std::optional<bool> converged() const override { return converged_; }
+  bool leaves_colliders() const override { return step_.contacts.any(); }
   TouchingPieces* touching_pieces() override {
     return step_.contacts.any() ? &step_.contacts.pieces() : nullptr;
   }
@@ -109,6 +115,7 @@ class NewtonPass final : public Pass<double> {
     step_.contacts.begin(t, h);
     clamped_ = first_ = true;
     ended_at_.clear();
+    converged_ = false;
     set_tolerances(p, h);
     plain_ = !kept_.on();
     from_y_ = starts_at_y_;
@@ -125,6 +132,7 @@ class NewtonPass final : public Pass<double> {
       start_over(p);
       for (int k = 0; k < iterations_; ++k) apply(p, t, h);
     }
+    step_.contacts.leave(p);
     integrator_.finish(p, h);
   }
 
@@ -132,6 +140,7 @@ class NewtonPass final : public Pass<double> {
     const double h = integrator_.own_step(step);
     std::vector<Vec3> x = positions(p);
     if (x == ended_at_ && !step_.contacts.pieces().changed) return;
+    converged_ = false;
     step_.contacts.find(p);
     if (from_y_ && step_.contacts.touch()) {
       start_over(p);
@@ -145,12 +154,16 @@ class NewtonPass final : public Pass<double> {
                                                                        : iterate_kept(x, g, h))) {
       // x is the minimum for the current contact forces; the substep is done if these do not change
       left_ = 0;
-      if (!step_.contacts.update(p, x, h, left_, enough_)) ended_at_ = std::move(x);
+      if (!step_.contacts.update(p, x, h, left_, enough_)) {
+        converged_ = g.norm() <= kOfRounding * enough_ && !step_.contacts.pieces().changed;
+        ended_at_ = std::move(x);
+      }
       return;
     }
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, x[i]);
-    step_.contacts.update(p, x, h, left_, enough_);
+    const bool changed = step_.contacts.update(p, x, h, left_, enough_);
+    converged_ = line_search_ && plain_ && left_ <= enough_ && !changed;
   }
 
   std::vector<PassCost> cost() const override {
@@ -294,11 +307,12 @@ class NewtonPass final : public Pass<double> {
   int iterations_;
   Integrator integrator_;
   KeptTensions kept_;
-  double at_first_ = 0;  ///< N/sqrt(kg), |g| at the prediction
-  bool plain_ = true;    ///< this substep is plain Newton's method, without kept tensions
-  bool from_y_ = false;  ///< iterations of this substep began at y
-  double left_ = 0;      ///< N, |g| after the last Newton step
+  double at_first_ = 0;        ///< N/sqrt(kg), |g| at the prediction
+  bool plain_ = true;          ///< this substep is plain Newton's method, without kept tensions
+  bool from_y_ = false;        ///< iterations of this substep began at y
+  double left_ = 0;            ///< N, |g| after the last Newton step
   bool clamped_ = true, first_ = true;
+  bool converged_ = false;                   ///< this substep
   double enough_ = 0, enough_at_first_ = 0;  ///< N, tolerances of |g| in this substep
   std::vector<Vec3> ended_at_;  ///< m, where this substep converged; empty: it has not yet
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <typeinfo>
 
 #include "core/model/input_error.hpp"
@@ -131,6 +132,7 @@ class Loop final : public Solver {
   void step(double t, double dt) override {
     const double h = dt / substeps_;
     prepare_verlet(h);
+    bool missed = false;
     for (int s = 0; s < substeps_; ++s, t += h) {
       if (accelerating_) ready_for(*accelerating_).accelerate(p_, t, h);
       apply(forces_, t, h);  // AccumulateForces
@@ -146,11 +148,19 @@ class Loop final : public Solver {
         apply(contact_.sweep, t, h);
       }
       apply(contact_.after, t, h);
-      for (auto& pass : constraints_) ready_for(*pass).end(p_, t, h);
+      for (auto& pass : constraints_) {
+        ready_for(*pass).end(p_, t, h);
+        if (const auto converged = pass->converged()) {
+          missed = missed || !*converged;
+          unconverged_ = unconverged_.value_or(0);
+        }
+      }
       if (s + 1 < substeps_) substep_ended(t + h);
     }
+    if (missed) unconverged_ = *unconverged_ + 1;
     pool_.finish();
   }
+  std::optional<int> unconverged_steps() const override { return unconverged_; }
 
   void load(const State& state) override {
     for (std::size_t i = 0; i < p_.size(); ++i) {
@@ -158,6 +168,7 @@ class Loop final : public Solver {
       p_.x.set(i, state.x[i].template cast<Real>());
       p_.previous.set(i, previous.template cast<Real>());
     }
+    unconverged_.reset();
     for (Pass<Real>* pass : all_passes()) pass->restart();
   }
 
@@ -166,6 +177,7 @@ class Loop final : public Solver {
   void go_on(const Solver& before) override {
     Solver::go_on(before);
     const auto& old = dynamic_cast<const Loop&>(before);
+    unconverged_ = old.unconverged_;
     for (std::size_t i = 0; i < p_.size(); ++i) {
       p_.x.set(i, old.p_.x[i]);
       p_.previous.set(i, old.p_.previous[i]);
@@ -274,6 +286,7 @@ class Loop final : public Solver {
 
   int iterations_;
   int substeps_;
+  std::optional<int> unconverged_;
   double h_;  ///< s, length of a substep
   Vec3 gravity_;
   double damping_;

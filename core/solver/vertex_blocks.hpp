@@ -248,7 +248,7 @@ class VertexBlocks {
     Vec3 force = Vec3::Zero();
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
     for (const auto& [piece, weight] : pieces_of_[i]) {
-      const auto part = AugmentedContacts::part(piece->at, piece->force,
+      const auto part = AugmentedContacts::part(piece->at, piece->at, piece->force,
                                                 pieces_.stiffness_of(*piece), piece->place(p.x));
       force += weight * part.force;
       hessian += weight * weight * part.hessian;

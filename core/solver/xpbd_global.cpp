@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,8 @@ constexpr double kSoftnessOfRigid = 1e-9;
 constexpr double kSoftnessInContact = 1e-3;
 /// Sufficient decrease of the line search (Armijo), as a share of the slope.
 constexpr double kFalls = 1e-4;
+/// Tolerance of the gradient with primal=on, as a share of the forces of inertia.
+constexpr double kTolerance = 1e-9;
 /// Most halvings of a step in the line search.
 constexpr int kMostHalvings = 40;
 
@@ -47,6 +50,11 @@ class GlobalLinks final : public Pass<Real> {
     contacts_.take_over(static_cast<const GlobalLinks&>(before).contacts_);
   }
   Points<Real>* target() override { return primal_ ? &y_ : nullptr; }
+  bool leaves_colliders() const override { return contacts_.any(); }
+  std::optional<bool> converged() const override {
+    return primal_ ? std::optional(converged_) : std::nullopt;
+  }
+  void end(Particles<Real>& p, double, double) override { contacts_.leave(p); }
 
   void begin(Particles<Real>& p, double t, double h) override {
     y_ = p.x;
@@ -56,10 +64,14 @@ class GlobalLinks final : public Pass<Real> {
       links_[j].lambda = 0;
     }
     if (contacts_.any()) begin_contacts(p, t, h);
+    if (primal_) set_tolerance(p, h);
+    converged_ = false;
+    ended_at_.clear();
   }
 
   void apply(Particles<Real>& p, double, double h) override {
     std::vector<Vec3> x = positions(p);
+    if (primal_ && x == ended_at_) return;
     look_at(x);
     if (primal_) resist_across();
     if (contacts_.any()) look_at_contacts(p, x, h);
@@ -76,7 +88,11 @@ class GlobalLinks final : public Pass<Real> {
     }
     for (std::size_t i = 0; i < x.size(); ++i)
       if (w_[i] > 0) p.x.set(i, x[i].template cast<Real>());
-    if (contacts_.any()) contacts_.update(p, x, h, left_, 0);
+    const bool changed = contacts_.any() && contacts_.update(p, x, h, left_, enough_);
+    if (!primal_) return;
+    const std::vector<Vec3> g = gradient(x, h);
+    converged_ = !changed && std::sqrt(dot(g, g)) <= h * h * enough_;
+    if (converged_) ended_at_ = positions(p);
   }
 
   std::vector<PassCost> cost() const override {
@@ -139,6 +155,35 @@ class GlobalLinks final : public Pass<Real> {
                          static_cast<std::uint32_t>(other), static_cast<std::uint32_t>(v),
                          same_end ? 1.0 : -1.0});
     });
+  }
+
+  /// The tolerance of implicit.cpp, with the rounding of Real.
+  void set_tolerance(const Particles<Real>& p, double h) {
+    std::vector<double> stiffness(w_.size(), 0.0);  // N/m
+    for (std::size_t j = 0; j < links_.size(); ++j)
+      for (const std::size_t v : {springs_[j].a, springs_[j].b})
+        stiffness[v] += 1 / (links_[j].softness * h * h);
+    Vec3 frame = Vec3::Zero();
+    double pins = 0;
+    const auto way = [&](std::size_t i) {
+      return Vec3((p.x[i] - p.previous[i]).template cast<double>());
+    };
+    for (std::size_t i = 0; i < w_.size(); ++i)
+      if (w_[i] == 0) {
+        frame += way(i);
+        ++pins;
+      }
+    if (pins > 0) frame /= pins;
+    double inertia2 = 0, rounding2 = 0;
+    for (std::size_t i = 0; i < w_.size(); ++i)
+      if (w_[i] > 0) {
+        const double m = 1 / (w_[i] * h * h);
+        inertia2 += m * m * (way(i) - frame).squaredNorm();
+        const Vec3 x = p.x[i].template cast<double>();
+        rounding2 += std::pow((stiffness[i] + m) * x.cwiseAbs().maxCoeff(), 2);
+      }
+    constexpr double kUnit = std::numeric_limits<Real>::epsilon();
+    enough_ = std::max(kTolerance * std::sqrt(inertia2), kUnit * std::sqrt(rounding2));
   }
 
   void begin_contacts(const Particles<Real>& p, double t, double h) {
@@ -334,8 +379,11 @@ class GlobalLinks final : public Pass<Real> {
   /// Right-hand side [m], then solution [kg m], in the order of elimination.
   std::vector<double> right_;
   AugmentedContacts contacts_;
-  double left_ = 0;         ///< N, the gradient after an iteration that descends the energy
-  std::vector<Held> held_;  ///< [n]; empty: nothing touches
+  double left_ = 0;             ///< N, the gradient after an iteration that descends the energy
+  double enough_ = 0;           ///< N, tolerance of the gradient in this substep
+  bool converged_ = false;      ///< this substep
+  std::vector<Vec3> ended_at_;  ///< m, where this substep converged; empty: it has not yet
+  std::vector<Held> held_;      ///< [n]; empty: nothing touches
 };
 
 }  // namespace

@@ -64,6 +64,11 @@ class SceneMetrics {
     return row;
   }
 
+  void tell_unconverged(std::optional<int> steps) {
+    if (!steps) return;
+    for (Watching& one : watching_) one.metric->unconverged(*steps);
+  }
+
   /// The values of all metrics. They are NaN unless the run is `complete`, which means that it was
   /// observed to its end.
   std::map<std::string, double> values(bool complete) {
@@ -239,6 +244,7 @@ void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& op
   stable = stable && !strayed;
   if (stable) detector.finish();
   record.status = strayed.value_or(detector.status());
+  scene_metrics.tell_unconverged(solver->unconverged_steps());
   record.values = scene_metrics.values(stable);
   scene_metrics.add_remarks(record.resolved_settings);
   record.digest = digest(run.last);

@@ -143,6 +143,9 @@ class Metric {
   virtual void observe_within(const Snapshot&) {}
   /// Whether observe_within() is needed within the step that leads to this one.
   virtual bool follows(int) const { return true; }
+  /// Called after a run of a solver that has a criterion of convergence, with the number of steps
+  /// in which it says that the criterion did not hold.
+  virtual void unconverged(int /*steps*/) {}
   virtual std::vector<double> finish() = 0;
   /// The values at this moment, for series, in the same order; NaN where `in_series` is false.
   virtual std::vector<double> now(const Snapshot&) const = 0;

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "core/model/text.hpp"
 #include "experiments/truths/capstan.hpp"
@@ -12,18 +11,6 @@
 namespace taut {
 
 namespace {
-
-class Random {
- public:
-  double within(double bound) { return std::uniform_real_distribution<>(-bound, bound)(engine_); }
-  Vec3 point(double bound) {
-    const double x = within(bound), y = within(bound);
-    return {x, y, within(bound)};
-  }
-
- private:
-  std::mt19937_64 engine_{20};
-};
 
 /// A level sheet of 13 x 13, about to fall on something below y = 0.2 while moving sideways.
 Scene falling_sheet() {

@@ -2,11 +2,29 @@
 
 #include <array>
 #include <memory>
+#include <random>
+#include <vector>
 
 #include "core/model/collider.hpp"
 #include "core/model/triangle_mesh.hpp"
 
 namespace taut {
+
+/// Numbers for random inputs, the same in every run.
+class Random {
+ public:
+  explicit Random(unsigned seed = 20) : engine_(seed) {}
+  /// In [-bound, bound).
+  double within(double bound) { return std::uniform_real_distribution<>(-bound, bound)(engine_); }
+  double between(double low, double high) { return (low + high) / 2 + within((high - low) / 2); }
+  Vec3 point(double bound) {
+    const double x = within(bound), y = within(bound);
+    return {x, y, within(bound)};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
 
 /// A box of 12 triangles about the origin; half: its half extents [m].
 inline std::shared_ptr<const TriangleMesh> body_of_a_box(const Vec3& half) {

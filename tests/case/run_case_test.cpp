@@ -452,5 +452,22 @@ TEST(RunCase, AFailingSolverEndsAtItsLastWholeStep) {
   EXPECT_TRUE(run.record.values.empty());
 }
 
+TEST(RunCase, CountsTheStepsThatDoNotConverge) {
+  Scene scene = at_rest({.nu = 4, .nv = 4, .width = 1, .height = 1, .mass = 0.1});
+  scene.pins = {0, 3};
+  scene.steps = 8;
+  scene.releases = {{.step = 4, .vertices = {3}}};
+  const auto unconverged = [&](const std::string& solver) {
+    return run_case(scene, parse_solver(solver)).record.values.at("steps.unconverged");
+  };
+  const std::string primal = "xpbd:method=global,primal=on,precision=double,structural=1e-3,";
+  EXPECT_EQ(unconverged("implicit:structural=1000,iterations=50"), 0);
+  EXPECT_EQ(unconverged("implicit:structural=1000,iterations=1"), 8);
+  EXPECT_EQ(unconverged(primal + "iterations=50"), 0);
+  EXPECT_EQ(unconverged(primal + "iterations=1"), 8);
+  for (const char* fixed : {"vbd", "jakobsen", "pd", "xpbd"})
+    EXPECT_TRUE(std::isnan(unconverged(fixed))) << fixed;
+}
+
 }  // namespace
 }  // namespace taut::run_case_test

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace taut {
 
@@ -12,7 +13,10 @@ void AugmentedContacts::forget() {
 }
 
 void AugmentedContacts::begin(double t, double h) {
-  if (contacts_) contacts_->begin(t, h);
+  if (!contacts_) return;
+  contacts_->begin(t, h);
+  pace_ = {};
+  met_.assign(stiffness_.size() * contacts_->colliders(), {});
 }
 
 template <class Real>
@@ -28,17 +32,28 @@ template void AugmentedContacts::set_stiffness(const Particles<float>&, std::spa
 template void AugmentedContacts::set_stiffness(const Particles<double>&, std::span<const double>,
                                                double);
 
-AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at, const ContactForce& held,
-                                                double k, const Vec3& x) {
+Matrix3d AugmentedContacts::turning(const TouchingVertex& at, const Vec3& x) const {
+  constexpr double kWay = 1e-6;  // m
+  Matrix3d out;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Vec3 way = kWay * Vec3::Unit(axis);
+    out.col(axis) = (laid(at, x + way).normal - laid(at, x - way).normal) / (2 * kWay);
+  }
+  return (out + out.transpose()) / 2;
+}
+
+AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at,
+                                                const TouchingVertex& friction,
+                                                const ContactForce& held, double k, const Vec3& x) {
   const double push = held.push - k * at.gap(x);
   const Matrix3d along = at.normal * at.normal.transpose();
   Part out;
   if (push > 0) out = {push * push / (2 * k), push * at.normal, k * along};
-  const Vec3 rub = held.rub - k * at.slip(x);
-  const FrictionCone cone = at.cone(rub, held.push);
+  const Vec3 rub = held.rub - k * friction.slip(x);
+  const FrictionCone cone = friction.cone(rub, held.push);
   const auto [length, most] = cone;
   if (most == 0) return out;
-  const Matrix3d across = Matrix3d::Identity() - along;
+  const Matrix3d across = Matrix3d::Identity() - friction.normal * friction.normal.transpose();
   if (cone.sticks()) {
     out.energy += length * length / (2 * k);
     out.force += rub;
@@ -59,14 +74,15 @@ bool AugmentedContacts::update(const Particles<Real>& p, const std::vector<Vec3>
   pieces_.changed = false;
   pieces_.left = left;
   pieces_.rounding = rounding;
-  contacts_->find(p, touching_);
+  find(p);
   acting_.clear();
   double change2 = 0;
   for (const TouchingVertex& at : touching_) {
     ContactForce& held = contacts_->force(at.vertex, at.collider);
     const double gap = at.gap(x[at.vertex]);
     ContactForce now = held;
-    if (!held.holds()) {
+    bool& pushed = met_[at.vertex * contacts_->colliders() + at.collider].pushed;
+    if (!held.holds() && !std::exchange(pushed, true)) {
       held.push = now.push = std::max(0.0, -gap) / (static_cast<double>(p.w[at.vertex]) * h * h);
       change2 += now.push * now.push;
     } else {
@@ -76,14 +92,36 @@ bool AugmentedContacts::update(const Particles<Real>& p, const std::vector<Vec3>
     acting_.push_back(now);
   }
   const double change = std::sqrt(change2);
-  if (left <= kSettled * change)
-    for (std::size_t c = 0; c < acting_.size(); ++c)
-      contacts_->force(touching_[c].vertex, touching_[c].collider) = acting_[c];
+  if (left <= kSettled * change) {
+    const double share = pace_.share(change);
+    for (std::size_t c = 0; c < acting_.size(); ++c) {
+      ContactForce& held = contacts_->force(touching_[c].vertex, touching_[c].collider);
+      held.push += share * (acting_[c].push - held.push);
+      held.rub += share * (acting_[c].rub - held.rub);
+    }
+  }
   return change > rounding;
 }
 template bool AugmentedContacts::update(const Particles<float>&, const std::vector<Vec3>&, double,
                                         double, double);
 template bool AugmentedContacts::update(const Particles<double>&, const std::vector<Vec3>&, double,
                                         double, double);
+
+template <class Real>
+void AugmentedContacts::leave(Particles<Real>& p) {
+  find(p);
+  for (TouchingVertex at : touching_) {
+    Vec3 x = p.x[at.vertex].template cast<double>();
+    contacts_->lay(at, x);
+    const double depth = -at.gap(x);
+    if (depth <= 0) continue;
+    x += depth * at.normal;
+    const Vec3 slip = at.slip(x);
+    x -= at.cone(slip, depth).share() * slip;
+    p.x.set(at.vertex, x.cast<Real>());
+  }
+}
+template void AugmentedContacts::leave(Particles<float>&);
+template void AugmentedContacts::leave(Particles<double>&);
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -64,6 +65,30 @@ inline ContactForce augmented(const TouchingVertex& at, const ContactForce& held
   return now;
 }
 
+/// The share of their change by which contact forces are updated. Friction depends on the push, and
+/// the push on friction; where that swings, smaller updates settle.
+class Pace {
+ public:
+  /// change: of all forces in this update [N].
+  double share(double change) {
+    if (change < kProgress * least_) {
+      least_ = change;
+      without_ = 0;
+    } else if (++without_ >= kPatience) {
+      share_ = std::max(share_ / 2, kLeast);
+      without_ = 0;
+      least_ = change;
+    }
+    return share_;
+  }
+
+ private:
+  static constexpr double kProgress = 0.9, kLeast = 1.0 / 32;
+  static constexpr int kPatience = 8;
+  double share_ = 1, least_ = std::numeric_limits<double>::infinity();
+  int without_ = 0;  ///< updates without progress
+};
+
 /// Contact as an augmented Lagrangian at each touching vertex (Alart, Curnier, Computer Methods in
 /// Applied Mechanics and Engineering 92, 1991). With the force of the last iteration, push along
 /// the normal n and rub across it, and a stiffness k, the acting forces are
@@ -71,8 +96,15 @@ inline ContactForce augmented(const TouchingVertex& at, const ContactForce& held
 ///     push' = max(0, push - k gap),   rub' = rub - k slip, no longer than mu push
 ///
 /// Where they hold and stick, k n n^T + k (I - n n^T) is added to the Hessian. The acting forces
-/// become the forces once the gradient that is left is less than a share of their change. If this
-/// happened sooner, contacts would take turns at sticking and slipping for ever.
+/// become the forces once the gradient that is left is less than a share of their change (Pace). If
+/// this happened sooner, contacts would take turns at sticking and slipping for ever.
+///
+/// The gap is the distance from the surface, wherever x is: a half-space that is laid once an
+/// iteration knows no edge, and a vertex that slides round one would go from side to side. The
+/// Hessian includes the turning of n unless that makes it indefinite. Friction acts across the
+/// normal of the last iterate, since with a normal that turns it would have no energy. A contact
+/// that was found once is followed until the substep ends. It stays on the side where the last
+/// iterate had it, and not on the side of a straight path from x_t, which cuts the corner.
 ///
 /// A point of a face or an edge may also touch; its corners share everything by its weights.
 class AugmentedContacts {
@@ -98,7 +130,7 @@ class AugmentedContacts {
   /// Finds the vertices that touch at p.x.
   template <class Real>
   void find(const Particles<Real>& p) {
-    if (contacts_) contacts_->find(p, touching_);
+    if (contacts_) contacts_->find(p, touching_, &met_);
   }
   bool any() const { return contacts_ != nullptr; }  ///< the scene has something to touch
   bool touch() const { return !touching_.empty() || !pieces_.all.empty(); }
@@ -116,14 +148,26 @@ class AugmentedContacts {
   template <class Visit>
   void each(const std::vector<Vec3>& x, const Visit& visit) const {
     for (const TouchingVertex& at : touching_)
-      visit(at.vertex, part(at, contacts_->force(at.vertex, at.collider), stiffness_[at.vertex],
-                            x[at.vertex]));
+      visit(at.vertex, part(laid(at, x[at.vertex]), at, contacts_->force(at.vertex, at.collider),
+                            stiffness_[at.vertex], x[at.vertex]));
+  }
+  /// Calls visit(vertex, K): with K [N/m] added to each contact's Hessian, the turning of its
+  /// normal is in it, too. K is negative: a vertex that is pushed onto an edge tends to slide off.
+  template <class Visit>
+  void each_turning(const std::vector<Vec3>& x, const Visit& visit) const {
+    for (const TouchingVertex& at : touching_) {
+      const double push = contacts_->force(at.vertex, at.collider).push -
+                          stiffness_[at.vertex] * laid(at, x[at.vertex]).gap(x[at.vertex]);
+      if (at.nearest && push > 0)
+        visit(at.vertex, Eigen::Matrix3d(-push * turning(at, x[at.vertex])));
+    }
   }
   /// Calls visit(piece, part) for the faces and edges that touch, at x.
   template <class Visit>
   void each_piece(const std::vector<Vec3>& x, const Visit& visit) const {
     for (const TouchingPiece& piece : pieces_.all)
-      visit(piece, part(piece.at, piece.force, pieces_.stiffness_of(piece), piece.place(x)));
+      visit(piece,
+            part(piece.at, piece.at, piece.force, pieces_.stiffness_of(piece), piece.place(x)));
   }
 
   /// Sets the forces to those acting at x if the gradient `left` [N] is small enough; x equals p.x
@@ -133,12 +177,28 @@ class AugmentedContacts {
   bool update(const Particles<Real>& p, const std::vector<Vec3>& x, double h, double left,
               double rounding);
 
-  static Part part(const TouchingVertex& at, const ContactForce& held, double k, const Vec3& x);
+  /// Ends a substep: moves vertices that are still inside out of the colliders, on the side where
+  /// the iterations had them, with friction for the way out.
+  template <class Real>
+  void leave(Particles<Real>& p);
+
+  /// across: where friction acts across the normal.
+  static Part part(const TouchingVertex& at, const TouchingVertex& across, const ContactForce& held,
+                   double k, const Vec3& x);
 
  private:
+  TouchingVertex laid(TouchingVertex at, const Vec3& x) const {
+    contacts_->lay(at, x);
+    return at;
+  }
+  /// Derivative of the normal by x [1/m].
+  Eigen::Matrix3d turning(const TouchingVertex& at, const Vec3& x) const;
+
   std::unique_ptr<Contacts> contacts_;    ///< null: no contact
+  std::vector<MetInSubstep> met_;         ///< in this substep
   std::vector<TouchingVertex> touching_;  ///< of this iteration
   std::vector<ContactForce> acting_;      ///< [touching]
+  Pace pace_;                             ///< in this substep
   std::vector<double> stiffness_;         ///< [n] N/m, k; empty: no contact
   TouchingPieces pieces_;
 };

@@ -19,9 +19,12 @@ class Contacts::Surface {
  public:
   virtual ~Surface() = default;
   virtual void begin(double t, double h) = 0;
-  /// Whether x is inside or `held`. If so, fills in `at`, except its vertex and collider.
+  /// Whether x is inside or `held`. If so, fills in `at`, except its vertex and collider. side: as
+  /// in Contact::touched().
   virtual bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
-                       TouchingVertex& at) = 0;
+                       const Vec3* side, TouchingVertex& at) = 0;
+  /// Sets the half-space of `at` to the one nearest to x.
+  virtual void lay(const Vec3& x, TouchingVertex& at) = 0;
   virtual bool turns() const = 0;
   /// Turns the force on a vertex that the collider holds from the last substep to this one.
   virtual Vec3 turned(std::size_t vertex, const Vec3& force) const = 0;
@@ -46,22 +49,31 @@ class SurfaceIn final : public Contacts::Surface {
     contact_.motion = rigid_motion(collider_.motion, t, h);
   }
 
-  bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
+  bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held, const Vec3* side,
                TouchingVertex& at) override {
     const Vec3T<double> to = vec3t<double>(x), before = vec3t<double>(previous);
+    const Vec3T<double> last = side ? vec3t<double>(*side) : Vec3T<double>{};
     Tangent<double> tangent;
-    if constexpr (kIsMesh) {  // on a copy, because several threads ask about vertices
-      Contact<double, MeshSurface> contact = contact_;
-      contact.surface.ask_about(&seen_[vertex]);
-      if (!contact.touched(to, before, continuous_, held, tangent)) return false;
-    } else if (!contact_.touched(to, before, continuous_, held, tangent)) {
-      return false;
-    }
-    at.normal = point(tangent.normal);
-    at.offset = tangent.offset + contact_.thickness;
+    const auto touched = [&](const Contact<double, SurfaceOf>& contact) {
+      if (!contact.touched(to, before, continuous_, held, side ? &last : nullptr, tangent))
+        return false;
+      const Tangent<double> nearest = contact.surface.nearest(to);
+      at.nearest = !is_thin() && point(nearest.normal) == point(tangent.normal) &&
+                   nearest.offset == tangent.offset;
+      return true;
+    };
+    if (!about(vertex, touched)) return false;
+    set(at, tangent);
     at.from = point(contact_.motion(before));
     at.friction = contact_.friction;
     return true;
+  }
+
+  void lay(const Vec3& x, TouchingVertex& at) override {
+    about(at.vertex, [&](const Contact<double, SurfaceOf>& contact) {
+      set(at, contact.surface.nearest(vec3t<double>(x)));
+      return true;
+    });
   }
 
   bool turns() const override { return contact_.motion.moves; }
@@ -73,6 +85,23 @@ class SurfaceIn final : public Contacts::Surface {
 
  private:
   static constexpr bool kIsMesh = std::is_same_v<SurfaceOf<double>, MeshSurface<double>>;
+  /// Calls ask(contact), for a body of triangles on a copy, because several threads ask about
+  /// vertices.
+  template <class Ask>
+  bool about(std::size_t vertex, const Ask& ask) {
+    if constexpr (!kIsMesh) return ask(contact_);
+    Contact<double, SurfaceOf> contact = contact_;
+    if constexpr (kIsMesh) contact.surface.ask_about(&seen_[vertex]);
+    return ask(contact);
+  }
+  bool is_thin() const {
+    if constexpr (kIsMesh) return contact_.surface.thin;
+    return false;
+  }
+  void set(TouchingVertex& at, const Tangent<double>& tangent) const {
+    at.normal = point(tangent.normal);
+    at.offset = tangent.offset + contact_.thickness;
+  }
   Collider collider_;
   bool continuous_;
   Contact<double, SurfaceOf> contact_{};
@@ -87,18 +116,30 @@ class DeformingSurfaceIn final : public Contacts::Surface {
 
   void begin(double t, double h) override { contact_.begin(t, h); }
 
-  bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held,
+  bool touches(std::size_t vertex, const Vec3& x, const Vec3& previous, bool held, const Vec3* side,
                TouchingVertex& at) override {
     const auto path = contact_.path(x, previous);
     if (!held && contact_.beyond_all(path, contact_.reach(path, continuous_))) return false;
-    const auto touch = contact_.touch(path, contact_.nearest(path), continuous_, held);
+    const NearestPlace nearest = contact_.nearest(path);
+    const auto where_nearest = contact_.touch(path, nearest, false, true);
+    const bool slid = side && where_nearest->normal.dot(*side) > -1e-6;
+    const auto touch = slid ? where_nearest : contact_.touch(path, nearest, continuous_, held);
     if (!touch) return false;
+    at.nearest = !contact_.body().is_thin() && touch->normal == where_nearest->normal &&
+                 touch->offset == where_nearest->offset;
     touched_[vertex] = touch->triangle;
     at.normal = touch->normal;
     at.offset = touch->offset + contact_.thickness();
     at.from = touch->from;
     at.friction = contact_.friction();
     return true;
+  }
+
+  void lay(const Vec3& x, TouchingVertex& at) override {
+    const auto path = contact_.path(x, x);
+    const auto touch = contact_.touch(path, contact_.nearest(path), false, true);
+    at.normal = touch->normal;
+    at.offset = touch->offset + contact_.thickness();
   }
 
   bool turns() const override { return true; }
@@ -158,9 +199,11 @@ void Contacts::begin(double t, double h) {
 }
 
 bool Contacts::touches(std::size_t vertex, std::size_t collider, const Vec3& x,
-                       const Vec3& previous, TouchingVertex& at) {
+                       const Vec3& previous, TouchingVertex& at, const MetInSubstep& met) {
   ContactForce& held = force(vertex, collider);
-  if (!surfaces_[collider]->touches(vertex, x, previous, held.holds(), at)) return false;
+  const Vec3* side = met.side.isZero(0) ? nullptr : &met.side;
+  if (!surfaces_[collider]->touches(vertex, x, previous, held.holds() || side, side, at))
+    return false;
   at.vertex = vertex;
   at.collider = collider;
   held.rub = at.across(held.rub);
@@ -168,19 +211,30 @@ bool Contacts::touches(std::size_t vertex, std::size_t collider, const Vec3& x,
 }
 
 template <class Real>
-void Contacts::find(const Particles<Real>& p, std::vector<TouchingVertex>& all) {
+void Contacts::find(const Particles<Real>& p, std::vector<TouchingVertex>& all,
+                    std::vector<MetInSubstep>* met) {
   all.clear();
   TouchingVertex at;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.w[i] == 0) continue;
     const Vec3 x = p.x[i].template cast<double>();
     const Vec3 previous = p.previous[i].template cast<double>();
-    for (std::size_t k = 0; k < surfaces_.size(); ++k)
-      if (touches(i, k, x, previous, at)) all.push_back(at);
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      MetInSubstep* const was = met ? &(*met)[i * surfaces_.size() + k] : nullptr;
+      if (!touches(i, k, x, previous, at, was ? *was : MetInSubstep{})) continue;
+      if (was) was->side = at.normal;
+      all.push_back(at);
+    }
   }
 }
-template void Contacts::find(const Particles<float>&, std::vector<TouchingVertex>&);
-template void Contacts::find(const Particles<double>&, std::vector<TouchingVertex>&);
+template void Contacts::find(const Particles<float>&, std::vector<TouchingVertex>&,
+                             std::vector<MetInSubstep>*);
+template void Contacts::find(const Particles<double>&, std::vector<TouchingVertex>&,
+                             std::vector<MetInSubstep>*);
+
+void Contacts::lay(TouchingVertex& at, const Vec3& x) {
+  if (at.nearest) surfaces_[at.collider]->lay(x, at);
+}
 
 template <class Real>
 void Contacts::predict(Particles<Real>& p, double h) {

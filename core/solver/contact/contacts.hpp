@@ -29,6 +29,7 @@ struct TouchingVertex {
   double offset = 0;         ///< m, of the collider and the scene's thickness
   Vec3 from = Vec3::Zero();  ///< m, position if it had moved with the collider in this substep
   double friction = 0;
+  bool nearest = true;  ///< touches the surface nearest to the vertex, not where it came in
 
   double gap(const Vec3& x) const { return normal.dot(x) - offset; }
   Vec3 across(const Vec3& v) const { return v - normal.dot(v) * normal; }
@@ -37,6 +38,12 @@ struct TouchingVertex {
   FrictionCone<double> cone(const Vec3& rub, double push) const {
     return {rub.norm(), friction * push};
   }
+};
+
+/// A vertex at a collider in the iterations of one substep.
+struct MetInSubstep {
+  Vec3 side = Vec3::Zero();  ///< normal with which it was last found; 0: not found yet
+  bool pushed = false;       ///< has been given a first force
 };
 
 /// Displacement of a vertex per force [m/N]: the same in all directions, or a matrix.
@@ -114,14 +121,18 @@ class Contacts {
   /// Whether the collider holds the vertex at x, which began the substep at `previous`, or x is
   /// inside it. If so, sets where it touches.
   bool touches(std::size_t vertex, std::size_t collider, const Vec3& x, const Vec3& previous,
-               TouchingVertex&);
+               TouchingVertex&, const MetInSubstep& = {});
   std::size_t colliders() const { return surfaces_.size(); }
   ContactForce& force(std::size_t vertex, std::size_t collider) {
     return forces_[vertex * surfaces_.size() + collider];
   }
-  /// Finds all contacts of vertices that are not pinned.
+  /// Finds all contacts of vertices that are not pinned. met: null, or [vertex][collider], by which
+  /// a contact that was found once is found until the substep ends, on the same side.
   template <class Real>
-  void find(const Particles<Real>& p, std::vector<TouchingVertex>&);
+  void find(const Particles<Real>& p, std::vector<TouchingVertex>&,
+            std::vector<MetInSubstep>* met = nullptr);
+  /// Lays the half-space where the surface is nearest to x, if it is of that kind.
+  void lay(TouchingVertex&, const Vec3& x);
 
   /// The initial guess of sweeps: each touching vertex leaves the collider and undoes its slip as
   /// if it had no links. A sheet that lands flat needs no more. Forces that already hold a vertex

@@ -15,18 +15,17 @@ namespace {
 
 template <class Real>
 void add_response(const Collider& collider, const Scene& scene, const Layout& layout,
-                  const ContactSettings& settings, bool solved, ThreadPool& pool,
+                  const ContactSettings& settings, const Pass<Real>* solver, ThreadPool& pool,
                   ContactPasses<Real>& passes) {
   const auto project = [&](bool continuous) {
     return make_collide<Real>(collider, scene, layout, continuous, settings.simd, pool);
   };
-  auto& swept = solved ? passes.after : passes.sweep;
+  auto& swept = solver ? passes.after : passes.sweep;
   switch (settings.response) {
     case Response::continuous:
-      swept.push_back(project(true));
-      break;
     case Response::discrete:
-      swept.push_back(project(false));
+      if (!solver || !solver->leaves_colliders())
+        swept.push_back(project(settings.response == Response::continuous));
       break;
     case Response::before:
       passes.before.push_back(project(false));
@@ -84,7 +83,7 @@ ContactPasses<Real> make_contact(const Scene& scene, const Layout& layout,
                                                settings.response == Response::continuous,
                                                std::move(pieces), solver));
   for (const Collider& collider : scene.colliders)
-    add_response(collider, scene, layout, settings, solver != nullptr, pool, passes);
+    add_response(collider, scene, layout, settings, solver, pool, passes);
   return passes;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -215,6 +216,12 @@ class Pass {
   /// for any other pass. Contact that is projected after the pass moves y along with the particles,
   /// so that the links feel its force from the next iteration on.
   virtual Points<Real>* target() { return nullptr; }
+  /// Whether the criterion held by which the iterations of this substep end early; empty: there is
+  /// none, their number is fixed.
+  virtual std::optional<bool> converged() const { return {}; }
+  /// Whether the pass moves vertices out of the colliders itself when a substep ends; otherwise,
+  /// where it has a target, they are projected then.
+  virtual bool leaves_colliders() const { return false; }
   /// The contact of faces and edges, for a pass that includes it in its solve; null for any other.
   virtual TouchingPieces* touching_pieces() { return nullptr; }
   /// Costs of one application, an entry for each thing it does; the solver sets `repeats`.

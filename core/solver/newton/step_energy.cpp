@@ -118,6 +118,10 @@ void StepEnergy::linearise(const std::vector<Vec3>& x, bool clamped) {
   contacts.each(x, [&](std::size_t vertex, const AugmentedContacts::Part& part) {
     hessian.add_contact(vertex, part.hessian);
   });
+  if (!clamped)
+    contacts.each_turning(x, [&](std::size_t vertex, const Eigen::Matrix3d& turning) {
+      hessian.add_contact(vertex, turning);
+    });
   contacts.each_piece(x, [&](const TouchingPiece& piece, const AugmentedContacts::Part& part) {
     each_corner(piece, [&](std::size_t c, double weight) {
       each_corner(piece, [&](std::size_t d, double other) {

@@ -87,12 +87,17 @@ struct Contact {
   }
 
   /// Whether one vertex is inside, has passed through since `previous` (continuous), or is `held`.
-  /// If so, `tangent` is set to the half-space to which it belongs.
+  /// If so, `tangent` is set to the half-space to which it belongs. side: null, or the normal with
+  /// which the vertex was last found in this substep; from there it may slide round an edge.
   bool touched(const Vec3T<Real>& x, const Vec3T<Real>& previous, bool continuous, bool held,
-               Tangent<Real>& tangent) const {
+               const Vec3T<Real>* side, Tangent<Real>& tangent) const {
     bool inside = held || !apart(x);
     if constexpr (requires { surface.entry(x, x); }) {
       if (continuous) {
+        if (side) {
+          tangent = surface.nearest(x);
+          if (dot(tangent.normal, *side) > Real(-1e-6)) return true;
+        }
         const Vec3T<Real> from = motion(previous);
         const bool passing = !surface.beyond(x, squared_norm(x - from), Real(thickness / 2)) &&
                              !surface.misses(from, x);

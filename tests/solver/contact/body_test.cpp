@@ -96,12 +96,13 @@ TEST(BodyContact, AWallOfTwoTrianglesIsAPlaneWithFriction) {
     for (const std::string& solver : our_solvers()) {
       scene.colliders = {{Plane{normal, 0}, {}, friction}};
       const State want = simulate(scene, solver, kQuarterSecond);
+      const double within = solver.starts_with("implicit") ? 2 * spread(scene, solver, want) : 0;
       scene.colliders = {
           {MeshBody{.mesh = wall.mesh(), .rotation = turned, .sides = MeshBody::Sides::both},
            {},
            friction}};
-      EXPECT_LE(apart(simulate(scene, solver, kQuarterSecond), want), 1e-9)
-          << solver << ' ' << friction;
+      EXPECT_LE(apart(simulate(scene, solver, kQuarterSecond), want), std::max(1e-9, within))
+          << solver << ", spread " << within << ' ' << friction;
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/model/angle.hpp"
 #include "core/model/triangle.hpp"
+#include "core/reference/contact_residual.hpp"
 #include "core/reference/implicit_step.hpp"
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
@@ -60,39 +61,12 @@ std::vector<Scene> scenes() {
 
 const char* name_of(const Scene& scene) { return type_name(scene.colliders[0].shape).data(); }
 
-/// Violation of the contact conditions by x, as the distance that a vertex would travel by its own
-/// inertia [m].
+/// Violation of the contact conditions by x [m].
 double violation(const Scene& scene, const std::vector<Vec3>& x) {
-  const ElasticStep step(scene, {kStiffness, kStiffness, 0});
-  const Eigen::VectorXd left = step.gradient(x);
-  const std::vector<double> w = inverse_masses(scene);
-  const Collider& collider = scene.colliders[0];
-  double worst = 0;
-  int touching = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 force = left.segment<3>(3 * static_cast<Eigen::Index>(i));
-    const double per_force = w[i] * scene.dt * scene.dt;
-    const Surface at = surface(collider.shape, x[i]);
-    const double gap = at.distance - scene.thickness;
-    worst = std::max(worst, -gap);
-    if (gap > 1e-7) {
-      worst = std::max(worst, per_force * force.norm());
-      continue;
-    }
-    ++touching;
-    const double push = at.normal.dot(force);
-    const Vec3 rub = force - push * at.normal;
-    Vec3 slip = x[i] - scene.start.x[i];
-    slip -= at.normal.dot(slip) * at.normal;
-    worst = std::max(worst, -per_force * push);
-    const double most = collider.friction * std::max(0.0, push);
-    if (slip.norm() > 1e-7)
-      worst = std::max(worst, per_force * (rub + most * slip.normalized()).norm());
-    else
-      worst = std::max(worst, per_force * (rub.norm() - most));
-  }
-  EXPECT_GE(touching, 8) << name_of(scene) << ": or nothing was asked";
-  return worst;
+  const auto residual =
+      reference::contact_residual(scene, scene.start, 0, {kStiffness, kStiffness, 0}, x);
+  EXPECT_GE(residual.touching, 8) << name_of(scene) << ": or nothing was asked";
+  return residual.most;
 }
 
 struct Converged {
