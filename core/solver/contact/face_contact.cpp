@@ -37,10 +37,11 @@ class FaceContactPass final : public Pass<Real> {
   /// Precondition: the collider is neither a plane nor a thin body. pieces: faces and edges
   /// (is_edge()). solver: null, or the pass of the links, whose target is moved as well.
   FaceContactPass(const Collider& collider, double thickness, bool continuous,
-                  std::vector<Triangle> pieces, Pass<Real>* solver)
+                  std::vector<Triangle> pieces, Pass<Real>* solver, bool only_passed)
       : collider_(collider),
         thickness_(thickness),
         continuous_(continuous),
+        only_passed_(only_passed),
         faces_(std::move(pieces)),
         solver_(solver),
         pieces_(solver ? solver->touching_pieces() : nullptr),
@@ -154,7 +155,7 @@ class FaceContactPass final : public Pass<Real> {
   /// Returns whether the piece is done, since it had not passed through anything.
   bool keep_out(Particles<Real>& p, std::size_t f, double dt) {
     const auto out = to_leave(p.x, f);
-    if (!out) return true;
+    if (!out || (only_passed_ && !out->has_passed)) return true;
     if (solver_)
       hold(p, faces_[f], *out, dt, held_[f]);
     else
@@ -465,7 +466,7 @@ class FaceContactPass final : public Pass<Real> {
 
   Collider collider_;
   double thickness_;
-  bool continuous_;
+  bool continuous_, only_passed_;
   std::vector<Triangle> faces_;  ///< and edges: is_edge()
   Pass<Real>* solver_;           ///< null: no solver with a target
   TouchingPieces* pieces_;       ///< null unless the solver includes pieces in its solve
@@ -486,13 +487,14 @@ class FaceContactPass final : public Pass<Real> {
 template <class Real>
 std::unique_ptr<Pass<Real>> make_face_contact(const Collider& collider, double thickness,
                                               bool continuous, std::vector<Triangle> pieces,
-                                              Pass<Real>* solver) {
+                                              Pass<Real>* solver, bool only_passed) {
   return std::make_unique<FaceContactPass<Real>>(collider, thickness, continuous, std::move(pieces),
-                                                 solver);
+                                                 solver, only_passed);
 }
 template std::unique_ptr<Pass<float>> make_face_contact(const Collider&, double, bool,
-                                                        std::vector<Triangle>, Pass<float>*);
+                                                        std::vector<Triangle>, Pass<float>*, bool);
 template std::unique_ptr<Pass<double>> make_face_contact(const Collider&, double, bool,
-                                                         std::vector<Triangle>, Pass<double>*);
+                                                         std::vector<Triangle>, Pass<double>*,
+                                                         bool);
 
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "core/solver/contact/augmented_contacts.hpp"
 #include "core/solver/contact/collide.hpp"
 #include "core/solver/contact/face_contact.hpp"
 #include "core/solver/contact/octree.hpp"
@@ -66,6 +67,14 @@ std::vector<Triangle> pieces_of(const Scene& scene, const Collider& collider,
   return pieces;
 }
 
+/// Whether the solver moves all vertices in one solution; null: it has no target.
+template <class Real>
+bool solves_at_once(Pass<Real>* solver) {
+  if (!solver) return false;
+  const TouchingPieces* pieces = solver->touching_pieces();
+  return solver->leaves_colliders() || (pieces && pieces->solved);
+}
+
 }  // namespace
 
 template <class Real>
@@ -78,10 +87,17 @@ ContactPasses<Real> make_contact(const Scene& scene, const Layout& layout,
   if (scene.self_collision && settings.self == SelfCollisionMethod::octree)
     passes.sweep.push_back(make_octree<Real>(scene));
   for (const Collider& collider : scene.colliders)
-    if (auto pieces = pieces_of(scene, collider, settings); !pieces.empty())
-      passes.sweep.push_back(make_face_contact(collider, scene.thickness,
-                                               settings.response == Response::continuous,
+    if (auto pieces = pieces_of(scene, collider, settings); !pieces.empty()) {
+      // The iterates of a solve are no path: only where it ends can an edge have passed through.
+      // Sweeps over vertices, and a solve at a body that deforms, lose threads without the test.
+      const bool continuous = settings.response == Response::continuous;
+      const bool at_end = continuous && !collider.frames && solves_at_once(solver);
+      if (at_end)
+        passes.after.push_back(
+            make_face_contact<Real>(collider, scene.thickness, true, pieces, nullptr, true));
+      passes.sweep.push_back(make_face_contact(collider, scene.thickness, continuous && !at_end,
                                                std::move(pieces), solver));
+    }
   for (const Collider& collider : scene.colliders)
     add_response(collider, scene, layout, settings, solver, pool, passes);
   return passes;

@@ -207,5 +207,35 @@ TEST(BodyContact, ATipIsKeptOutOfAFaceByFacesAlone) {
   }
 }
 
+// A box rises by a third of the sheet's links in a step and stops: nothing was faster than the box,
+// and a sheet of light springs rebounds at most at twice its speed.
+TEST(BodyContact, AKickFromBelowGivesNoMoreThanItHas) {
+  constexpr double kSpeed = 6;  // m/s
+  Scene scene;
+  scene.name = "kick";
+  scene.mesh = make_sheet({.nu = 9,
+                           .nv = 9,
+                           .width = 0.6,
+                           .height = 0.6,
+                           .origin = {-0.3, 0.056, 0.3},
+                           .v = -Vec3::UnitZ(),
+                           .mass = 0.1});
+  scene.start = {scene.mesh.rest, std::vector<Vec3>(81, Vec3::Zero())};
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true});
+  scene.stiffness = {10000, 10000, kRigid[2]};
+  scene.thickness = 0.005;
+  scene.dt = 1.0 / 240;
+  const Motion kick{.path = {{0.05, Vec3::Zero()}, {0.05 + 0.25 / kSpeed, {0, 0.25, 0}}}};
+  scene.colliders = {{MeshBody{box_of_triangles({0.2, 0.05, 0.2}).mesh()}, kick, 0.3}};
+  for (const char* solver : {"implicit", "pd", "admm", "vbd:iterations=60"}) {
+    double fastest = 0;
+    for (const int steps : {24, 30, 40, 60})
+      for (const Vec3& v : simulate(scene, with(solver, "faces=edges"), steps).v)
+        fastest = std::max(fastest, v.norm());
+    EXPECT_GT(fastest, kSpeed / 2) << solver;
+    EXPECT_LT(fastest, 2.5 * kSpeed) << solver;
+  }
+}
+
 }  // namespace
 }  // namespace taut::body_contact_test
