@@ -164,10 +164,12 @@ std::string Params::given_with(std::string_view name, const std::string& value) 
 
 std::string Params::default_of(const ParamSpec& spec) const {
   std::string ignored;
-  const auto equals = spec.where.find('=');
-  const bool there =
-      equals != spec.where.npos && is(spec.where.substr(0, equals), spec.where.substr(equals + 1));
-  return canonical_value(spec, there ? spec.default_there : spec.default_value, ignored);
+  std::string_view value = spec.default_value;
+  for (const auto& [where, default_there] : spec.elsewhere)
+    if (const auto equals = where.find('=');
+        equals != where.npos && is(where.substr(0, equals), where.substr(equals + 1)))
+      value = default_there;
+  return canonical_value(spec, value, ignored);
 }
 
 std::size_t Params::find(std::string_view name) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,11 +22,14 @@ struct ParamSpec {
   double min = 0, max = 0;         ///< inclusive; numbers only
   std::string_view choices;        ///< "exact|sqrt-free"; choices only
   std::string_view help;           ///< one line
-  std::string_view where = {};  ///< "method=global": choice for which default_there is the default
-  std::string_view default_there = {};  ///< default in that case
-  std::optional<Family> family = {};    ///< of the links whose stiffness [N/m] it is
-  bool is_compliance = false;           ///< [m/N] instead of a stiffness
-  std::string_view rigid = {};          ///< choice with which all links are rigid; "": none
+  /// Another default where a choice holds: "method=global".
+  struct Elsewhere {
+    std::string_view where = {}, default_value = {};
+  };
+  std::array<Elsewhere, 2> elsewhere = {};  ///< the last one that holds counts
+  std::optional<Family> family = {};        ///< of the links whose stiffness [N/m] it is
+  bool is_compliance = false;               ///< [m/N] instead of a stiffness
+  std::string_view rigid = {};              ///< choice with which all links are rigid; "": none
   /// What a parameter means, for code that knows no solver by name.
   enum class Role {
     none,
@@ -36,11 +40,10 @@ struct ParamSpec {
   };
   Role role = Role::none;
 
-  /// A copy that has another default where `where_` holds.
-  constexpr ParamSpec but(std::string_view where_, std::string_view default_) const {
+  /// A copy that has another default where `where` holds, at most twice.
+  constexpr ParamSpec but(std::string_view where, std::string_view default_) const {
     ParamSpec same = *this;
-    same.where = where_;
-    same.default_there = default_;
+    same.elsewhere[elsewhere[0].where.empty() ? 0 : 1] = {where, default_};
     return same;
   }
   /// A copy that is the stiffness of the links of this family [N/m], or their compliance [m/N].
@@ -69,7 +72,8 @@ struct ParamSpec {
   /// The default for people: "1", "1; 3 with method=global".
   std::string defaults() const {
     std::string text(default_value);
-    if (!where.empty()) text.append("; ").append(default_there).append(" with ").append(where);
+    for (const auto& [where, default_there] : elsewhere)
+      if (!where.empty()) text.append("; ").append(default_there).append(" with ").append(where);
     return text;
   }
   static constexpr ParamSpec integer(std::string_view name, std::string_view default_value,

@@ -216,7 +216,14 @@ class NewtonPass final : public Pass<double> {
               direction))
         return false;
     }
-    return take(x, direction, g, h);
+    if (frame_.isZero(0)) return take(x, direction, g, h);
+    // The step is judged from x_t as the pins have moved it: the same in every frame.
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (const int c = step_.hessian.column(i); c >= 0) {
+        x[i] += frame_;
+        direction.segment<3>(c) -= frame_;
+      }
+    return take(x, direction, step_.gradient(x, h), h);
   }
 
   /// One Newton step. Returns false if rounding does not let the energy fall any further.
@@ -289,11 +296,11 @@ class NewtonPass final : public Pass<double> {
   /// p.x holds x_t, but pins are already where they are at the end of the step.
   void set_tolerances(const Particles<double>& p, double h) {
     double inertia2 = 0, rounding2 = 0;
-    const Vec3 frame = mean_way_of_pins(p);
+    frame_ = mean_way_of_pins(p);
     for (std::size_t i = 0; i < p.size(); ++i)
       if (step_.hessian.column(i) >= 0) {
         const double m = step_.hessian.mass(i) / (h * h);
-        inertia2 += m * m * (step_.y[i] - p.x[i] - frame).squaredNorm();
+        inertia2 += m * m * (step_.y[i] - p.x[i] - frame_).squaredNorm();
         rounding2 += std::pow((step_.stiffness[i] + m) * p.x[i].cwiseAbs().maxCoeff(), 2);
       }
     enough_ = std::max(kTolerance * std::sqrt(inertia2),
@@ -307,6 +314,7 @@ class NewtonPass final : public Pass<double> {
   int iterations_;
   Integrator integrator_;
   KeptTensions kept_;
+  Vec3 frame_ = Vec3::Zero();  ///< m, mean displacement of the pins in this substep
   double at_first_ = 0;        ///< N/sqrt(kg), |g| at the prediction
   bool plain_ = true;          ///< this substep is plain Newton's method, without kept tensions
   bool from_y_ = false;        ///< iterations of this substep began at y

@@ -26,7 +26,8 @@ constexpr auto kParams = loop::with_common(
      loop::iterations(
          "1",
          "sweeps per substep (Small Steps finds one to be best), or solutions with method=global")
-         .but("method=global", "3"),
+         .but("method=global", "3")
+         .but("primal=on", "10"),
      ParamSpec::real("structural", "m/N", "0", 0, 1e12, "compliance of structural links")
          .compliance_of(Family::structural),
      ParamSpec::real("shear", "m/N", "0", 0, 1e12, "compliance of shear links")

@@ -163,13 +163,16 @@ TEST(SolverDefaults, AreTheProcesssOwnClockAndMemoryAndSilence) {
 }
 
 TEST(Params, HaveAnotherDefaultBesideAnotherChoice) {
-  const ParamSpec specs[] = {
-      ParamSpec::choice("method", "sweeps", "sweeps|global", "how"),
-      ParamSpec::integer("n", "8", 1, 99, "how many").but("method=global", "3")};
-  EXPECT_EQ(specs[1].defaults(), "8; 3 with method=global");
+  const ParamSpec specs[] = {ParamSpec::choice("method", "sweeps", "sweeps|global", "how"),
+                             ParamSpec::integer("n", "8", 1, 99, "how many")
+                                 .but("method=global", "3")
+                                 .but("primal=on", "9"),
+                             ParamSpec::choice("primal", "off", "off|on", "more")};
+  EXPECT_EQ(specs[1].defaults(), "8; 3 with method=global; 9 with primal=on");
   const auto of = [&](const char* text) { return Params("s", specs, text); };
-  EXPECT_EQ(of("").canonical(), "method=sweeps,n=8");
-  EXPECT_EQ(of("method=global").canonical(), "method=global,n=3");
+  EXPECT_EQ(of("").canonical(), "method=sweeps,n=8,primal=off");
+  EXPECT_EQ(of("method=global").canonical(), "method=global,n=3,primal=off");
+  EXPECT_EQ(of("method=global,primal=on").canonical(), "method=global,n=9,primal=on");
   EXPECT_EQ(of("method=global").brief(), "method=global");
   EXPECT_EQ(of("n=8,method=global").brief(), "method=global,n=8");
   EXPECT_EQ(of("n=3").brief(), "n=3");

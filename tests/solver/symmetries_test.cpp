@@ -330,9 +330,6 @@ bool sees(const std::string& solver, const Scene& scene, const Change& c) {
   const bool touches = !scene.colliders.empty(), moves = !c.speed.isZero(0);
   // mass-spring's drag and VBD's damping act on a vertex' absolute velocity, as published
   if (moves && (scene.damping > 0 || uses(choice, "drag") || uses(choice, "damping"))) return true;
-  // the first Newton iteration starts at x_t with pins already in their new places; the error left
-  // by iterations before contact depends on how far the pins have moved
-  if (moves && choice.entry->name == "implicit" && !scene.pins.empty()) return true;
   // Anderson acceleration falls back if the energy grew after contact; rounding chooses between
   // equally good iterates
   if (uses(choice, "anderson") && touches) return true;
