@@ -31,8 +31,8 @@ if(TAUT_PYTHON)
                      \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python_package}/data\" SYMBOLIC)" COMPONENT python)
 endif()
 
-# The library: taut::model, taut::io, taut::solver, taut::reference, taut::metrics, taut::case and what they need.
-set(libraries case metrics reference system io solver model fingerprint)
+# The library: taut::model, taut::io, taut::solver, taut::reference, taut::predict, taut::metrics, taut::case and what they need.
+set(libraries case predict metrics reference system io solver model fingerprint)
 foreach(library IN LISTS libraries)
   set_target_properties(taut_${library} PROPERTIES EXPORT_NAME ${library})
   target_include_directories(taut_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -44,6 +44,7 @@ target_link_libraries(taut_metrics INTERFACE $<INSTALL_INTERFACE:taut::case>)
 
 # core/model/scene.hpp becomes <taut/model/scene.hpp>, also where headers include each other.
 set(headers core/io/mesh_io.hpp core/io/positions/positions.hpp core/io/scene_io.hpp experiments/system/data.hpp
+            core/reference/resting_springs.hpp core/reference/strain_at_rest.hpp experiments/predict/prediction.hpp
             experiments/metrics/metric.hpp experiments/case/case.hpp experiments/case/computed_motion.hpp
             experiments/case/digest.hpp experiments/case/record.hpp experiments/case/record_io.hpp
             experiments/case/run_case.hpp experiments/case/trajectory.hpp)

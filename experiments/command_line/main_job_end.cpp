@@ -27,10 +27,9 @@ void tell_part(int part, const std::string& what) {
 void tell_main_job(const std::vector<StudyCases>& studies) {
   std::size_t all = 0;
   for (const StudyCases& study : studies) all += study.cases.size();
-  progress()
-      << "the main job: " << all << " cases of " << studies.size()
-      << " studies, then their costs, closed forms, baselines and films; five to six minutes "
-         "on two idle cores, and it may be interrupted\n";
+  progress() << "the main job: " << all << " cases of " << studies.size()
+             << " studies, then their costs, closed forms, baselines and films; eight minutes "
+                "on two idle cores, and it may be interrupted\n";
   tell_part(1, "cases of the studies");
 }
 

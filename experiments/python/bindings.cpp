@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/io/scene_io.hpp"
-#include "core/io/text_file.hpp"
 #include "core/model/input_error.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
@@ -123,8 +122,9 @@ void define_module(py::module_& m) {
   PyModule_AddFunctions(m.ptr(), kPlainFunctions);
   m.def("set_data_folder", set_data_folder);
   m.def("register_solver", register_solver);
-  m.def("fail_in",
-        [](const std::filesystem::path& file, const std::string& why) { fail_in(file, why); });
+  m.def("fail_in", [](const std::filesystem::path& file, const std::string& why) {
+    throw InputError({{file.string(), 0, 0, why}});
+  });
   wait_for_unlocked_at_exit();
 
   g_input_error =

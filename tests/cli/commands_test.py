@@ -840,7 +840,7 @@ searched = "mine-searched.toml"
                          [("hang", 400), ("crumple", 400), ("hang", 576), ("crumple", 576)])  # a chain is not a sheet
         solver = "jakobsen:iterations=1,substeps=1000000"
         out = self.taut("bench", "effects", "ball", "--solver", solver, "--rounds", "1").out
-        self.assertIn("not timed: in float, gravity's move", out)
+        self.assertIn("not timed: float: rounding in coordinates", out)
 
     def test_a_fabric_stands_beside_other_settings(self):
         words = ["case", "./small.toml", "jakobsen", "--set", "time.duration=0.1", "--fabric", "petrak-m1", "--json"]

@@ -24,7 +24,7 @@ ASKED = {
     "plan": ["./small.toml", "bullet"], "reference": ["./small.toml", "--replace", "-o", "references"],
     "render": ["./small.toml", "--solver", "jakobsen", "--quality", "draft", "--size", "320x240"],
     "require": ["./small.toml", "jakobsen", "--patience", "20"], "frontier": ["./small.toml", "jakobsen", "--tolerance", "0.5"],
-    "converge": ["./small.toml", "--solver", "jakobsen", "--most", "8"], "advise": ADVICE[1:], "predict": ["./small.toml", "jakobsen", "vbd"], "bench": ["./study.toml", *FEW],
+    "converge": ["./small.toml", "--solver", "jakobsen", "--most", "8"], "advise": ADVICE[1:], "predict": ["hang", "jakobsen", "vbd"], "bench": ["./study.toml", *FEW],
     "bench effects": ["chain", *FEW], "bench scaling": ["./sizes.toml", "--samples", "2"], "doctor": [], "verify": ["free-fall"], "verify steps": ["rigid", "--scene", "chain"],
     "baseline update": ["./study.toml", "--why", "a test"], "baseline diff": ["./study.toml"], "check": ["./study.toml"], "history": ["./study.toml"],
     "cluster submit": ["./study.toml", "--on", "parallel", "--dry-run", "--shards", "1", "--folder", "cN"],

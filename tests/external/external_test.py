@@ -102,7 +102,7 @@ class Toys(Programs):
         shutil.copy(SDK / "taut_solver.py", self.folder)
         (self.folder / "soft.toml").write_text((self.folder / "small.toml").read_text() + "[links]\nstiffness = { structural = 500 }\n"
                                                '[[collider]]\ntype = "capsule"\nfrom = [0, -9, 0]\nto = [0, -9, 1]\nradius = 0.5\n')
-        toy = (SDK / "toy.py").read_text().replace('["gravity, links and pins at rest are all that it knows"]', "[]").replace(
+        toy = (SDK / "toy.py").read_text().replace('scene["colliders"] or ', "").replace(
             '{"projection"', '{"read": f"{self.stiffness} {self.capsules}", "projection"').replace(
             "self.sweeps = params", 'self.stiffness, self.capsules = scene.get("stiffness"), [c["to"] for c in scene["colliders"]]\n        self.sweeps = params')
         for version, kind in (("1", "unsupported"), ("2", "ok")):

@@ -199,23 +199,6 @@ TEST(Memory, OfASheetIsAtMostAHundredBytesAVertex) {
   }
 }
 
-TEST(Float, RefusesSubstepsThatGravityCannotMove) {
-  Scene scene = hanging_sheet(3, 3);
-  scene.dt = 1.0 / 64;
-  const auto refuses = [&](const char* solver) {
-    const SolverChoice choice = parse_solver(solver);
-    return !choice.entry->unsupported(scene, choice.params).empty();
-  };
-  EXPECT_FALSE(refuses("jakobsen:substeps=200"));
-  EXPECT_TRUE(refuses("jakobsen:substeps=400"));
-  EXPECT_FALSE(refuses("jakobsen:substeps=400,precision=double"));
-  // gravity is below the rounding error: a cloth at rest at coordinate 1 does not begin to fall
-  for (Vec3& x : scene.start.x) x.y() += 1.5;
-  scene.pins.clear();
-  const State state = simulate(scene, "jakobsen:iterations=0,substeps=600", 4);
-  EXPECT_EQ(state.x[0].y(), scene.start.x[0].y());
-}
-
 // No two of the six pins are linked, so each vertex below hangs from the nearest four.
 TEST(Tethers, GoToTheFourNearestGroupsAtMost) {
   Scene scene = hanging_sheet(11, 2);

@@ -180,8 +180,8 @@ function chartKey(specs, {kind, frame}) {
          points.some((p) => p.not_counted) &&
              entry(
                  el('b', {}, '○'),
-                 'hollow: cannot be the cheapest, since it is not where it should be or does what its ' +
-                     'scene does not accept; no line passes through it'));
+                 'hollow: on no line, since it cannot be the cheapest ' +
+                     '(is not where it should be, or does what its scene does not accept)'));
   return list.children.length ? list : '';
 }
 

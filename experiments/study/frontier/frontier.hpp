@@ -87,7 +87,7 @@ struct FrontierQuestion {
 };
 
 /// The range of a search for the time step, unless another is given [s].
-inline constexpr SearchRange kTimeSteps{.from = 1e-3, .to = 0.5};
+inline constexpr SearchRange kTimeSteps{.from = 2e-3, .to = 0.5};
 
 /// The range of a search. Ends that are not given default to kTimeSteps for "dt", and for a
 /// parameter to its own bounds if they are meaningful. Throws InputError if there is no such

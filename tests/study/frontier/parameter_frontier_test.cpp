@@ -203,8 +203,8 @@ TEST(FrontierSettings, TheoriesAreClosedForms) {
     if (setting.name == "distance from the origin") {
       const float far = static_cast<float>(setting.theory->value);
       const float fall = 9.81F / (240 * 240);
-      EXPECT_EQ(far + fall, far) << "in float nothing falls there";
-      EXPECT_NE(far / 2 + fall, far / 2) << "and it does at half of it";
+      EXPECT_GT(4 * (std::nextafter(far, 2 * far) - far), fall) << "an eighth is lost there";
+      EXPECT_LT(4 * (far - std::nextafter(far, 0.0F)), fall) << "and less nearer";
     }
   }
   EXPECT_FALSE(frontier_settings("jakobsen")[5].theory) << "continuous detection knows no limit";

@@ -193,7 +193,7 @@ TEST(Frontier, ARangeIsTheParametersOwnOrHasToBeGiven) {
       return error.what();
     }
   };
-  EXPECT_EQ(range("dt"), "0.001 to 0.5");
+  EXPECT_EQ(range("dt"), "0.002 to 0.5");
   EXPECT_EQ(range("dt", 0.1), "0.1 to 0.5");
   EXPECT_EQ(range("levels"), "1 to 20 whole");
   EXPECT_EQ(range("omega|iterations"), "0 to 2") << "of the first";
