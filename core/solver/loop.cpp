@@ -358,8 +358,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params, MakeLinks
 template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<float>);
 template std::unique_ptr<Solver> make(const Scene&, const Params&, MakeLinks<double>);
 
-/// What changes gravity by more than an eighth is refused: a sheet at 1 m that falls for 0.25 s in
-/// 128 substeps of 1/64 s ended 9 % off, in 192 a fifth.
+/// In float, what may change gravity by more than an eighth is refused (truth float-gravity).
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   const auto is_thin = [](const Collider& c) {
     const MeshBody* body = std::get_if<MeshBody>(&c.shape);
