@@ -182,7 +182,7 @@ class GlobalLinks final : public Pass<Real> {
         const Vec3 x = p.x[i].template cast<double>();
         rounding2 += std::pow((stiffness[i] + m) * x.cwiseAbs().maxCoeff(), 2);
       }
-    constexpr double kUnit = std::numeric_limits<Real>::epsilon();
+    constexpr auto kUnit = static_cast<double>(std::numeric_limits<Real>::epsilon());
     enough_ = std::max(kTolerance * std::sqrt(inertia2), kUnit * std::sqrt(rounding2));
   }
 
