@@ -62,8 +62,8 @@ class Builder {
       : input_(input), compared_(compared_solvers_of(input)), refs_(input) {}
 
   Json build() {
-    Json winners = json_of_winners(input_, refs_);
     const Answer answer = answer_of(input_, compared_, refs_);
+    Json winners = json_of_winners(input_, answer, refs_, tables_);
     std::vector<Chart> charts;
     for (const QuotedScene& quoted : compared_.scenes)
       std::ranges::move(scene_charts(input_, quoted.task.scene), std::back_inserter(charts));

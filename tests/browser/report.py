@@ -366,18 +366,31 @@ def winners(checks):
         checks.true(page.run("document.getElementById('winners')") is None, "nothing was timed: no map")
         return
     titles, rows = {s["id"]: s["title"] for s in model["solvers"]}, model["winners"]["rows"]
-    said = page.run("[...document.querySelectorAll('#winners tbody tr')].map(tr => [...tr.querySelectorAll('td')].map(td => td.innerText))")
+    cells = "document.querySelectorAll('#winners .scroll:not([hidden]) tbody tr:not(.detail)')"
+    said = page.run(f"[...{cells}].map(tr => [...tr.querySelectorAll('td')].map(td => td.innerText))")
     checks.true([len(row) for row in said] == [len(row["cells"]) for row in rows], "a cell for each error of each scene", said)
+    long = [text for row in said for text in row if len(text.strip().split("\n")) > 3]
+    checks.empty(long, "a cell has at most three lines")
     wrong = []
-    for texts, row in zip(said, rows):
-        for text, cell in zip(texts, row["cells"]):
+    kept = lambda text: text.replace(" × ", "\u00a0×\u00a0")
+    for r, row in enumerate(rows):
+        for c, cell in enumerate(row["cells"]):
+            names = [titles[one["solver"]] for one in cell.get("cheapest", [])] or ["nobody"]
+            wrong += [[said[r][c], name] for name in names if name not in said[r][c]]
+            page.run(f"{cells}[{r}].querySelectorAll('td button')[{c}].getAttribute('aria-expanded') === 'true' || "
+                     f"{cells}[{r}].querySelectorAll('td button')[{c}].click()")
+            opened = page.run("document.querySelector('#winners .scroll:not([hidden]) .detail:not([hidden])').innerText")
             wanted = [cell["why"]] if "why" in cell else []
             for one in cell.get("cheapest", []):
-                wanted += [titles[one["solver"]], one["setting"].replace(" × ", "\u00a0×\u00a0"), one["arithmetic"].split(" (")[0].replace(" × ", "\u00a0×\u00a0")]
-            if "next" in cell and len(cell["cheapest"]) == 1:
-                wanted += ["×", titles[cell["next"]["solver"]]]
-            wrong += [[text, part] for part in wanted if part not in text]
-    checks.empty(wrong, "each cell of the map says its contenders")
+                wanted += [titles[one["solver"]], kept(one["setting"]), one["arithmetic"].split(" (")[0], one["command"]]
+            for one in (cell.get("next"), cell.get("bullet")):
+                wanted += [titles[one["solver"]], kept(one["setting"])] if one else []
+            wrong += [[opened, part] for part in wanted if part not in opened]
+    checks.empty(wrong, "each cell names its solvers, and opens to their settings and commands")
+    page.run("[...document.querySelectorAll('#winners .kinds button')][1].click()")
+    heads = page.run("[...document.querySelectorAll('#winners .scroll:not([hidden]) thead th')].length")
+    checks.true(heads == 1 + len(model["winners"]["by_stretch"]["levels"]), "a switch shows the map by stretch alone", heads)
+    page.run("[...document.querySelectorAll('#winners .kinds button')][0].click()")
     parts = [part["text"] for sentence in model["winners"]["sentences"] for part in sentence if any(c.isdigit() for c in part["text"])]
     linked = page.run("[...document.querySelectorAll('.finding a')].map(a => a.textContent)")
     checks.true(set(parts) <= set(linked), "each number of a sentence is a link", [linked, parts])
@@ -386,13 +399,11 @@ def winners(checks):
         page.settle()
         checks.true(page.run("cases.has(state.get('case'))"), "that opens its case")
         page.press("Escape")
-    lacking = page.run("[...document.querySelectorAll('#winners small')].filter(e => /^(float|double)/.test(e.textContent) && !e.title).map(e => e.textContent)")
-    checks.empty(lacking, "each arithmetic is explained")
     terms = {term["term"]: term["meaning"] for term in model.get("terms", [])}
-    shown = page.run("[...document.querySelectorAll('#winners .price small')].map(e => e.title)")
-    wanted = ["\n".join(f"{term}: {terms[term]}" for term in one.get("terms", []) if term in terms)
-              for row in rows for cell in row["cells"] for one in cell.get("cheapest", [])]
-    checks.true(shown == wanted, "the tooltip of a setting explains what it names and nothing else", [shown[:3], wanted[:3]])
+    shown = set(page.run("[...document.querySelectorAll('#winners .setting')].map(e => e.title)"))
+    wanted = {"\n".join(f"{term}: {terms[term]}" for term in one.get("terms", []) if term in terms)
+              for row in rows + model["winners"]["by_stretch"]["rows"] for cell in row["cells"] for one in [*cell.get("cheapest", []), *filter(None, [cell.get("next"), cell.get("bullet")])]}
+    checks.true(shown <= wanted, "the tooltip of a setting explains what it names and nothing else", [list(shown)[:3], list(wanted)[:3]])
 
 
 def charts(checks):
@@ -402,6 +413,7 @@ def charts(checks):
              if c["kind"] not in ("series", "step")]
     for quantity in dict.fromkeys(c["y"] for c in specs):
         page.run(f"state.set({{chart: {quantity!r}}})")
+        page.run("document.querySelectorAll('.first .panel').forEach(panel => { panel.hidden = false; })")  # one scene at a time
         page.settle()
         for x in dict.fromkeys(c["x"] for c in specs if c["y"] == quantity):
             own = [c for c in specs if (c["x"], c["y"]) == (x, quantity)]

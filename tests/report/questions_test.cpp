@@ -526,6 +526,8 @@ TEST(Winners, AreTheCheapestBesideTiesAndWhatDoesNotCount) {
   EXPECT_EQ(cells[0].next->solver, "bullet");
   EXPECT_NEAR(cells[0].times.mid, 2.5, 1e-9);
   EXPECT_FALSE(cells[0].won());
+  EXPECT_NEAR(cells[0].bullet->times->mid, 2.5, 1e-9);
+  EXPECT_FALSE(cells[2].bullet);
   EXPECT_EQ(cells[0].excluded.at(0).first, "vbd");
   ASSERT_EQ(cells[2].cheapest.size(), 1u);
   EXPECT_FALSE(cells[2].next) << "nobody else reaches 10 %";
@@ -535,6 +537,32 @@ TEST(Winners, AreTheCheapestBesideTiesAndWhatDoesNotCount) {
             "btSoftBody costs 2.5 times the cheapest for 20\u00A0% on ball. "
             "Jakobsen is cheapest in 3 of 6 cells. 2 cells have several that noise cannot tell "
             "apart; 1 cell is reached by nobody.");
+}
+
+TEST(Winners, SayWhereTheSolverOfThisProjectLoses) {
+  Mapped one({{"ball", "jakobsen", 1, 1, 0.2, 4e-3}, {"ball", "xpbd", 1, 1, 0.1, 1e-3}});
+  Answer answer{"report", ""};
+  const auto add = [&](const char* name, double own, double other) {
+    answer.add(Table{name,
+                     name,
+                     {Column("scene"), Column("jakobsen"), Column("xpbd", "XPBD")},
+                     {{"mean of 2 scenes", own, other}}});
+  };
+  add("penetration.peak", 2e-3, 1e-3);
+  add("tunnelling.events", 1, 2);
+  add("largest_step", 0.1, 0.2);
+  add("slip.distance", 1e-3, 0.99e-3);  // as good as equal
+  add("reference.rms", std::nan(""), 1);
+  const Table lost = losses_of(one.map(), answer);
+  std::vector<std::string> rows;
+  for (const auto& row : lost.rows)
+    rows.push_back(join(row, "; ", [](const Cell& cell) { return cell.text(); }));
+  EXPECT_EQ(rows,
+            (std::vector<std::string>{"CPU time of 50\u00A0%; ball; 4.0 times as dear; XPBD 1 × 1",
+                                      "CPU time of 20\u00A0%; ball; 4.0 times as dear; XPBD 1 × 1",
+                                      "CPU time of 10\u00A0%; ball; does not reach it; XPBD 1 × 1",
+                                      "penetration.peak; mean of 2 scenes; 0.002; XPBD 0.001",
+                                      "largest_step; mean of 2 scenes; 0.1; XPBD 0.2"}));
 }
 
 TEST(Winners, HaveTheirRangeInASentence) {

@@ -35,8 +35,9 @@ Json facts_of(const CaseList&, const std::string& scene);
 Json json_of(const Chart&, CaseList&);
 Json json_of(const StatusMap&, const std::string& id, CaseList&);
 Json json_of(const SceneMedia&, const ReportInput&, CaseList&, std::size_t& budget);
-/// Which solver wins where, and a summary; null if nothing was timed.
-Json json_of_winners(const ReportInput&, CaseList&);
+/// Which solver wins where, a summary, and where this project's solver loses in the map and in the
+/// answer; null if nothing was timed.
+Json json_of_winners(const ReportInput&, const Answer&, CaseList&, Answer& tables);
 /// Cost of accuracy, scene by scene.
 Json json_of_cost(const ReportInput&, CaseList&, DrawnCharts&, Answer& tables);
 /// Differences between two folders.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "experiments/baseline/baseline.hpp"
 #include "experiments/report/model/parts.hpp"
 
 namespace taut::report {
@@ -15,9 +16,11 @@ Json json_of(const Contender& one) {
             {"arithmetic", one.arithmetic.brief()},
             {"cost", one.cost},
             {"error", one.error},
-            {"case", one.key}};
+            {"case", one.key},
+            {"command", reproduce(one.again)}};
   add_if(json, "terms", one.setting.terms());
   add_if(json, "links", one.links);
+  if (std::isfinite(one.motion)) json["motion"] = one.motion;
   if (std::isfinite(one.stretch)) json["stretch"] = one.stretch;
   if (one.bound) json["at_most"] = true;
   return json;
@@ -30,6 +33,8 @@ Json json_of(const WinnerCell& cell) {
     json["next"] = json_of(*cell.next);
     json["times"] = cell.times;
   }
+  if (cell.bullet) json["bullet"] = json_of(cell.bullet->one);
+  if (cell.bullet && cell.bullet->times) json["bullet_times"] = *cell.bullet->times;
   add_if(json, "why", cell.why);
   for (const auto& [solver, why] : cell.excluded)
     json["excluded"].push_back({{"solver", solver}, {"why", why}});
@@ -47,23 +52,34 @@ Json json_of(const std::vector<Said>& sentence) {
   return json;
 }
 
-}  // namespace
-
-Json json_of_winners(const ReportInput& input, CaseList& list) {
-  const WinnerMap map = winners_of(input, list);
-  if (map.rows.empty()) return {};
-  Json json{{"metric", kVerdict},
-            {"levels", std::vector<double>(std::begin(kErrorLevels), std::end(kErrorLevels))},
-            {"frame", kFrame},
-            {"rules", rules_of(map)},
-            {"certainty", certainty_text(map.noise)}};
+Json json_of(const WinnerMap& map) {
+  const auto levels = levels_of(map.metric);
+  Json json{{"metric", map.metric}, {"levels", std::vector<double>(levels.begin(), levels.end())}};
   for (const WinnerRow& row : map.rows) {
     Json one{{"scene", row.scene}, {"title", row.title}, {"by", to_string(row.by)}};
     for (const WinnerCell& cell : row.cells) one["cells"].push_back(json_of(cell));
+    if (row.has_bullet)
+      one["bullet"] =
+          row.bullet_refused.empty() ? "no setting that was timed reaches it" : row.bullet_refused;
     json["rows"].push_back(std::move(one));
   }
+  return json;
+}
+
+}  // namespace
+
+Json json_of_winners(const ReportInput& input, const Answer& answer, CaseList& list,
+                     Answer& tables) {
+  const WinnerMap map = winners_of(input, list);
+  if (map.rows.empty()) return {};
+  Json json = json_of(map);
+  json["frame"] = kFrame;
+  json["rules"] = rules_of(map);
+  json["certainty"] = certainty_text(map.noise);
+  json["by_stretch"] = json_of(winners_of(input, list, std::string(kStretch)));
   for (const std::vector<Said>& sentence : sentences_of(map))
     json["sentences"].push_back(json_of(sentence));
+  add_table(json, losses_of(map, answer), tables);
   return json;
 }
 

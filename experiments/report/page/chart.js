@@ -211,8 +211,9 @@ const onFloor = (p, {y}, {y: {axis}, least}) =>
 
 /**
  * A figure of the model: a panel for each chart, all on the same axes, with `nameOf` above each.
+ * `inTurn`: one panel is shown at a time, as large as a chart alone.
  */
-function chartFigure(figure, nameOf) {
+function chartFigure(figure, nameOf, inTurn = false) {
   const specs = all(figure.charts, charts), {x, y} = specs[0],
         common = (get) => specs.every((spec) => get(spec) === get(specs[0]));
   const held = (spec) => spec.held && spec.held[0].toUpperCase() + spec.held.slice(1) + '.',
@@ -221,7 +222,8 @@ function chartFigure(figure, nameOf) {
                                         .filter((get) => common(get) === shared)
                                         .map((get) => get(spec))
                                         .filter(Boolean);
-  const view = {kind: figure.axis, height: specs.length > 1 ? box.small : box.height, draws: []};
+  const height = specs.length > 1 && !inTurn ? box.small : box.height;
+  const view = {kind: figure.axis, height, draws: []};
   const useFrame = () => {
     view.frame = figure[view.kind];
     view.failed = specs.some((spec) => pointsOf(spec).some((p) => p.failed));

@@ -66,7 +66,8 @@ const lacks = ({state, value}) =>
 function cellContent(cell, column, most) {
   const entry = cases.get(cell.key), text = cellText(cell, column), value = middle(cell.value),
         note = cell.note ?? '';
-  const noted = cell.state === 'astray' ? 'is elsewhere' : note;
+  const brief = lacks(cell) ? note.replace(/ \(\S*\)$/, '') : note;  // a setting does not fit
+  const noted = cell.state === 'astray' ? 'is elsewhere' : brief;
   const whole = [note, explain(cell.terms)].filter(Boolean).join('\n');
   const share = 100 * Math.max(0, value) / most;
   const spread = Array.isArray(cell.value) && spreadOf(cell.value, column);
@@ -133,10 +134,11 @@ const tableNode = (table, heading = 'h4') =>
 const foldedTable = (table) =>
     folded(table.title, copyButton(() => tableCsv(table)), tableBody(table));
 
-/** Names of unfolded questions; by default the first, if the window is wide. */
+/** Names of unfolded questions; by default the first, if the window is wide and has no map. */
 function unfolded() {
   const chosen = state.params().getAll('open').filter((name) => name !== 'none');
-  return state.get('open') || innerWidth < 1000 ? chosen : [...questions.keys()].slice(0, 1);
+  const folded = state.get('open') || innerWidth < 1000 || model.winners;
+  return folded ? chosen : [...questions.keys()].slice(0, 1);
 }
 
 /** The scene of a row; "" for the row of all scenes. */

@@ -148,7 +148,7 @@ class Costs {
 
   void add_price(Answer& answer) {
     Table table{
-        "price",
+        kPrice,
         "CPU time of " + priced(),
         columns_of(solvers_, quantity(kCpuPerSecond).unit),
         {},

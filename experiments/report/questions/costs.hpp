@@ -13,6 +13,9 @@ namespace taut::report {
 /// The error whose price the page shows.
 inline constexpr double kPricedError = 0.05;
 
+/// The question of the price: its table's name.
+inline constexpr const char* kPrice = "price";
+
 /// The questions of costs; none without a bench.
 void add_costs(Answer&, const ReportInput&, const std::vector<Column>& solvers, CaseList&);
 

@@ -93,7 +93,7 @@ std::optional<std::vector<Cell>> row_of(const Task& task, const std::vector<Trie
 
 void add_largest_steps(Answer& answer, const ComparedSolvers& compared,
                        const std::vector<Column>& solvers, CaseList& list) {
-  Table table{"largest_step",
+  Table table{kLargestStep,
               "Largest stable time step",
               columns_of(solvers, quantity("dt").unit, 3),
               {},

@@ -19,6 +19,7 @@ Answer answer_of(const ReportInput&, const ComparedSolvers&, CaseList&);
 // Questions with a file of their own. Each adds its table if a scene has a row. `solvers` are the
 // columns: the compared solvers first, in their order.
 
+inline constexpr const char* kLargestStep = "largest_step";  ///< its table's name
 void add_largest_steps(Answer&, const ComparedSolvers&, const std::vector<Column>& solvers,
                        CaseList&);
 void add_failures(Answer&, const ComparedSolvers&, const std::vector<Column>& solvers, CaseList&);

@@ -9,14 +9,21 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/case/record_io.hpp"
+#include "experiments/metrics/metric.hpp"
 #include "experiments/report/questions/costs.hpp"
 #include "experiments/report/questions/links.hpp"
+#include "experiments/report/questions/questions.hpp"
 #include "experiments/system/distinct.hpp"
 #include "experiments/timing/cheapest.hpp"
 
 namespace taut::report {
 
 namespace {
+
+/// The solver with which most readers compare.
+constexpr const char* kBullet = "bullet";
+/// The solver of this project, whose losses are listed.
+constexpr const char* kOwn = "jakobsen";
 
 /// "1000 N/m", of links that are not rigid.
 std::string links_text(const Record& r) {
@@ -27,16 +34,22 @@ std::string links_text(const Record& r) {
 /// The winners of one scene.
 class SceneWinners {
  public:
-  SceneWinners(const SceneBench& bench, const ReportInput& input, CaseList& list)
-      : scene_(bench, kVerdict), input_(input), list_(list) {}
+  SceneWinners(const SceneBench& bench, const std::string& metric, const ReportInput& input,
+               CaseList& list)
+      : scene_(bench, metric), input_(input), list_(list) {}
 
   WinnerRow row() {
     const SceneBench& bench = scene_.bench;
     WinnerRow row{bench.cases.empty() ? bench.scene : bench.cases.front().record.scene,
                   bench.scene};
     for (const BenchedCase& c : bench.cases) row.by = std::max(row.by, judged_by(c.record));
-    for (const double level : kErrorLevels) row.cells.push_back(cell(level));
-    row.bullet = beside_bullet();
+    for (const double level : levels_of(scene_.metric)) row.cells.push_back(cell(level));
+    for (const BenchedCase& c : bench.cases) {
+      if (c.record.solver != kBullet) continue;
+      row.has_bullet = true;
+      if (c.record.status.kind == Status::Kind::unsupported)
+        row.bullet_refused = describe(c.record.status);
+    }
     return row;
   }
 
@@ -55,8 +68,10 @@ class SceneWinners {
             links,
             scene_.candidates[at].cost,
             scene_.candidates[at].error,
+            error_of(r, kVerdict),
             r.value(std::string(kStretch)),
             list_.key(r),
+            {r.spec.scene, r.spec.settings, parse_solver(r.spec.solver).brief()},
             scene_.is_upper_bound(at)};
   }
 
@@ -77,25 +92,15 @@ class SceneWinners {
         cell.next = contender(rival.at);
         cell.times = *rival.times;
       }
+    const auto beside = [&](const char* solver) -> std::optional<WinnerCell::Beside> {
+      const auto at = scene_.best({.error = level}, solver);
+      if (!at) return {};
+      return {{contender(*at),
+               found.at == *at ? Interval{1, 1, 1} : scene_.bench.ratio(*at, found.at)}};
+    };
+    cell.bullet = beside(kBullet);
+    cell.own = beside(kOwn);
     return cell;
-  }
-
-  std::optional<BesideBullet> beside_bullet() const {
-    std::optional<BesideBullet> bullet;
-    for (const BenchedCase& c : scene_.bench.cases) {
-      if (c.record.solver != "bullet") continue;
-      if (!bullet) bullet.emplace();
-      if (c.record.status.kind == Status::Kind::unsupported)
-        bullet->refused = describe(c.record.status);
-    }
-    for (const double level : kErrorLevels)
-      if (const auto at = scene_.best({.error = level}, "bullet")) {
-        const std::size_t cheapest = *scene_.best({.error = level});
-        bullet->level = level;
-        bullet->key = list_.key(scene_.bench.cases[*at].record);
-        bullet->times = cheapest == *at ? Interval{1, 1, 1} : scene_.bench.ratio(*at, cheapest);
-      }
-    return bullet;
   }
 
   /// Adds the solvers that reach the error at less cost with a setting that does not count, and
@@ -156,18 +161,21 @@ std::vector<Said> bullet_sentence(const WinnerMap& map) {
   std::vector<Said> sentence;
   std::vector<std::string> missed, refused;
   for (const WinnerRow& row : map.rows) {
-    if (!row.bullet) continue;
-    if (row.bullet->level == 0) {
-      if (row.by == JudgedBy::nothing && row.bullet->refused.empty()) continue;
-      (row.bullet->refused.empty() ? missed : refused).push_back(row.title);
+    if (!row.has_bullet) continue;
+    std::size_t at = row.cells.size();  // the least error that it reaches
+    while (at > 0 && !row.cells[at - 1].bullet) --at;
+    if (at == 0) {
+      if (row.by == JudgedBy::nothing && row.bullet_refused.empty()) continue;
+      (row.bullet_refused.empty() ? missed : refused).push_back(row.title);
       continue;
     }
+    const WinnerCell& cell = row.cells[at - 1];
     sentence.push_back({sentence.empty() ? "btSoftBody costs " : ", "});
     const std::string times =
-        row.bullet->times ? significant(row.bullet->times->mid) + " times" : "more than";
+        cell.bullet->times ? significant(cell.bullet->times->mid) + " times" : "more than";
     sentence.push_back({times + " the cheapest for " +
-                            quantity(kVerdict).text(row.bullet->level, 1) + " on " + row.title,
-                        row.bullet->key});
+                            quantity(kVerdict).text(kErrorLevels[at - 1], 1) + " on " + row.title,
+                        cell.bullet->one.key});
   }
   const auto add = [&](const std::vector<std::string>& scenes, const std::string& what) {
     if (scenes.empty()) return;
@@ -182,12 +190,12 @@ std::vector<Said> bullet_sentence(const WinnerMap& map) {
 
 }  // namespace
 
-WinnerMap winners_of(const ReportInput& input, CaseList& list) {
-  WinnerMap map;
+WinnerMap winners_of(const ReportInput& input, CaseList& list, const std::string& metric) {
+  WinnerMap map{metric, {}};
   if (!input.bench) return map;
-  list.use(kVerdict);
+  list.use(metric);
   for (const SceneBench& scene : input.bench->scenes) {
-    map.rows.push_back(SceneWinners(scene, input, list).row());
+    map.rows.push_back(SceneWinners(scene, metric, input, list).row());
     map.noise = std::max(map.noise, spread(scene.control));
   }
   return map;
@@ -269,6 +277,54 @@ std::string line_of(const WinnerRow& row, std::size_t level) {
             significant(cell.times.high) + ") times cheaper than " +
             solver_title(cell.next->solver);
   return text;
+}
+
+Table losses_of(const WinnerMap& map, const Answer& answer) {
+  Table table{"losses",
+              "Where " + solver_title(kOwn) + ", the solver of this project, loses",
+              {Column("what", "question"), Column("where"), Column("own", solver_title(kOwn)),
+               Column("other", "better")},
+              {},
+              "every cell of the map that another solver wins, and every question below with a "
+              "better number of another solver over the scenes that all have"};
+  for (const WinnerRow& row : map.rows)
+    for (std::size_t k = 0; k < row.cells.size(); ++k) {
+      const WinnerCell& cell = row.cells[k];
+      if (cell.cheapest.empty() ||
+          std::ranges::find(cell.cheapest, kOwn, &Contender::solver) != cell.cheapest.end())
+        continue;
+      Cell own = cell.own && cell.own->times
+                     ? Cell(significant(cell.own->times->mid) + " times as dear")
+                     : Cell("does not reach it");
+      if (cell.own) own.key = cell.own->one.key;
+      Cell best(solver_title(cell.cheapest[0].solver) + " " + cell.cheapest[0].setting.text());
+      best.key = cell.cheapest[0].key;
+      table.rows.push_back({"CPU time of " + quantity(kVerdict).text(kErrorLevels[k], 1),
+                            Cell(row.title).of_scene(row.scene), std::move(own), std::move(best)});
+    }
+  for (const Table& asked : answer.tables) {
+    const auto at = std::ranges::find(asked.columns, kOwn, &Column::name);
+    const ValueSpec* value = find_value(asked.name).second;
+    if (asked.rows.empty() || at == asked.columns.end() || asked.name == kPrice ||
+        (value && value->role == Role::motion))
+      continue;
+    const std::vector<Cell>& last = asked.rows.back();
+    const auto own = static_cast<std::size_t>(at - asked.columns.begin());
+    if (std::isnan(last[own].number())) continue;
+    const bool more_is_better = asked.name == kLargestStep;
+    std::size_t best = own;
+    for (std::size_t c = 1; c < last.size(); ++c)
+      if (more_is_better ? last[c].number() > last[best].number()
+                         : last[c].number() < last[best].number())
+        best = c;
+    if (std::abs(last[own].number() - last[best].number()) <=
+        kTolerance * std::abs(last[own].number()))
+      continue;
+    const auto text = [&](std::size_t c) { return taut::text(last[c], asked.columns[c]); };
+    table.rows.push_back(
+        {asked.title, last[0], text(own), asked.columns[best].heading + " " + text(best)});
+  }
+  return table;
 }
 
 std::vector<std::string> rules_of(const WinnerMap& map) {
