@@ -40,11 +40,15 @@ namespace {
 /// fill the disk.
 constexpr std::size_t kFileBytes = std::size_t{256} << 20;
 
+/// The program that runs the case: this one, or another of the same build.
+std::string program_of(const Case& one) {
+  const auto named = one.choice.entry->program;
+  return sibling_program(std::string(named ? named(one.choice.params) : ""));
+}
+
 std::vector<std::string> command(const Case& one, const fs::path& folder, int frames) {
-  const auto program_of = one.choice.entry->program;
-  const std::string program(program_of ? program_of(one.choice.params) : "");
-  std::vector<std::string> words{sibling_program(program), own_words::kCase, one.spec.scene,
-                                 one.spec.solver,          own_words::kInto, fs::absolute(folder)};
+  std::vector<std::string> words{program_of(one), own_words::kCase, one.spec.scene,
+                                 one.spec.solver, own_words::kInto, fs::absolute(folder)};
   for (const SceneSetting& setting : one.spec.settings)
     words.insert(words.end(), {own_words::kSet, setting.text()});
   if (frames > 0) words.insert(words.end(), {own_words::kFrames, std::to_string(frames)});
@@ -55,16 +59,6 @@ std::vector<std::string> command(const Case& one, const fs::path& folder, int fr
 std::size_t motion_bytes(const Scene& scene, int frames) {
   const std::size_t frame = sizeof(double) + 3 * sizeof(float) * scene.start.x.size();
   return frames > 0 ? to_index(scene.steps + 1) * frame : 0;
-}
-
-/// The record that the case wrote. Its key has to be the one that this process expects, not what
-/// the case claims.
-Record record_in(const fs::path& file, const Case& one) {
-  Record record = record_from_json(read_text(file), file.filename());
-  if (record.key != one.key)
-    throw InputError(std::string(kRecordFile) +
-                     ": the record belongs to another case: " + record.key);
-  return record;
 }
 
 }  // namespace
@@ -224,12 +218,19 @@ Record IsolatedCase::record_of(const std::optional<ProcessEnd>& end) const {
   if (end->signal == SIGKILL) return failed(Kind::oom, "killed by the system");
   if (end->signal != 0) return failed(Kind::crash, end->text() + (said.empty() ? "" : ": " + said));
   switch (end->exit_code) {
-    case 0:
+    case 0: {
+      Record record;
       try {
-        return record_in(folder_ / kRecordFile, case_);
+        record = record_from_json(read_text(folder_ / kRecordFile), kRecordFile);
       } catch (const InputError& error) {
         return failed(Kind::error, error.what());
       }
+      // the key is what this process expects, not what the case claims
+      if (record.key != case_.key)
+        throw InputError(case_.id + ": " + program_of(case_) +
+                         " was built from other sources than this program; build both");
+      return record;
+    }
     case kOutOfMemory:
       return failed(Kind::oom, "more than the limit of " + std::to_string(bytes_ >> 20) +
                                    " MB (taut run --memory raises it)");
