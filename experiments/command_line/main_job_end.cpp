@@ -53,7 +53,7 @@ std::string end_main_job(const MainJob& job, const MainJobEnd& options) {
       {.truths = truths_in_order(), .jobs = options.jobs, .progress = Countdown("truth")})));
   tell_part(5, "the committed baselines");
   BaselineOptions baselines = baseline_options();
-  baselines.baselines = results_folder() / "baselines";
+  baselines.baselines = baselines_folder();
   baselines.out = options.results;
   baselines.jobs = options.jobs;
   const Check compared = check_studies({}, baselines);

@@ -121,7 +121,7 @@ void add_judgement(Arguments& args, std::string& metric, double& tolerance) {
 }
 
 void add_baselines(Arguments& args, std::string& folder) {
-  folder = results_folder() / "baselines";
+  folder = baselines_folder();
   args.add_option("--baselines", folder, "Folder of the baselines (default: " + folder + ")");
 }
 

@@ -155,7 +155,7 @@ report::ReportInput input_of(PageRequest options) {
   report::add_stored_maps(input, load_all(maps, options.preset), store);
   for (const Study& study : studies)
     input.histories.push_back(history_of(
-        store, study.name, read_tolerances(results_folder() / "baselines" / study.name)));
+        store, study.name, read_tolerances(baselines_folder() / study.name)));
   input.command = command;
   input.solvers = introductions();
   input.vectors = to_string(widest());

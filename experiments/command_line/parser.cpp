@@ -1,6 +1,7 @@
 #include "experiments/command_line/parser.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <locale>
 #include <optional>
@@ -237,6 +238,23 @@ void refuse_empty_values(int argc, char** argv) {
       throw InputError(std::string(word) + ": a value is missing");
 }
 
+/// "'--jsno' is no option of this verb; did you mean '--json'?"; "" if every option is known or
+/// none is near.
+std::string meant(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  std::vector<std::string> known;
+  for (const CLI::Option* option : verb->get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  for (const std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
+    const std::string name(word.substr(0, word.find('=')));
+    if (!name.starts_with("--") || std::ranges::count(known, name) > 0) continue;
+    if (const std::string near = suggestion(name, known); !near.empty())
+      return "'" + name + "' is no option of this verb" + near;
+  }
+  return "";
+}
+
 /// Admits every program and file that the command line names, in whichever option.
 void admit_solvers(int argc, char** argv) {
   for (std::string_view word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
@@ -274,6 +292,8 @@ int parse_and_run(int argc, char** argv) {
     complaint.imbue(std::locale::classic());
     const int code = app.exit(error, std::cout, complaint);
     std::cerr << complaint.str();
+    if (const std::string option = meant(app, argc, argv); code != 0 && !option.empty())
+      std::cerr << option << '\n';
     if (code != 0) return kUsage;
     flush_output();
     return kPass;

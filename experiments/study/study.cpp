@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "core/io/document.hpp"
 #include "core/model/text.hpp"
@@ -62,15 +63,16 @@ class StudyReader {
     if (study_.question.empty()) section.missing("question");
   }
   void read_scenes(Section& section) {
-    strings(section, "scenes", study_.scenes, [](const std::string& text) {
+    strings(section, "scenes", study_.scenes, [this](const std::string& text) {
       const StudyScene scene = parse_study_scene(text);
       if (scene.name != kAll)
-        find_scene(scene.name);
+        find_scene(scene_seen_from(study_.file, scene.name));
       else if (!scene.settings.empty())
         throw InputError("'all' has no settings of its own: `set` holds for every scene");
     });
+    for (std::string& scene : study_.scenes) scene = seen_from_here(scene);
     for (const Value& item : section.find("scenes")->items)
-      study_.scene_places[item.string] = item.place;
+      study_.scene_places[seen_from_here(item.string)] = item.place;
     if (std::erase(study_.scenes, kAll) > 0)
       for (const std::string& name : shipped("scenes"))
         if (std::ranges::count(study_.scenes, name) == 0) study_.scenes.push_back(name);
@@ -97,6 +99,12 @@ class StudyReader {
     if (!std::filesystem::exists(study_.searched, none)) return;  // the search has not run yet
     for (const SearchedSetting& row : taut::read_searched(study_.searched))
       if (row.chosen()) study_.chosen[row.scene].push_back(row.solver);
+    for (auto& [scene, solvers] : study_.chosen) {
+      std::set<std::string> canonical;
+      for (const std::string& text : solvers) canonical.insert(parse_solver(text).canonical());
+      for (const std::string& text : study_.solvers)  // as it is, beside its best
+        if (canonical.insert(parse_solver(text).canonical()).second) solvers.push_back(text);
+    }
   }
   void read_set(Section& section) {
     std::vector<std::string> texts;
@@ -116,6 +124,12 @@ class StudyReader {
  private:
   /// Reads the keys. A list in a preset replaces the one before.
   void read_keys(Section&, bool of_preset);
+
+  /// A scene as the study writes it, "scene.toml:links.shear=false", seen from the current folder.
+  std::string seen_from_here(const std::string& text) const {
+    const std::string name = text.substr(0, text.find(':'));
+    return scene_seen_from(study_.file, name) + text.substr(name.size());
+  }
 
   /// Reports a scene that is listed twice with settings, and an axis that varies a setting of a
   /// scene: tables and curves distinguish the cases of a scene only by solver and axes.
@@ -318,7 +332,8 @@ class StudyReader {
         const auto add = [&](const Value& value) {
           values.push_back(text(value, key, toml));
           guarded(value, [&] {  // also for scenes and solvers of a preset
-            if (key == "scene") find_scene(parse_study_scene(values.back()).name);
+            if (key == "scene")
+              find_scene(parse_study_scene(values.back() = seen_from_here(values.back())).name);
             if (key == "solver") find_solver(values.back());
           });
         };

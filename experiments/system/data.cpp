@@ -44,6 +44,12 @@ fs::path results_folder() {
   return given && *given ? given : "results";
 }
 
+fs::path baselines_folder() {
+  const fs::path own = results_folder() / "baselines",
+                 shared = references_folder().parent_path() / "baselines";
+  return fs::is_directory(own) || !fs::is_directory(shared) ? own : shared;
+}
+
 std::vector<std::string> shipped(const std::string& kind) {
   std::vector<std::string> names;
   std::error_code none;
@@ -55,12 +61,19 @@ std::vector<std::string> shipped(const std::string& kind) {
 
 namespace {
 
+/// Whether it is a shipped file in a subfolder, such as "torture/wind".
+bool is_shipped_below(const std::string& kind, const std::string& text) {
+  return text.find('/') != std::string::npos && text.find("..") == std::string::npos &&
+         fs::is_regular_file(data_folder() / kind / (text + ".toml"));
+}
+
+bool is_path(const std::string& text) {
+  return text.find('/') != std::string::npos || text.ends_with(".toml");
+}
+
 fs::path find_file(const std::string& kind, const std::string& one, const std::string& text) {
-  if (text.find('/') != std::string::npos && text.find("..") == std::string::npos &&
-      fs::is_regular_file(data_folder() / kind / (text + ".toml")))
-    // "torture/wind" lies in a subfolder of the shipped files.
-    return data_folder() / kind / (text + ".toml");
-  if (text.find('/') != std::string::npos || text.ends_with(".toml")) {
+  if (is_shipped_below(kind, text)) return data_folder() / kind / (text + ".toml");
+  if (is_path(text)) {
     if (fs::is_directory(text)) throw InputError(text + " is a folder, not a " + one + " file");
     if (!fs::is_regular_file(text)) {
       const bool from_here = fs::path(text).is_relative();
@@ -83,5 +96,12 @@ fs::path find_file(const std::string& kind, const std::string& one, const std::s
 
 fs::path find_scene(const std::string& text) { return find_file("scenes", "scene", text); }
 fs::path find_study(const std::string& text) { return find_file("studies", "study", text); }
+
+std::string scene_seen_from(const fs::path& file, const std::string& text) {
+  if (!is_path(text) || fs::path(text).is_absolute() || is_shipped_below("scenes", text) ||
+      !file.has_parent_path() || file.parent_path() == ".")
+    return text;
+  return (file.parent_path() / text).lexically_normal();
+}
 
 }  // namespace taut

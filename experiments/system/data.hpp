@@ -30,6 +30,12 @@ std::vector<std::string> shipped(const std::string& kind);
 /// name of a shipped one. Throws InputError, with a suggestion if the name is unknown.
 std::filesystem::path find_scene(const std::string& name_or_path);
 std::filesystem::path find_study(const std::string& name_or_path);
+/// A scene that `file` names, as find_scene() takes it: a relative path is seen from the file's
+/// folder.
+std::string scene_seen_from(const std::filesystem::path& file, const std::string& name_or_path);
+
+/// Folder of the committed baselines: that of the results if it has one, else this repository's.
+std::filesystem::path baselines_folder();
 
 /// File of the running program.
 std::filesystem::path this_program();

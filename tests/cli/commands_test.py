@@ -44,6 +44,8 @@ class BadInput(CommandLine):
         self.refuse("case", "hang", "jakobsen", "--set", "span=0.9", says="unknown key 'span' in the scene; did you mean 'cloth.span'?")
         self.refuse("case", "hang", "jakobsen", "--fabric", "petrak-m7", says="'fabric' in the scene must be one of petrak-m1, ")
         self.refuse("plan", "drape:cloth.span=0.7", "jakobsen", says="settings of a scene stand alone: drape --set cloth.span=0.7")
+        self.refuse("case", "hang", "jakobsen", "--jsno", says="'--jsno' is no option of this verb; did you mean '--json'?")
+        self.refuse("frontier", "hang", "jakobsen", "--of", "wind.strenght", says="no scene has a key 'wind.strenght'; did you mean 'wind.strength'?")
         self.refuse("list", "key", says="unknown kind 'key'; did you mean 'keys'?")
         self.refuse("advise", "hnag", "--error", "1%", says="unknown scene 'hnag'; did you mean 'hang'?")
         self.refuse("advise", "hang", "--error", "1%", "--metric", "stretch.rsm", says="did you mean 'stretch.rms'?")
@@ -65,6 +67,17 @@ class BadInput(CommandLine):
             self.refuse("case", "./small.toml", "jakobsen", *words, says=both)
         for option in ("--from", "--to", "--of", "--dt", "--set"):
             self.refuse("frontier", "--all", "jakobsen", option, "1", says=[option, "--all"])
+
+    def test_a_path_in_a_study_is_seen_from_the_study(self):
+        (self.folder / "below").mkdir()
+        (self.folder / "small.toml").rename(self.folder / "below/only_here.toml")
+        study = self.study("below/study.toml", scenes=["./only_here.toml", "only_here.toml:time.dt=0.01"],
+                           rest='[[exclude]]\nscene = "./only_here.toml"\niterations = 4\n[axes]\niterations = [1, 4]\n')
+        self.taut("run", study)
+        self.assertEqual(len(self.records()), 3)
+        self.taut("run", "study.toml", "--out", "../results/runs", cwd=self.folder / "below")
+        self.assertEqual(len(self.records()), 3)
+        self.refuse("run", self.study("below/study.toml", scenes=["./none.toml"]), says="below/none.toml: no such scene file")
 
     def test_a_message_says_what_would_be_right(self):
         self.refuse("run", self.study(scenes=["hang:cloth.grid=[12,12]"]), says="a value with a comma stands in quotes: key='[12, 12]'")

@@ -468,8 +468,9 @@ TEST(TheStudyOfTrade, HasSearchedSettingsOfEverySolverOnEveryScene) {
         asked.insert(std::string(choice.entry->name));
     }
     EXPECT_GE(asked.size(), 8u);
-    for (const std::string& text : quick.chosen.at(scene))
-      found.insert(std::string(parse_solver(text).entry->name));
+    for (const SearchedSetting& one : read_searched(quick.searched))
+      if (one.chosen() && one.scene == scene)
+        found.insert(std::string(parse_solver(one.solver).entry->name));
     EXPECT_EQ(found, asked) << scene;
   }
 }
@@ -493,6 +494,22 @@ TEST(PageAnswers, AskOfCostsFirstAndOfEqualSweepsLast) {
   for (const Table& table : made.answer().tables) names.push_back(table.name);
   EXPECT_EQ(names, (std::vector<std::string>{"price", "setting", "equal_cost", "motion.share",
                                              "stretch.rms", "failures"}));
+}
+
+TEST(PageAnswers, SayWhatADefaultSettingDoes) {
+  Reported made;
+  made.add("ball", "jakobsen", {{"stretch.rms", 0.01}});
+  made.input.bench = bench_of({{"ball", "jakobsen", 1, 1, 0.2, 2e-3},
+                               {"ball", "jakobsen", 2, 1, 0.02, 4e-3},
+                               {"ball", "xpbd", 1, 1, 0.1, 2e-3}});
+  EXPECT_TRUE(made.answer().table("default").rows.empty());
+  made.input.bench->scenes[0].cases[1].record.spec.solver = "jakobsen";
+  const Table table = made.answer().table("default");
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.at(table.rows[0], "jakobsen").number(), 0.02);
+  EXPECT_NE(table.at(table.rows[0], "jakobsen").note.find("256"), std::string::npos)
+      << table.at(table.rows[0], "jakobsen").note;
+  EXPECT_EQ(table.at(table.rows[0], "xpbd").text(), "not timed");
 }
 
 /// The map of timed cases and its cells.

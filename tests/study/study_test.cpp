@@ -81,7 +81,10 @@ searched = "mine-searched.toml"
       {"fall:time.duration=1", "xpbd:substeps=3", 0.5, 1e-4, "", true, {}, {}}};
   std::ofstream(searched) << searched_toml("# as found\n", rows, {"chain, xpbd: it exploded"});
   EXPECT_EQ(ids(load_study(file.string())),
-            (Strings{"chain jakobsen:iterations=1,substeps=2", "fall duration=1 xpbd:substeps=3"}));
+            (Strings{"chain jakobsen:iterations=1,substeps=2", "chain jakobsen", "chain xpbd",
+                     "fall duration=1 xpbd:substeps=3", "fall duration=1 jakobsen",
+                     "fall duration=1 xpbd"}))
+      << "and each solver as it comes";
   const auto again = read_searched(searched);
   ASSERT_EQ(again.size(), rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {

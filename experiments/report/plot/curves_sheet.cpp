@@ -25,25 +25,40 @@ std::string only(std::size_t curve, bool failures, const std::string& x, const s
          (failures ? "yes" : "no") + "' ? " + x + " : NaN):" + y;
 }
 
+/// Ticks at 1, 2 and 5 on a logarithmic axis that has at most one power of ten; "" if it has more.
+std::string few_decades(const std::string& axis, const Scale& scale) {
+  if (std::floor(std::log10(scale.high)) > std::ceil(std::log10(scale.low))) return "";
+  std::vector<std::string> ticks;
+  for (double power = std::pow(10, std::floor(std::log10(scale.low))); power <= scale.high;
+       power *= 10)
+    for (const double tick : {power, 2 * power, 5 * power})
+      if (tick >= scale.low && tick <= scale.high)
+        ticks.push_back(gnuplot_string(significant(tick, 1)) + " " + exact(tick));
+  return "set " + axis + "tics (" + join(ticks, ", ") + ")\n";
+}
+
 /// Sets titles, scales and ticks of the axes. The ticks of a setting are the values that a study
 /// tried.
 void set_axes(Sheet& sheet, const Frame& frame, const std::vector<Chart>& charts) {
   const Quantity &x = charts.front().x, &y = charts.front().y;
   sheet.x_label = x.label();
   sheet.y_label = y.label();
+  std::set<double> tried;
+  for (const Chart& chart : charts) tried.insert(chart.ticks.begin(), chart.ticks.end());
+  const std::size_t most = charts.size() > 1 ? 8 : 12;
+  if (tried.size() > most || !frame.x.logarithmic) tried.clear();
   for (const auto& [axis, scale] : {std::pair("x", frame.x), {"y", frame.y}}) {
+    const bool is_x = std::string_view(axis) == "x";
     if (scale.logarithmic)
-      sheet.settings += std::string("set logscale ") + axis + "\nset format " + axis + " '%g'\n";
+      sheet.settings += std::string("set logscale ") + axis + "\nset format " + axis + " '%g'\n" +
+                        (is_x && !tried.empty() ? "" : few_decades(axis, scale));
     sheet.settings +=
         std::string("set ") + axis + "range [" + exact(scale.low) + ":" + exact(scale.high) + "]\n";
   }
-  std::set<double> ticks;
-  for (const Chart& chart : charts) ticks.insert(chart.ticks.begin(), chart.ticks.end());
-  const std::size_t most = charts.size() > 1 ? 8 : 12;
-  if (ticks.empty() || ticks.size() > most || !frame.x.logarithmic) return;
+  if (tried.empty()) return;
   sheet.settings +=
       "set xtics (" +
-      join(ticks, ", ",
+      join(tried, ", ",
            [&](double tick) {
              return gnuplot_string(tick_of(x, tick)) + " " + exact(tick * x.unit.scale);
            }) +

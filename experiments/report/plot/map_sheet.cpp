@@ -50,9 +50,26 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
   sheet.x_label = maps.front().x.label();
   sheet.y_label = maps.front().y.label();
   sheet.csv = "curve,solver,label,x,y,column,row,status,reason,case,stretch\n";
-  std::set<Status::Kind> kinds;
+  std::set<Status::Kind> kinds, plain;  // plain: of a case without a shade, in its own colour
   for (const StatusMap& map : maps)
-    for (const StatusMap::Cell& cell : map.cells) kinds.insert(cell.record->status.kind);
+    for (const StatusMap::Cell& cell : map.cells) {
+      kinds.insert(cell.record->status.kind);
+      if (std::isnan(error_of(*cell.record))) plain.insert(cell.record->status.kind);
+    }
+  const auto fill = [](const std::string& colour) {
+    return "with boxxyerror fs solid 1 noborder lc rgb '" + colour + "'";
+  };
+  const auto shaded = [](const StretchShade& shade) {
+    return mixed(status_style(Status::Kind::ok).colour.light, shade.share, "#FFFFFF");
+  };
+  // the key has the shades in their order, whichever panel has them first
+  for (double from = -1; const StretchShade& shade : stretch_shades()) {
+    for (const StatusMap& map : maps)
+      for (const StatusMap::Cell& cell : map.cells)
+        if (const double error = error_of(*cell.record); error > from && error <= shade.end)
+          sheet.explain(fill(shaded(shade)), std::string(shade.text));
+    from = shade.end;
+  }
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const StatusMap& map = maps[i];
     for (const StatusMap::Cell& cell : map.cells)
@@ -69,10 +86,8 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
       const std::string cells = "'@CSV@' skip 1 using (column(1) == " + std::to_string(i) +
                                 " && strcol(8) eq '" + std::string(to_string(kind)) +
                                 "' ? column(6) : NaN):7:";
-      sheet.draw(
-          cells + "(0.45):(0.45)",
-          "with boxxyerror fs solid 1 noborder lc rgb '" + std::string(style.colour.light) + "'",
-          std::string(to_string(kind)));
+      sheet.draw(cells + "(0.45):(0.45)", fill(std::string(style.colour.light)),
+                 plain.contains(kind) ? std::string(to_string(kind)) : "");
       sheet.draw(cells + "(" + gnuplot_string(style.glyph) + ")",
                  "with labels tc rgb '" + std::string(style.ink.light) + "'", "");
     }
@@ -89,10 +104,7 @@ Sheet map_sheet(const std::vector<StatusMap>& maps) {
       from = shade.end;
       if (!any) continue;
       const StatusStyle ok = status_style(Status::Kind::ok);
-      sheet.draw(cells + "(0.45):(0.45)",
-                 "with boxxyerror fs solid 1 noborder lc rgb '" +
-                     mixed(ok.colour.light, shade.share, "#FFFFFF") + "'",
-                 std::string(shade.text));
+      sheet.draw(cells + "(0.45):(0.45)", fill(shaded(shade)), std::string(shade.text));
       sheet.draw(cells + "(strcol(8) eq '" + std::string(to_string(Status::Kind::ok)) + "' ? " +
                      gnuplot_string(ok.glyph) + " : " +
                      gnuplot_string(status_style(Status::Kind::unsettled).glyph) + ")",

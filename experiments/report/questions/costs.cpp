@@ -6,7 +6,9 @@
 #include <limits>
 #include <set>
 
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "experiments/case/record_io.hpp"
 #include "experiments/report/questions/links.hpp"
 #include "experiments/report/questions/rows.hpp"
 #include "experiments/system/distinct.hpp"
@@ -87,6 +89,7 @@ class Costs {
   void add_to(Answer& answer) {
     add_price(answer);
     add_setting(answer);
+    add_default(answer);
     add_equal_cost(answer);
   }
 
@@ -248,6 +251,52 @@ class Costs {
       table.rows.push_back(std::move(row));
     }
     table.rows.push_back(overall_setting(table));
+    answer.add(std::move(table));
+  }
+
+  /// What each solver does as it comes: its defaults on every scene, beside the settings above that
+  /// were searched scene by scene.
+  void add_default(Answer& answer) {
+    const Quantity q = quantity(kVerdict);
+    Table table{"default",
+                "Error at the default setting",
+                columns_of(solvers_, q.unit),
+                {},
+                "one setting on all scenes, nothing searched, with its CPU time per simulated "
+                "second; costs differ, so none is marked"};
+    for (const JudgedScene& scene : scenes_) {
+      std::vector<Cell> row{head_of(scene.bench)};
+      for (const Column& solver : solvers_) {
+        const auto& cases = scene.bench.cases;
+        const auto found = std::ranges::find_if(cases, [&](const BenchedCase& c) {
+          return c.record.solver == solver.name &&
+                 parse_solver(c.record.spec.solver).brief() == solver.name;
+        });
+        if (found == cases.end()) {
+          row.push_back(Cell::lacking(Cell::State::not_run, "not timed"));
+          continue;
+        }
+        const Record& r = found->record;
+        const double error = completed(r.status) ? error_of(r, kVerdict) : std::nan("");
+        row.push_back(std::isfinite(error) ? Cell(error) : why_none(&r));
+        row.back().key = list_.key(r);
+        const double cost =
+            scene.candidates[static_cast<std::size_t>(found - cases.begin())].cost.mid;
+        if (std::isfinite(cost)) row.back().note = quantity(kCpuPerSecond).text(cost);
+      }
+      if (std::ranges::any_of(row, [](const Cell& c) { return std::isfinite(c.number()); }))
+        table.rows.push_back(std::move(row));
+    }
+    if (table.rows.empty()) return;
+    const Common common = common_of(table, 0);
+    table.rows.push_back(last_row(table, common, "mean of", [&](std::size_t c) {
+      std::vector<Interval> errors;
+      for (const std::size_t r : common.rows) {
+        const double error = table.rows[r][c].number();
+        errors.push_back({error, error, error});
+      }
+      return Cell(geometric_mean(errors).mid);
+    }));
     answer.add(std::move(table));
   }
 

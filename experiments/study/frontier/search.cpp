@@ -180,6 +180,10 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
     if (key) {
       range.from = key->range.min;
       range.to = key->range.max;
+    } else {
+      std::vector<std::string> names;
+      for (const SceneKey& one : scene_keys()) names.emplace_back(one.path);
+      throw InputError("no scene has a key '" + of + "'" + suggestion(of, names));
     }
   } else {
     const ParamSpec& spec = find_param(choice, of.substr(0, of.find('|')));
