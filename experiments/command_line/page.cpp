@@ -154,8 +154,8 @@ report::ReportInput input_of(PageRequest options) {
                      " makes them" + where_else(studies.front(), store));
   report::add_stored_maps(input, load_all(maps, options.preset), store);
   for (const Study& study : studies)
-    input.histories.push_back(history_of(
-        store, study.name, read_tolerances(baselines_folder() / study.name)));
+    input.histories.push_back(
+        history_of(store, study.name, read_tolerances(baselines_folder() / study.name)));
   input.command = command;
   input.solvers = introductions();
   input.vectors = to_string(widest());

@@ -47,7 +47,8 @@ fs::path results_folder() {
 fs::path baselines_folder() {
   const fs::path own = results_folder() / "baselines",
                  shared = references_folder().parent_path() / "baselines";
-  return fs::is_directory(own) || !fs::is_directory(shared) ? own : shared;
+  const bool moved = results_folder() != "results" && !fs::is_directory(own);
+  return moved && fs::is_directory(shared) ? shared : own;
 }
 
 std::vector<std::string> shipped(const std::string& kind) {

@@ -34,7 +34,8 @@ std::filesystem::path find_study(const std::string& name_or_path);
 /// folder.
 std::string scene_seen_from(const std::filesystem::path& file, const std::string& name_or_path);
 
-/// Folder of the committed baselines: that of the results if it has one, else this repository's.
+/// Folder of the committed baselines: that of the results, or this repository's if $TAUT_RESULTS
+/// names a folder without.
 std::filesystem::path baselines_folder();
 
 /// File of the running program.

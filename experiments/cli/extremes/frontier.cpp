@@ -28,6 +28,11 @@ int run_setting(const Options& options) {
   if (options.which.spec().scene.empty() || solvers.front().empty())
     throw InputError("SCENE and SOLVER are required, or --all SOLVER");
   check_solvers(solvers);
+  CaseSpec one = options.which.spec();
+  for (const std::string& solver : solvers) {  // a bad setting is refused before a store is made
+    one.solver = solver;
+    range_of(one, options.of, options.from, options.to);
+  }
   Store store(options.out);
   store.prepare();
   const auto found =

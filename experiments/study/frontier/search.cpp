@@ -180,10 +180,6 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
     if (key) {
       range.from = key->range.min;
       range.to = key->range.max;
-    } else {
-      std::vector<std::string> names;
-      for (const SceneKey& one : scene_keys()) names.emplace_back(one.path);
-      throw InputError("no scene has a key '" + of + "'" + suggestion(of, names));
     }
   } else {
     const ParamSpec& spec = find_param(choice, of.substr(0, of.find('|')));
@@ -197,8 +193,13 @@ SearchRange range_of(const CaseSpec& base, const std::string& of, std::optional<
   }
   // Ranges such as 0 to infinity only say what is a number at all.
   const bool endless = !(range.to > range.from) || range.to > 1e4;
-  if (endless && !(from && to))
-    throw InputError("'" + of + "' has no range of its own: give --from and --to");
+  if (endless && !(from && to)) {
+    std::vector<std::string> keys;
+    for (const SceneKey& key : scene_keys()) keys.emplace_back(key.path);
+    const bool is_key = !is_of_scene(of) || find_scene_key(of.substr(0, of.find('|')));
+    throw InputError("'" + of + "' has no range of its own: give --from and --to" +
+                     (is_key ? "" : suggestion(of, keys)));
+  }
   range.from = from.value_or(range.from);
   range.to = to.value_or(range.to);
   if (!(range.from < range.to))
