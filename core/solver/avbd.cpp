@@ -47,7 +47,6 @@ class AugmentedPass final : public Pass<Real> {
 
   const Layout& layout() const { return blocks_.groups().layout(); }
   Points<Real>* target() override { return &blocks_.target(); }
-  TouchingPieces* touching_pieces() override { return blocks_.touching_pieces(); }
 
   void restart() override {
     blocks_.restart();
@@ -125,6 +124,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
+  loop::refuse_faces(scene, params, "avbd", reasons);
   for (std::string& reason : elastic_links(scene)) reasons.push_back(std::move(reason));
   return reasons;
 }

@@ -53,7 +53,6 @@ class ChebyshevPass final : public Pass<Real> {
   }
   void end(Particles<Real>& p, double t, double h) override { pass_->end(p, t, h); }
   Points<Real>* target() override { return pass_->target(); }
-  TouchingPieces* touching_pieces() override { return pass_->touching_pieces(); }
 
   std::vector<PassCost> cost() const override {
     std::vector<PassCost> costs = pass_->cost();

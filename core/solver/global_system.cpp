@@ -70,6 +70,7 @@ struct GlobalSystem<Real>::Contact {
   std::vector<TouchingPiece*> solved;
   using Corners = std::vector<std::pair<Eigen::Index, double>>;
   std::vector<Corners> places;  ///< [touching] where its corners are in `rows`, and their weights
+  std::vector<Vec3> pinned;     ///< [touching] m, what pinned corners add to its position
   std::vector<Eigen::Index> place_of_row;
   Rows held;  ///< N, contact forces in the last solution
   CoupledContacts coupled;
@@ -129,14 +130,19 @@ struct GlobalSystem<Real>::Contact {
   }
 
   /// Returns the rows of all moving vertices in contact, and sets `places` accordingly.
-  std::vector<int> find_places(const std::vector<int>& row_of) {
+  template <class P>
+  std::vector<int> find_places(const P& p, const std::vector<int>& row_of) {
     std::vector<int> found;
     place_of_row.assign(inverse.size(), -1);
     places.assign(touching.size(), {});
+    pinned.assign(touching.size(), Vec3::Zero());
     for (std::size_t c = 0; c < touching.size(); ++c)
       each_corner(c, [&](std::size_t vertex, double weight) {
         const int row = row_of[vertex];
-        if (row < 0) return;
+        if (row < 0) {
+          pinned[c] += weight * p.x[vertex].template cast<double>();
+          return;
+        }
         Eigen::Index& place = place_of_row[to_index(row)];
         if (place < 0) {
           place = static_cast<Eigen::Index>(found.size());
@@ -164,6 +170,7 @@ struct GlobalSystem<Real>::Contact {
     std::vector<Eigen::Index> place;
     for (Eigen::Index c = 0; c < n; ++c) {
       place.push_back(c);
+      at.row(c) = pinned[static_cast<std::size_t>(c)].transpose();
       for (const auto& [i, wi] : places[static_cast<std::size_t>(c)]) {
         at.row(c) += wi * x.row(i);
         for (Eigen::Index d = 0; d < n; ++d)
@@ -358,7 +365,7 @@ void GlobalSystem<Real>::resolve_contacts(Particles<Real>& p) {
   Contact& contact = *contact_;
   contact.find(p);
   if (contact.touching.empty()) return;
-  contact.select_rows(factor_, contact.find_places(row_));
+  contact.select_rows(factor_, contact.find_places(p, row_));
   const std::vector<int>& rows = contact.rows;
   const Eigen::MatrixXd& compliance = contact.compliance;
   Rows x(compliance.rows(), 3), change(compliance.rows(), 3);

@@ -376,6 +376,14 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
           " substeps, or precision=double"};
 }
 
+void refuse_faces(const Scene& scene, const Params& params, std::string_view solver,
+                  std::vector<std::string>& reasons) {
+  if (params.is("faces", "off") || scene.colliders.empty()) return;
+  reasons.push_back("faces=" + std::string(params.choice("faces")) +
+                    ": cloth whose edges touch a collider does not come to rest with " +
+                    std::string(solver) + "; take implicit, pd or admm");
+}
+
 DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
   DeclaredStep step{.stiffness = stiffness_of(scene, params),
                     .substeps = params.integer("substeps")};

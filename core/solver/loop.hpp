@@ -91,6 +91,11 @@ inline std::unique_ptr<Solver> make(const Scene& scene, const Params& params,
 /// Reasons why the loop itself would get the scene wrong (SolverEntry::unsupported).
 std::vector<std::string> unsupported(const Scene&, const Params&);
 
+/// Adds the reason why `solver` refuses contact of edges and faces: cloth whose edges touch a
+/// collider does not come to rest with it.
+void refuse_faces(const Scene&, const Params&, std::string_view solver,
+                  std::vector<std::string>& reasons);
+
 /// How friction acts where contact is projected, and where it is part of the solve (Contacts).
 inline constexpr std::string_view
     kProjectedFriction = "Coulomb: tangential correction at most mu times the depth",
@@ -129,7 +134,9 @@ inline constexpr ParamSpec kFaces =
         "faces", "off", "off|edges|on",
         "keep edges of the cloth (edges), or faces and edges (on), not only vertices, "
         "out of balls, capsules, boxes and solid bodies of triangles; rigid links longer than the "
-        "radius of what they run over catch on it until the load pulls them over")
+        "radius of what they run over catch on it until the load pulls them over; vbd, avbd and "
+        "xpbd "
+        "with primal=on refuse it, since cloth whose edges touch does not come to rest with them")
         .as(ParamSpec::Role::face_contact);
 inline constexpr ParamSpec kSelf = ParamSpec::choice(
     "self", "grid", "grid|octree|off",

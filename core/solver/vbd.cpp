@@ -42,7 +42,6 @@ class DescentPass final : public Pass<Real> {
 
   const Layout& layout() const { return blocks_.groups().layout(); }
   Points<Real>* target() override { return &blocks_.target(); }
-  TouchingPieces* touching_pieces() override { return blocks_.touching_pieces(); }
 
   void restart() override { blocks_.restart(); }
   void take_over(const Pass<Real>& before) override {
@@ -87,6 +86,12 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
                                  "in each vertex' force and Hessian", loop::kSolvedFriction);
 }
 
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons = unsupported_of_springs(scene, params);
+  loop::refuse_faces(scene, params, "vbd", reasons);
+  return reasons;
+}
+
 DeclaredStep declared_step(const Scene& scene, const Params& params) {
   DeclaredStep step = loop::implicit_euler(scene, params);
   if (params.real("damping") > 0) step.none = "the exact step leaves out its damping";
@@ -107,7 +112,7 @@ TAUT_SOLVER(vbd) = {.name = "vbd",
                     .source = "Chen, Liu, Yang, Yuksel 2024; Wang 2015",
                     .params = taut::solver::vbd::kParams,
                     .make = taut::solver::vbd::make,
-                    .unsupported = taut::unsupported_of_springs,
+                    .unsupported = taut::solver::vbd::unsupported,
                     .resolved_settings = taut::solver::vbd::resolved_settings,
                     .declared_step = taut::solver::vbd::declared_step,
                     .accuracy = {.substeps = "substeps",

@@ -9,7 +9,6 @@
 
 #include "core/model/adjacency.hpp"
 #include "core/model/bending.hpp"
-#include "core/solver/contact/augmented_contacts.hpp"
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/layout/vertex_groups.hpp"
 #include "core/solver/loop.hpp"
@@ -67,8 +66,6 @@ class VertexBlocks {
   std::vector<Slot>& slots() { return slots_; }
   const std::vector<Slot>& slots() const { return slots_; }
   Points<Real>& target() { return y_; }  ///< Pass::target
-  /// Pass::touching_pieces
-  TouchingPieces* touching_pieces() { return contacts_ ? &pieces_ : nullptr; }
 
   void restart() {
     y_ = {};
@@ -103,16 +100,12 @@ class VertexBlocks {
                               .inertia = inertia_.data(),
                               .bending = bending_.empty() ? nullptr : bending_forces_.data(),
                               .damping = static_cast<Real>(damping / h)};
-    if (!pieces_.all.empty()) prepare_pieces(p.size());
-    double left2 = 0;
     for (std::size_t colour = 0; colour < groups_.colours(); ++colour) {
       const std::size_t first = groups_.first_group(colour);
       share(groups_.first_group(colour + 1) - first, [&](std::size_t begin, std::size_t end) {
         sweep_groups(p, v, first + begin, first + end);
       });
-      if (!pieces_.all.empty()) left2 += move_pieces(p, v, first, groups_.first_group(colour + 1));
     }
-    pieces_.left = std::sqrt(left2);
   }
 
   /// Calls work(begin, end) on parts of `groups` independent groups.
@@ -195,40 +188,6 @@ class VertexBlocks {
     });
   }
 
-  /// Finds the pieces of which each vertex is a corner, and how stiff contact is there.
-  void prepare_pieces(std::size_t vertices) {
-    pieces_of_.assign(vertices, {});
-    for (const TouchingPiece& piece : pieces_.all)
-      for (std::size_t c = 0; c < 3; ++c)
-        if (const double weight = piece.weights[static_cast<Eigen::Index>(c)]; weight != 0)
-          pieces_of_[to_index(piece.corners[c])].push_back({&piece, weight});
-    piece_stiffness_.assign(vertices, 0);
-    visit(0, groups_.size(), [&](std::size_t i, std::size_t g, std::size_t lane) {
-      double sum = static_cast<double>(inertia_[g * kLanes + lane]);
-      if (!bending_.empty()) sum += static_cast<double>(bending_force(g, 3, lane));
-      const VertexGroup& group = groups_.data()[g];
-      for (std::uint32_t s = group.first_slot; s < group.end_slot; ++s)
-        sum += static_cast<double>(slots_[s].stiffness[lane]);
-      piece_stiffness_[i] = kOfElsewhere * sum;
-    });
-    pieces_.stiffness = piece_stiffness_;
-  }
-  bool is_corner(std::size_t i) const { return !pieces_.all.empty() && !pieces_of_[i].empty(); }
-
-  /// Moves those vertices of a colour that are corners of pieces. This is done by one thread, since
-  /// corners of one piece may have one colour. Returns the sum of the squared forces on them [N^2].
-  double move_pieces(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t begin,
-                     std::size_t end) {
-    double left2 = 0;
-    visit(begin, end, [&](std::size_t i, std::size_t, std::size_t) {
-      if (is_corner(i)) p.x.set(i, before_[i]);
-    });
-    visit(begin, end, [&](std::size_t i, std::size_t g, std::size_t lane) {
-      if (is_corner(i)) left2 += move_in_contact(p, v, i, g, static_cast<int>(lane));
-    });
-    return left2;
-  }
-
   void sweep_groups(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t begin,
                     std::size_t end) {
     if (!bending_.empty()) set_bending_forces(p, begin, end);
@@ -236,38 +195,16 @@ class VertexBlocks {
     visit(begin, end, [&](std::size_t i, std::size_t, std::size_t) { before_.set(i, p.x[i]); });
     sweep_(v, slots_.data(), begin, end);
     visit(begin, end, [&](std::size_t i, std::size_t g, std::size_t lane) {
-      if (is_corner(i)) return;
       const Vec3 x = p.x[i].template cast<double>();
       const Vec3 previous = p.previous[i].template cast<double>();
       if (contacts_->reaches(i, x, previous)) move_in_contact(p, v, i, g, static_cast<int>(lane));
     });
   }
 
-  /// Adds contact of the pieces of vertex i, to second order around p.x.
-  void add_pieces(const Particles<Real>& p, std::size_t i, VertexModel<Real>& m) const {
-    Vec3 force = Vec3::Zero();
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-    for (const auto& [piece, weight] : pieces_of_[i]) {
-      const auto part = AugmentedContacts::part(piece->at, piece->at, piece->force,
-                                                pieces_.stiffness_of(*piece), piece->place(p.x));
-      force += weight * part.force;
-      hessian += weight * weight * part.hessian;
-    }
-    const Eigen::Matrix<Real, 3, 1> f = force.cast<Real>();
-    const Eigen::Matrix<Real, 3, 3> k = hessian.cast<Real>();
-    m.force = m.force + Vec3T<Real>{f.x(), f.y(), f.z()};
-    m.xx += k(0, 0);
-    m.yy += k(1, 1);
-    m.zz += k(2, 2);
-    m.xy += k(0, 1);
-    m.xz += k(0, 2);
-    m.yz += k(1, 2);
-  }
-
   /// Moves vertex i again from where it was before the lanes moved it: to the minimum of the same
-  /// model outside the colliders, with friction. Returns the squared force that was on it [N^2].
-  double move_in_contact(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t i,
-                         std::size_t g, int lane) {
+  /// model outside the colliders, with friction.
+  void move_in_contact(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t i, std::size_t g,
+                       int lane) {
     p.x.set(i, before_[i]);  // slots without a link refer to the vertex itself
     const Vec3 x = before_[i].template cast<double>();
     const Vec3 previous = p.previous[i].template cast<double>();
@@ -276,14 +213,12 @@ class VertexBlocks {
     const Vec3 held = contacts_->force_at(i, x, previous);
     m.force = m.force + Vec3T<Real>{static_cast<Real>(held.x()), static_cast<Real>(held.y()),
                                     static_cast<Real>(held.z())};
-    if (is_corner(i)) add_pieces(p, i, m);
     const Vec3T<Real> way = m.minimum(v.inertia[g * kLanes + static_cast<std::size_t>(lane)]);
     Eigen::Matrix<Real, 3, 3> hessian;
     hessian << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
     Vec3 to = x + Eigen::Matrix<Real, 3, 1>(way.x, way.y, way.z).template cast<double>();
     contacts_->settle_vertex(i, hessian.template cast<double>(), previous, to);
     p.x.set(i, to.cast<Real>());
-    return static_cast<double>(dot(m.force, m.force));
   }
 
   Sweep sweep_;
@@ -291,20 +226,13 @@ class VertexBlocks {
   VertexGroups groups_;
   std::vector<Slot> slots_;
   AdaptiveStart<Real> start_;
-  std::unique_ptr<Contacts> contacts_;  ///< null: no contact
-  struct Corner {
-    const TouchingPiece* piece;
-    double weight;
-  };
-  TouchingPieces pieces_;                       ///< of this sweep
-  std::vector<std::vector<Corner>> pieces_of_;  ///< [n] pieces of each vertex in this sweep
-  std::vector<double> piece_stiffness_;         ///< TouchingPieces::stiffness
-  std::vector<std::vector<Bent>> bent_;         ///< [n] elements of each vertex; empty: no bending
-  std::vector<Real> inertia_;                   ///< [groups][kLanes] N/m
-  double inertia_of_ = 0;                       ///< s, substep of inertia_; 0: none yet
-  std::vector<Real> bending_forces_;            ///< VertexSweep::bending; empty: no bending
-  Points<Real> y_;                              ///< m, positions without links
-  Points<Real> before_;  ///< m, before the lanes moved them; empty: no contact
+  std::unique_ptr<Contacts> contacts_;   ///< null: no contact
+  std::vector<std::vector<Bent>> bent_;  ///< [n] elements of each vertex; empty: no bending
+  std::vector<Real> inertia_;            ///< [groups][kLanes] N/m
+  double inertia_of_ = 0;                ///< s, substep of inertia_; 0: none yet
+  std::vector<Real> bending_forces_;     ///< VertexSweep::bending; empty: no bending
+  Points<Real> y_;                       ///< m, positions without links
+  Points<Real> before_;                  ///< m, before the lanes moved them; empty: no contact
   ThreadPool& pool_;
 };
 

@@ -42,29 +42,26 @@ Matrix3d AugmentedContacts::turning(const TouchingVertex& at, const Vec3& x) con
   return (out + out.transpose()) / 2;
 }
 
-AugmentedContacts::Part AugmentedContacts::part(const TouchingVertex& at,
-                                                const TouchingVertex& friction,
-                                                const ContactForce& held, double k, const Vec3& x) {
+AugmentedContacts::Part AugmentedContacts::push_of(const TouchingVertex& at,
+                                                   const ContactForce& held, double k,
+                                                   const Vec3& x) {
   const double push = held.push - k * at.gap(x);
-  const Matrix3d along = at.normal * at.normal.transpose();
-  Part out;
-  if (push > 0) out = {push * push / (2 * k), push * at.normal, k * along};
-  const Vec3 rub = held.rub - k * friction.slip(x);
-  const FrictionCone cone = friction.cone(rub, held.push);
+  if (push <= 0) return {};
+  return {push * push / (2 * k), push * at.normal, k * at.normal * at.normal.transpose()};
+}
+
+AugmentedContacts::Part AugmentedContacts::rub_of(const TouchingVertex& at,
+                                                  const ContactForce& held, double k,
+                                                  const Vec3& x) {
+  const Vec3 rub = held.rub - k * at.slip(x);
+  const FrictionCone cone = at.cone(rub, held.push);
   const auto [length, most] = cone;
-  if (most == 0) return out;
-  const Matrix3d across = Matrix3d::Identity() - friction.normal * friction.normal.transpose();
-  if (cone.sticks()) {
-    out.energy += length * length / (2 * k);
-    out.force += rub;
-    out.hessian += k * across;
-  } else {
-    const Vec3 u = rub / length;
-    out.energy += most / k * (length - most / 2);
-    out.force += most * u;
-    out.hessian += k * most / length * (across - u * u.transpose());
-  }
-  return out;
+  if (most == 0) return {};
+  const Matrix3d across = Matrix3d::Identity() - at.normal * at.normal.transpose();
+  if (cone.sticks()) return {length * length / (2 * k), rub, k * across};
+  const Vec3 u = rub / length;
+  return {most / k * (length - most / 2), most * u,
+          k * most / length * (across - u * u.transpose())};
 }
 
 template <class Real>

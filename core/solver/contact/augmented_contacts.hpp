@@ -2,24 +2,39 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "core/model/index.hpp"
+#include "core/model/triangle.hpp"
 #include "core/solver/contact/contacts.hpp"
 
 namespace taut {
 
+struct TouchingPiece;
+
+/// Finds the pieces that touch a collider.
+class PieceFinder {
+ public:
+  virtual ~PieceFinder() = default;
+  /// Lays the contact anew where the piece is nearest to the collider with its corners at x, if the
+  /// collider is round.
+  virtual void lay(TouchingPiece&, const Corners& x) const = 0;
+};
+
 /// A point of a face or an edge of the cloth that touches a collider, and its last contact force.
 struct TouchingPiece {
-  const void* found_by = nullptr;
+  const PieceFinder* found_by = nullptr;
   std::size_t number = 0;  ///< number of the piece at its finder
   Triangle corners;
   Vec3 weights = Vec3::Zero();  ///< of the corners; their sum is 1
   TouchingVertex at;
   ContactForce force;
+  /// Derivative of the normal by the point [1/m]; 0: the contact is not laid anew.
+  Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
 
   /// The point's position. x: positions by vertex [m].
   template <class Places>
@@ -32,6 +47,9 @@ struct TouchingPiece {
   }
 };
 
+/// Least lever at which contact turns an edge about a pinned corner, as a share of its length.
+inline constexpr double kLever = 0.02;
+
 /// The touching pieces of all colliders, which FaceContactPass finds after each iteration for the
 /// next.
 struct TouchingPieces {
@@ -43,11 +61,16 @@ struct TouchingPieces {
   double left = 0, rounding = 0;      ///< N, as in AugmentedContacts::update()
   bool changed = false;               ///< a force has changed by more than `rounding`
 
+  /// Stiffness at the point. Where a corner is pinned, it is as much larger as the lever is small.
   double stiffness_of(const TouchingPiece& piece) const {
-    double k = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      k += piece.weights[static_cast<Eigen::Index>(c)] * stiffness[to_index(piece.corners[c])];
-    return k;
+    double k = 0, moving = piece.turning.isZero(0) ? 1 : 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double weight = piece.weights[static_cast<Eigen::Index>(c)];
+      const double at = stiffness[to_index(piece.corners[c])];
+      k += weight * at;
+      if (at > 0) moving = std::min(moving + weight, 1.0);
+    }
+    return k / std::pow(std::max(moving, kLever), 3);
   }
 };
 
@@ -165,9 +188,19 @@ class AugmentedContacts {
   /// Calls visit(piece, part) for the faces and edges that touch, at x.
   template <class Visit>
   void each_piece(const std::vector<Vec3>& x, const Visit& visit) const {
-    for (const TouchingPiece& piece : pieces_.all)
-      visit(piece,
-            part(piece.at, piece.at, piece.force, pieces_.stiffness_of(piece), piece.place(x)));
+    for (const TouchingPiece& piece : pieces_.all) {
+      const double k = pieces_.stiffness_of(piece);
+      TouchingPiece laid = piece;
+      Corners at;
+      for (std::size_t c = 0; c < 3; ++c) at[c] = x[to_index(piece.corners[c])];
+      piece.found_by->lay(laid, at);
+      visit(laid, push_of(laid.at, piece.force, k, laid.place(x)));
+      if (piece.at.friction > 0) {
+        TouchingPiece rubbed = piece;
+        rubbed.turning.setZero();
+        visit(rubbed, rub_of(piece.at, piece.force, k, piece.place(x)));
+      }
+    }
   }
 
   /// Sets the forces to those acting at x if the gradient `left` [N] is small enough; x equals p.x
@@ -184,7 +217,12 @@ class AugmentedContacts {
 
   /// across: where friction acts across the normal.
   static Part part(const TouchingVertex& at, const TouchingVertex& across, const ContactForce& held,
-                   double k, const Vec3& x);
+                   double k, const Vec3& x) {
+    const Part push = push_of(at, held, k, x), rub = rub_of(across, held, k, x);
+    return {push.energy + rub.energy, push.force + rub.force, push.hessian + rub.hessian};
+  }
+  static Part push_of(const TouchingVertex&, const ContactForce& held, double k, const Vec3& x);
+  static Part rub_of(const TouchingVertex&, const ContactForce& held, double k, const Vec3& x);
 
  private:
   TouchingVertex laid(TouchingVertex at, const Vec3& x) const {

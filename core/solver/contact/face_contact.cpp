@@ -1,9 +1,15 @@
 #include "core/solver/contact/face_contact.hpp"
 
+#include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/model/deforming_body.hpp"
 #include "core/model/triangle.hpp"
+#include "core/model/triangle_mesh.hpp"
 #include "core/solver/contact/augmented_contacts.hpp"
 #include "core/solver/contact/body_features.hpp"
 #include "core/solver/contact/contacts.hpp"
@@ -26,27 +32,30 @@ namespace {
 /// passed through a convex edge of a body, or through the axis of a capsule, goes back to the side
 /// from which it came; if it is not there when the substep ends, it goes on in the next.
 ///
-/// With a solver that has a target y, a piece keeps the force F at its point from sweep to sweep
-/// and from substep to substep, while Signorini and Coulomb require it for free corners (settle()
-/// in contacts.hpp). Its changes move y as they move x, so that links feel b F. A solver that
-/// includes pieces in its solve (TouchingPieces) gets the list of those that touch, and nothing is
-/// moved here.
+/// A solver that includes pieces in its solve (TouchingPieces) gets the list of those that touch,
+/// and nothing is moved here. Forces are kept from substep to substep. At a ball or a capsule the
+/// point and the normal follow the piece as it turns (lay()). A box is a body of triangles then:
+/// the deepest point of an edge that lies on a flat side would jump from end to end. An edge with a
+/// pin that lies on the surface can only turn about the pin; its point keeps a lever of kLever, and
+/// the force on its other corner is kept where the lever changes.
 template <class Real>
-class FaceContactPass final : public Pass<Real> {
+class FaceContactPass final : public Pass<Real>, public PieceFinder {
  public:
   /// Precondition: the collider is neither a plane nor a thin body. pieces: faces and edges
-  /// (is_edge()). solver: null, or the pass of the links, whose target is moved as well.
+  /// (is_edge()). solver: null, or the pass of the links that includes pieces in its solve.
   FaceContactPass(const Collider& collider, double thickness, bool continuous,
                   std::vector<Triangle> pieces, Pass<Real>* solver, bool only_passed)
       : collider_(collider),
+        type_(type_name(collider.shape)),
         thickness_(thickness),
         continuous_(continuous),
         only_passed_(only_passed),
         faces_(std::move(pieces)),
-        solver_(solver),
         pieces_(solver ? solver->touching_pieces() : nullptr),
-        held_(solver ? faces_.size() : 0) {
-    if (std::holds_alternative<MeshBody>(collider.shape))
+        held_(pieces_ ? faces_.size() : 0) {
+    if (const Box* box = std::get_if<Box>(&collider.shape); box && pieces_)
+      collider_.shape = as_triangles(*box);
+    if (std::holds_alternative<MeshBody>(collider_.shape))
       features_.emplace(thickness, faces_.size());
     if (collider_.frames) deforming_.emplace(collider_);
   }
@@ -104,9 +113,13 @@ class FaceContactPass final : public Pass<Real> {
     for (std::size_t f = 0; f < held_.size(); ++f)  // forces of the last substep; p.x is y
       if (held_[f].holds()) {
         held_[f].force = turned(held_[f], at_start(p, faces_[f], held_[f].weights));
-        if (!pieces_) add_force(p.x, p, faces_[f], held_[f].weights, dt * dt * held_[f].force);
       }
-    if (pieces_) find_touching(p, p.previous);
+    if (pieces_) {
+      pinned_.resize(faces_.size());
+      for (std::size_t f = 0; f < faces_.size(); ++f)
+        for (std::size_t c = 0; c < 3; ++c) pinned_[f][c] = p.w[index(faces_[f][c])] == 0;
+      find_touching(p, p.previous);
+    }
   }
 
   void apply(Particles<Real>& p, double, double dt) override {
@@ -117,13 +130,22 @@ class FaceContactPass final : public Pass<Real> {
       return;
     }
     for (std::size_t f = 0; f < faces_.size(); ++f)
-      for (int round = 0; round < kRounds && !keep_out(p, f, dt); ++round) {
+      for (int round = 0; round < kRounds && !keep_out(p, f); ++round) {
       }
+  }
+
+  void lay(TouchingPiece& piece, const Corners& x) const override {
+    if (!rolls()) return;
+    const Separation out = round_out_of(piece.number, x);
+    piece.weights = out.point.weights;
+    piece.at.normal = out.normal;
+    piece.at.offset = out.normal.dot(out.point.position) + out.length;
+    piece.turning = turning_at(out);
   }
 
   std::vector<PassCost> cost() const override {
     return {
-        {.pass = "faces on " + std::string(type_name(collider_.shape)),
+        {.pass = "faces on " + std::string(type_),
          .items = faces_.size(),
          .bytes = sizeof(*this) + faces_.size() * sizeof(Triangle) + held_.size() * sizeof(Held)}};
   }
@@ -134,6 +156,18 @@ class FaceContactPass final : public Pass<Real> {
     Vec3 force = Vec3::Zero(), weights = Vec3::Zero();
     bool holds() const { return !force.isZero(0); }
   };
+
+  static MeshBody as_triangles(const Box& box) {
+    std::vector<Vec3> corners;
+    for (int k = 0; k < 8; ++k)
+      corners.push_back(box.half_extents.cwiseProduct(
+          Vec3((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1)));
+    std::vector<Triangle> triangles{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                    {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                    {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return {std::make_shared<TriangleMesh>(std::move(corners), std::move(triangles)), box.center,
+            box.rotation};
+  }
 
   /// Separation over an edge or corner of a box: a point that is equally deep below several sides
   /// leaves between them, along n = sum of their normals, by depth / (n . one of them).
@@ -153,13 +187,10 @@ class FaceContactPass final : public Pass<Real> {
   static constexpr int kRounds = 4;
 
   /// Returns whether the piece is done, since it had not passed through anything.
-  bool keep_out(Particles<Real>& p, std::size_t f, double dt) {
+  bool keep_out(Particles<Real>& p, std::size_t f) {
     const auto out = to_leave(p.x, f);
     if (!out || (only_passed_ && !out->has_passed)) return true;
-    if (solver_)
-      hold(p, faces_[f], *out, dt, held_[f]);
-    else
-      push(p, faces_[f], *out);
+    push(p, faces_[f], *out);
     return !out->has_passed;
   }
 
@@ -167,7 +198,7 @@ class FaceContactPass final : public Pass<Real> {
   std::optional<Separation> to_leave(const Points<Real>& x, std::size_t f) {
     const Triangle& face = faces_[f];
     const Corners t{at(x, face[0]), at(x, face[1]), at(x, face[2])};
-    const bool holds = solver_ && held_[f].holds();
+    const bool holds = pieces_ && held_[f].holds();
     // every point of the face is within a side of its first corner
     const bool far = (t[0] - center_).squaredNorm() >= 2 * (reach_ * reach_ + side2_of(t));
     if (far && !holds && !may_have_passed(f, t)) return {};
@@ -185,12 +216,112 @@ class FaceContactPass final : public Pass<Real> {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const auto out = to_leave(x, f);
       if (!out || inverse_mass_of(p, faces_[f], out->point.weights) == 0) continue;
+      if (out->point.weights.maxCoeff() >= 1 - 1e-9 || is_of_an_edge(f, x, *out)) {
+        held_[f] = {};
+        continue;
+      }
       TouchingPiece piece{this, f, faces_[f], out->point.weights, touching(p, faces_[f], *out), {}};
-      if (const double push = piece.at.normal.dot(held_[f].force); push > 0)
-        piece.force = {push, piece.at.across(held_[f].force)};
+      Vec3 force = held_[f].force;
+      if (rolls())
+        force *= moving_share(p, faces_[f], held_[f].weights) /
+                 moving_share(p, faces_[f], piece.weights);
+      if (const double push = piece.at.normal.dot(force); push > 0)
+        piece.force = {push, piece.at.across(force)};
+      if (rolls()) piece.turning = turning_at(*out);
       all.push_back(piece);
     }
     return std::span(all).subspan(first);
+  }
+
+  /// Whether the piece is a face that is no deeper in a round collider than its edges.
+  bool is_of_an_edge(std::size_t piece, const Points<Real>& x, const Separation& out) const {
+    if (is_edge(faces_[piece]) || std::holds_alternative<MeshBody>(shape_)) return false;
+    constexpr double kSame = 1e-6;
+    const Triangle& face = faces_[piece];
+    const Corners t{at(x, face[0]), at(x, face[1]), at(x, face[2])};
+    double deepest = -reach_;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Corners edge{t[c], t[(c + 1) % 3], t[(c + 1) % 3]};
+      const Ball* ball = std::get_if<Ball>(&shape_);
+      deepest = std::max(deepest, ball ? deepest_in(*ball, edge).depth
+                                       : deepest_in(std::get<Capsule>(shape_), edge).depth);
+    }
+    return out.length <= deepest + kSame * std::sqrt(side2_of(t));
+  }
+  /// Whether the collider is round, in a solve.
+  bool rolls() const {
+    return pieces_ &&
+           (std::holds_alternative<Ball>(shape_) || std::holds_alternative<Capsule>(shape_));
+  }
+  /// How the point of a piece that is nearest to a round collider leaves it, at least kLever away
+  /// from pinned corners.
+  Separation round_out_of(std::size_t piece, const Corners& t) const {
+    const Vec3 weights =
+        is_edge(faces_[piece]) ? nearest_of_edge(piece, t) : nearest_of_face(piece, t);
+    Separation out;
+    out.point = {weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2], weights};
+    const Surface nearest = surface(shape_, out.point.position);
+    out.length = -nearest.distance;
+    out.normal = nearest.normal;
+    return out;
+  }
+  Vec3 nearest_of_face(std::size_t piece, const Corners& t) const {
+    const Ball* ball = std::get_if<Ball>(&shape_);
+    Vec3 weights =
+        (ball ? deepest_in(*ball, t) : deepest_in(std::get<Capsule>(shape_), t)).at.weights;
+    double moving = 0, corners = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      if (!pinned_[piece][c]) {
+        moving += weights[to_axis(c)];
+        ++corners;
+      }
+    if (moving >= kLever || corners == 0) return weights;
+    weights *= (1 - kLever) / (1 - moving);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (!pinned_[piece][c]) weights[to_axis(c)] = kLever / corners;
+    return weights;
+  }
+  /// Where an edge is parallel to a capsule's axis, the middle rather than an end: the point must
+  /// not jump from end to end.
+  Vec3 nearest_of_edge(std::size_t piece, const Corners& t) const {
+    constexpr double kMiddle = 1e-3;
+    const auto within = [&](double share) {
+      return std::clamp(share, pinned_[piece][0] ? kLever : 0.0,
+                        pinned_[piece][1] ? 1 - kLever : 1.0);
+    };
+    const Vec3 u = t[1] - t[0];
+    const double uu = u.squaredNorm();
+    const auto share_at = [&](const Vec3& center) {
+      return within(uu > 0 ? u.dot(center - t[0]) / uu : 0);
+    };
+    double share = 0;
+    Vec3 center;
+    if (const Ball* ball = std::get_if<Ball>(&shape_)) {
+      center = ball->center;
+      share = share_at(center);
+    } else {
+      const Capsule& capsule = std::get<Capsule>(shape_);
+      const Vec3 v = capsule.to - capsule.from, r = capsule.from - t[0];
+      const double uv = u.dot(v), vv = v.squaredNorm(), det = uu * vv - uv * uv;
+      if (uu * vv > 0)
+        share = within((vv * u.dot(r) - uv * v.dot(r) + kMiddle * uu * vv / 2) /
+                       (det + kMiddle * uu * vv));
+      center = capsule.nearest_on_axis(t[0] + share * u);
+      if (center == capsule.from || center == capsule.to) share = share_at(center);
+    }
+    return {1 - share, share, 0};
+  }
+  /// Derivative of the normal there [1/m].
+  Eigen::Matrix3d turning_at(const Separation& out) const {
+    const Ball* ball = std::get_if<Ball>(&shape_);
+    const double radius = ball ? ball->radius : std::get<Capsule>(shape_).radius;
+    Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - out.normal * out.normal.transpose();
+    if (const Capsule* capsule = std::get_if<Capsule>(&shape_)) {
+      const Vec3 v = capsule->to - capsule->from;
+      const double at = v.dot(out.point.position - capsule->from);
+      if (at > 0 && at < v.squaredNorm()) across -= v * v.transpose() / v.squaredNorm();
+    }
+    return across / std::max(radius - out.length, 1e-3 * radius);
   }
 
   /// Keeps the forces that the solver has found.
@@ -214,7 +345,8 @@ class FaceContactPass final : public Pass<Real> {
         piece.force = {std::max(0.0, -piece.at.gap(place)) / (h * h * own), Vec3::Zero()};
         acting.push_back(piece.force);
       }
-      change2 += (piece.at.total(acting.back()) - piece.at.total(before)).squaredNorm();
+      const double lever = rolls() ? moving_share(p, piece.corners, piece.weights) : 1;
+      change2 += (lever * (piece.at.total(acting.back()) - piece.at.total(before))).squaredNorm();
     }
     const double change = std::sqrt(change2);
     pieces_->changed = pieces_->changed || change > pieces_->rounding;
@@ -230,10 +362,10 @@ class FaceContactPass final : public Pass<Real> {
     if (const MeshBody* body = std::get_if<MeshBody>(&shape_)) return out_of(*body, piece, t);
     Separation out;
     if (const Ball* ball = std::get_if<Ball>(&shape_)) {
-      out = out_of(*ball, t);
+      out = rolls() ? round_out_of(piece, t) : out_of(*ball, t);
     } else if (const Capsule* capsule = std::get_if<Capsule>(&shape_)) {
       if (continuous_ && is_edge(faces_[piece])) out = back_over(*capsule, piece, t);
-      if (out.length <= 0) out = out_of(*capsule, t);
+      if (out.length <= 0) out = rolls() ? round_out_of(piece, t) : out_of(*capsule, t);
     } else {
       const Box& box = std::get<Box>(shape_);
       const Deepest deepest = deepest_in(box, t);
@@ -352,6 +484,7 @@ class FaceContactPass final : public Pass<Real> {
     if (const MeshBody* body = std::get_if<MeshBody>(&shape_); body && is_edge(faces_[piece]))
       if (auto out = features_->out_of_last(*body->mesh, piece, in_body(*body, t, true)))
         return in_world(*body, *out);
+    if (rolls()) return round_out_of(piece, t);
     const Vec3& weights = held_[piece].weights;
     Separation out;
     out.point = {weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2], weights};
@@ -379,6 +512,13 @@ class FaceContactPass final : public Pass<Real> {
       const double b = weights[to_axis(c)];
       sum += static_cast<double>(p.w[index(face[c])]) * b * b;
     }
+    return sum;
+  }
+  /// The share of a force at the point that corners other than pins get.
+  static double moving_share(const Particles<Real>& p, const Triangle& face, const Vec3& weights) {
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      if (p.w[index(face[c])] > 0) sum += weights[to_axis(c)];
     return sum;
   }
   /// The half-space that the piece has to stay in.
@@ -409,37 +549,6 @@ class FaceContactPass final : public Pass<Real> {
     return {dot(motion_.turn[0], f), dot(motion_.turn[1], f), dot(motion_.turn[2], f)};
   }
 
-  /// Adds a force to the corners. push: force times h^2 [N s^2].
-  static void add_force(Points<Real>& x, const Particles<Real>& p, const Triangle& face,
-                        const Vec3& weights, const Vec3& push) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double share = static_cast<double>(p.w[index(face[c])]) * weights[to_axis(c)];
-      x.add(index(face[c]), (share * push).template cast<Real>());
-    }
-  }
-
-  /// Replaces the force that held the face by the one for `out`.
-  void hold(Particles<Real>& p, const Triangle& face, const Separation& out, double dt,
-            Held& held) const {
-    const Vec3& weights = out.point.weights;
-    const double own = inverse_mass_of(p, face, weights);
-    if (own == 0) return;  // its corners are pins
-    double of_held = 0;    // 1/kg
-    for (std::size_t c = 0; c < 3; ++c)
-      of_held +=
-          static_cast<double>(p.w[index(face[c])]) * weights[to_axis(c)] * held.weights[to_axis(c)];
-    const TouchingVertex contact = touching(p, face, out);
-    Vec3 free = out.point.position - dt * dt * of_held * held.force;
-    ContactForce force;
-    settle(contact, IsotropicCompliance{dt * dt * own}, force, free);
-    const Held now{contact.total(force), weights};
-    for (Points<Real>* points : {&p.x, solver_->target()}) {
-      add_force(*points, p, face, held.weights, -dt * dt * held.force);
-      add_force(*points, p, face, now.weights, dt * dt * now.force);
-    }
-    held = now;
-  }
-
   void push(Particles<Real>& p, const Triangle& face, const Separation& out) const {
     const double sum = inverse_mass_of(p, face, out.point.weights);
     if (sum == 0) return;  // all that could move it are pins
@@ -465,13 +574,14 @@ class FaceContactPass final : public Pass<Real> {
   }
 
   Collider collider_;
+  std::string_view type_;  ///< of the scene's collider
   double thickness_;
   bool continuous_, only_passed_;
   std::vector<Triangle> faces_;  ///< and edges: is_edge()
-  Pass<Real>* solver_;           ///< null: no solver with a target
   TouchingPieces* pieces_;       ///< null unless the solver includes pieces in its solve
   std::vector<Held> held_;       ///< [pieces]; empty without a solver
-  std::vector<Corners> safe_;    ///< [pieces] m, for edges; see remember_sides()
+  std::vector<std::array<bool, 3>> pinned_;  ///< [pieces] corners that are pins, in a solve
+  std::vector<Corners> safe_;                ///< [pieces] m, for edges; see remember_sides()
   /// The collider at the end of the step, enlarged by the thickness unless it is a body.
   Shape shape_;
   Vec3 center_ = Vec3::Zero();

@@ -44,15 +44,16 @@ void add_response(const Collider& collider, const Scene& scene, const Layout& la
 }
 
 /// Faces and edges to be kept out of the collider. A face keeps its own sides out of the closed
-/// forms; at a body of triangles it leaves them to the edges.
+/// forms; at a body of triangles, and in a solve, it leaves them to the edges.
 std::vector<Triangle> pieces_of(const Scene& scene, const Collider& collider,
-                                const ContactSettings& settings) {
+                                const ContactSettings& settings, bool in_solve) {
   if (!settings.edges || std::holds_alternative<Plane>(collider.shape)) return {};
   std::set<std::pair<int, int>> edges;
   for (const Link& link : scene.links)
     if (link.family == Family::structural && link.rest > kSeamRest)
       edges.insert(std::minmax(link.a, link.b));
-  const bool faces_have_sides = settings.faces && !std::holds_alternative<MeshBody>(collider.shape);
+  const bool faces_have_sides =
+      settings.faces && !in_solve && !std::holds_alternative<MeshBody>(collider.shape);
   for (const Triangle& face : scene.mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto side = std::minmax(face[k], face[(k + 1) % 3]);
@@ -86,8 +87,9 @@ ContactPasses<Real> make_contact(const Scene& scene, const Layout& layout,
     passes.sweep.push_back(make_self_collision(scene, settings.simd, solver, pool));
   if (scene.self_collision && settings.self == SelfCollisionMethod::octree)
     passes.sweep.push_back(make_octree<Real>(scene));
+  const bool in_solve = solver && solver->touching_pieces();
   for (const Collider& collider : scene.colliders)
-    if (auto pieces = pieces_of(scene, collider, settings); !pieces.empty()) {
+    if (auto pieces = pieces_of(scene, collider, settings, in_solve); !pieces.empty()) {
       // The iterates of a solve are no path: only where it ends can an edge have passed through.
       // Sweeps over vertices, and a solve at a body that deforms, lose threads without the test.
       const bool continuous = settings.response == Response::continuous;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/solver/contact/body_features.hpp"
+
 namespace taut::solver::implicit {
 
 namespace {
@@ -14,6 +16,16 @@ void each_corner(const TouchingPiece& piece, const Visit& visit) {
   for (std::size_t c = 0; c < 3; ++c)
     if (const double weight = piece.weights[static_cast<Eigen::Index>(c)]; weight != 0)
       visit(c, weight);
+}
+
+/// An edge that turns at a round collider rolls on it. Its gap is the least over its points, f(s):
+/// the gap's Hessian has -v v^T / f'' for that, where v is the derivative of f' by the corners.
+/// Returns push / f'' [N/m^2]; 0 if the piece does not roll.
+double rolling_stiffness(const TouchingPiece& piece, const Vec3& along, double push) {
+  if (!is_edge(piece.corners) || push <= 0) return 0;
+  const double bends =
+      along.dot(piece.turning * along) + 1e-3 * along.squaredNorm() * piece.turning.trace();
+  return bends > 0 ? push / bends : 0;
 }
 
 /// Pairs of vertices between which contact of faces and edges acts; empty if the scene has none.
@@ -123,10 +135,22 @@ void StepEnergy::linearise(const std::vector<Vec3>& x, bool clamped) {
       hessian.add_contact(vertex, turning);
     });
   contacts.each_piece(x, [&](const TouchingPiece& piece, const AugmentedContacts::Part& part) {
+    const double push = part.force.dot(piece.at.normal);
+    const Vec3 along = x[to_index(piece.corners[1])] - x[to_index(piece.corners[0])];
+    const double rolls = rolling_stiffness(piece, along, push);
+    const Vec3 turn = piece.turning * along;
     each_corner(piece, [&](std::size_t c, double weight) {
       each_corner(piece, [&](std::size_t d, double other) {
         const std::size_t a = to_index(piece.corners[c]), b = to_index(piece.corners[d]);
-        if (d <= c) hessian.add_contact(a, b, weight * other * part.hessian);
+        if (d > c) return;
+        Eigen::Matrix3d block = weight * other * part.hessian;
+        if (!clamped) block -= push * weight * other * piece.turning;
+        if (rolls > 0) {
+          const Vec3 u = (c == 0 ? -1 : 1) * piece.at.normal + weight * turn,
+                     v = (d == 0 ? -1 : 1) * piece.at.normal + other * turn;
+          block += rolls * u * v.transpose();
+        }
+        hessian.add_contact(a, b, block);
       });
     });
   });
