@@ -262,8 +262,10 @@ Scene strip_over(const Shape& shape, int across, double stiffness) {
   return scene;
 }
 
-// Strains are those of an independent program, which minimises the energy of the springs with all
-// edges outside of the collider (SLSQP).
+// Strains of the narrow strips over the capsule are those of an independent program, which
+// minimises the energy of the springs with all edges outside of the collider (SLSQP): 1.2614 and
+// 0.1265 %. The others are those of mass-spring:substeps=64, to 0.3 %, with the box given as
+// triangles.
 TEST(BodyContact, ClothWhoseEdgesTouchComesToRest) {
   const Shape capsule = Capsule{{-0.2, 0, 0}, {0.2, 0, 0}, 0.11};
   const Shape box = Box{{0, -0.01, 0}, {0.2, 0.12, 0.09}};
