@@ -47,7 +47,8 @@ AugmentedContacts::Part AugmentedContacts::push_of(const TouchingVertex& at,
                                                    const Vec3& x) {
   const double push = held.push - k * at.gap(x);
   if (push <= 0) return {};
-  return {push * push / (2 * k), push * at.normal, k * at.normal * at.normal.transpose()};
+  const Matrix3d along = at.normal * at.normal.transpose();
+  return {push * push / (2 * k), push * at.normal, k * along};
 }
 
 AugmentedContacts::Part AugmentedContacts::rub_of(const TouchingVertex& at,
