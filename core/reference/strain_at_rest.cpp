@@ -72,7 +72,8 @@ constexpr double kMostSaturated = 1.5, kMostStrain = 1, kMostWithoutRoot = 0.02,
 constexpr double kMostMass = 2.5;
 /// Least share of the strain that sweeps leave for s to matter.
 constexpr double kSwept = 0.1;
-/// s up to which the twin of a descent is run: F has the saturation.
+/// s up to which the twin of a descent is run, and where its law ends. Above it, with soft springs
+/// and one to three sweeps, 8 of 100 scenes were off by 15 to 51 %.
 constexpr double kMostOfDescent = 0.3;
 
 /// s / (e^s - 1), 1 at 0.
@@ -524,9 +525,10 @@ std::vector<std::string> StrainAtRest::outside(const Strain& strain, double subs
   if (std::isnan(work.c))
     return {"its twin did not come to rest: the sheet folds, or starts far from its rest"};
   if (!strain.found) return {"no rest of the sheet was found: it folds, in more than one way"};
-  refuse(strain.s > kMostSaturated && strain.of_sweeps > kSwept,
+  const double most = work.visits == Visits::links ? kMostSaturated : kMostOfDescent;
+  refuse(strain.s > most && strain.of_sweeps > kSwept,
          "its sweeps leave hardly any strain: s = " + shortest(std::round(100 * strain.s) / 100) +
-             ", and the law ends at " + shortest(kMostSaturated));
+             ", and the law ends at " + shortest(most));
   refuse(strain.largest > kMostStrain, "its largest strain is " + percent(strain.largest) +
                                            ", and the law ends at " + percent(kMostStrain));
   refuse(work.is("projection", "sqrt-free") && strain.rms > kMostWithoutRoot,
