@@ -43,7 +43,7 @@ target_link_libraries(taut_model INTERFACE $<INSTALL_INTERFACE:taut::solver>)
 target_link_libraries(taut_metrics INTERFACE $<INSTALL_INTERFACE:taut::case>)
 
 # core/model/scene.hpp becomes <taut/model/scene.hpp>, also where headers include each other.
-set(headers core/io/mesh_io.hpp core/io/positions/positions.hpp core/io/scene_io.hpp experiments/system/data.hpp
+set(headers core/io/drawn_scene.hpp core/io/mesh_io.hpp core/io/positions/positions.hpp core/io/scene_io.hpp experiments/system/data.hpp
             core/reference/resting_springs.hpp core/reference/strain_at_rest.hpp experiments/predict/prediction.hpp
             experiments/metrics/metric.hpp experiments/case/case.hpp experiments/case/computed_motion.hpp
             experiments/case/digest.hpp experiments/case/record.hpp experiments/case/record_io.hpp

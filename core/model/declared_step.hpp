@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 
 #include "core/model/mesh.hpp"
@@ -16,6 +17,9 @@ struct DeclaredStep {
   Stiffness stiffness{};         ///< N/m
   int substeps = 1;              ///< substeps of a step
   std::string of = "a substep";  ///< the interval of one step of implicit Euler
+  /// RMS strain that a law predicts of the cloth at rest, found in some 20 ms; NaN: the law does
+  /// not hold. Null: no law is known.
+  std::function<double()> stretch_at_rest = {};
   std::string none = "";  ///< why it is not implicit Euler, or why that is not known; "": it is
 };
 

@@ -117,9 +117,6 @@ struct RestingSprings::Work {
         w(inverse_masses(of)),
         springs(springs_of(of, w, link_of)),
         hessian(springs, none, w, true, widest()) {
-    weight = Vector::Zero(hessian.size());
-    for (std::size_t i = 0; i < w.size(); ++i)
-      if (w[i] > 0) weight.segment<3>(hessian.column(i)) = scene.gravity / w[i];
     const auto halved = [](int n) { return n > 2 ? std::max(2, (n - 1) / 2 + 1) : n; };
     if (!of.mesh.grid || of.mesh.grid->size() <= kDirect) return;
     coarse = std::make_unique<Work>(
@@ -155,14 +152,22 @@ struct RestingSprings::Work {
     return f;
   }
 
-  Rest rest(std::span<const double> stiffness, const Rest* near) {
+  void put_on(std::span<const double> load) {
+    weight = Vector::Zero(hessian.size());
+    for (std::size_t i = 0; i < w.size(); ++i)
+      if (w[i] > 0)
+        weight.segment<3>(hessian.column(i)) = (load.empty() ? 1 : load[i]) / w[i] * scene.gravity;
+  }
+
+  Rest rest(std::span<const double> stiffness, const Rest* near, std::span<const double> load) {
+    put_on(load);
     for (std::size_t j = 0; j < springs.size(); ++j) springs[j].stiffness = stiffness[link_of[j]];
     excess.assign(springs.size(), 0);
     Rest now;
     if (near)
       now = *near;
     else if (coarse)
-      now = prolonged(stiffness);
+      now = prolonged(stiffness, load);
     else
       now = {scene.start.x, {}, 0, 0, false};
     const Rest first = now;
@@ -225,7 +230,7 @@ struct RestingSprings::Work {
   }
 
   /// The rest of the coarser sheet, brought to this one.
-  Rest prolonged(std::span<const double> stiffness) {
+  Rest prolonged(std::span<const double> stiffness, std::span<const double> load) {
     std::vector<double> sum(from.size() ? coarse->scene.links.size() : 0), count(sum.size());
     std::vector<double> of_coarse(sum.size());
     double mean = 0;
@@ -237,8 +242,13 @@ struct RestingSprings::Work {
       }
     for (std::size_t j = 0; j < sum.size(); ++j)
       of_coarse[j] = count[j] > 0 ? sum[j] / count[j] : mean;
-    const Rest below = coarse->rest(of_coarse, nullptr);
     const Grid &fine = *scene.mesh.grid, &grid = *coarse->scene.mesh.grid;
+    std::vector<double> of_vertices;
+    for (int j = 0; j < (load.empty() ? 0 : grid.nv); ++j)
+      for (int i = 0; i < grid.nu; ++i)
+        of_vertices.push_back(
+            load[to_index(fine.index(nearest(i, grid.nu, fine.nu), nearest(j, grid.nv, fine.nv)))]);
+    const Rest below = coarse->rest(of_coarse, nullptr, of_vertices);
     Points way_below = below.x;
     for (std::size_t i = 0; i < way_below.size(); ++i) way_below[i] -= coarse->scene.start.x[i];
     Rest out{scene.start.x, std::vector<double>(scene.links.size()), 0, 0, false};
@@ -267,8 +277,9 @@ struct RestingSprings::Work {
 
 RestingSprings::RestingSprings(const Scene& scene) : work_(std::make_unique<Work>(scene)) {}
 RestingSprings::~RestingSprings() = default;
-RestingSprings::Rest RestingSprings::rest(std::span<const double> stiffness, const Rest* near) {
-  return work_->rest(stiffness, near);
+RestingSprings::Rest RestingSprings::rest(std::span<const double> stiffness, const Rest* near,
+                                          std::span<const double> load) {
+  return work_->rest(stiffness, near, load);
 }
 
 }  // namespace taut::reference

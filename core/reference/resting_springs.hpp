@@ -23,14 +23,16 @@ class RestingSprings {
     int solves = 0;               ///< linear systems solved, on this sheet
     bool found = false;           ///< whether `unbalanced` is small enough for the strains
   };
-  /// stiffness: [links] N/m, > 0.
+  /// stiffness: [links] N/m, > 0. load: [n] the weight of each vertex is that many times its own;
+  /// empty: once.
   ///
   /// Newton's method with kept tensions: a link resists sideways motion by the tension that follows
   /// from the last linear system, not by that of an iterate, which for large K is mostly error
   /// (core/solver/newton/kept_tensions.hpp). M/h^2 is added with h growing, so that a sheet without
   /// tension, or one that shears freely, has a definite matrix. A grid starts at the rest of a grid
   /// of half its links along each side. If `near` is given, it starts there.
-  Rest rest(std::span<const double> stiffness, const Rest* near = nullptr);
+  Rest rest(std::span<const double> stiffness, const Rest* near = nullptr,
+            std::span<const double> load = {});
 
  private:
   struct Work;

@@ -25,6 +25,9 @@ enum class Visits { links, vertices };
 ///     descent (VBD)  K = K_s / F,  F = (1 + q e^-s) / (1 - e^-s),  q = g h^2 / (sag at K_s),
 ///                    s = k (1 + q) a / (a + K_s / c),  a = m/h^2
 ///
+/// A vertex's own update lifts it by what its links hold along gravity, d = sum (u.g/|g|)^2 over
+/// that of most vertices: F is a factor of its weight with d K_s in place of K_s and its own m.
+///
 /// The sheet of these springs at rest (RestingSprings) has the strains, times s / (e^s - 1) with
 /// s = g h^2 / sag, because the slow modes change within a substep, too. Links with a spring of
 /// their own have s + 2 k a / (w_a + w_b + a), a = 1/(K_s h^2), in place of s: this term was

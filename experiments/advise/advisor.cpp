@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/io/scene_io.hpp"
 #include "core/model/text.hpp"
 #include "experiments/advise/expected_cost.hpp"
 #include "experiments/advise/trial.hpp"
 #include "experiments/answer/number.hpp"
+#include "experiments/predict/prediction.hpp"
 #include "experiments/require/draft.hpp"
 #include "experiments/require/effects.hpp"
 #include "experiments/study/campaign.hpp"
@@ -216,7 +218,8 @@ class Advisor {
       const std::string name(parse_solver(solver).entry->name);
       std::vector<Candidate> others = result_.tried;
       std::erase_if(others, [&](const Candidate& c) { return c.solver == name; });
-      search_settings(solver, result_.target, run, others, depth);
+      search_settings(solver, result_.target, run, others, depth,
+                      std::numeric_limits<double>::infinity(), expected_);
       if (!ended) cut.push_back(solver);
     }
     return cut;
@@ -253,10 +256,25 @@ class Advisor {
       recommendation.certainty = Certainty::likely;
   }
 
+  /// Substeps with which sweeps leave the wanted strain at rest, where a law says so: the strain is
+  /// the error, or must be within it.
+  std::optional<int> predicted(const std::string& setting, double error) {
+    if (wanted_.metric != kStretch && wanted_.metric != kVerdict) return {};
+    const SolverChoice choice = parse_solver(setting);
+    const Case one = make(choice.canonical());
+    for (const PredictedStrain& found : predict(*one.scene, one.choice, {.error = error}))
+      if (found.refused.empty() && found.found == choice.entry->accuracy.substeps)
+        return found.choice.substeps();
+    return {};
+  }
+
   const AdviceWanted& wanted_;
   SteadyClock::time_point start_ = SteadyClock::now();
   Store& store_;
   CaseMaker maker_;
+  const Expectation expected_ = [this](const std::string& setting, double error) {
+    return predicted(setting, error);
+  };
   double duration_ = 0, dt_ = 0;   ///< duration and time step of the scene [s]
   std::vector<double> slowdowns_;  ///< ratio of wall to CPU time, for each pilot
   Advice result_;

@@ -1,10 +1,13 @@
 #include "experiments/case/run_case.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
 #include "core/model/text.hpp"
+#include "core/reference/strain_at_rest.hpp"
 #include "experiments/case/case.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/case/divergence.hpp"
@@ -177,6 +180,19 @@ double pin_rounding(const SolverChoice& choice) {
   return single ? 1e-5 : 1e-9;
 }
 
+/// DeclaredStep::stretch_at_rest, which refers to the scene and the choice.
+std::function<double()> stretch_at_rest(const Scene& scene, const SolverChoice& choice) {
+  using reference::StrainAtRest;
+  if (!StrainAtRest::refuse(scene, choice).empty()) return {};
+  return [&scene, &choice] {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    StrainAtRest law(scene, choice);
+    if (std::isnan(law.correction())) return kNone;
+    const StrainAtRest::Strain strain = law.at(choice.sweeps(), choice.substeps());
+    return law.outside(strain, choice.substeps()).empty() ? strain.rms : kNone;
+  };
+}
+
 /// Runs all steps. `step` is always the step that is being computed.
 void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& options, CaseRun& run,
                std::unique_ptr<Solver>& solver, int& step) {
@@ -210,7 +226,11 @@ void run_steps(const Scene& of, const SolverChoice& choice, const RunOptions& op
   State state;
   bool stable = true;
   std::optional<Status> strayed;
-  scene_metrics.declare(declared_step(*choice.entry, scene, choice.params));
+  if (options.measure) {
+    DeclaredStep declared = declared_step(*choice.entry, scene, choice.params);
+    declared.stretch_at_rest = stretch_at_rest(scene, choice);
+    scene_metrics.declare(declared);
+  }
   if (options.measure)
     solver->visit_substeps([&](double t) {
       if (!scene_metrics.follow_path(step)) return;

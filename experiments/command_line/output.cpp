@@ -18,6 +18,7 @@
 #include "experiments/system/process.hpp"
 #include "experiments/system/signals.hpp"
 #include "experiments/system/text.hpp"
+#include "experiments/timing/judge.hpp"
 
 namespace taut {
 
@@ -78,6 +79,8 @@ void print_files(const std::vector<std::string>& files, bool json) {
 Answer answer_of(const Record& record, std::string kind) {
   Answer answer{std::move(kind), record.id};
   answer.add({"status"}, cell_of(record.status.kind).with(record.status.reason.text()));
+  if (const std::string found = off_prediction(record); !found.empty())
+    answer.add({"finding"}, found);
   if (record.status.step >= 0) answer.add({"step"}, record.status.step);
   if (record.status.vertex >= 0) answer.add({"vertex"}, record.status.vertex);
   answer.add({"steps"}, record.steps);

@@ -6,7 +6,9 @@
 #include "core/model/index.hpp"
 #include "core/model/mesh.hpp"
 #include "core/model/pin_places.hpp"
+#include "core/model/solver.hpp"
 #include "core/model/text.hpp"
+#include "core/reference/strain_at_rest.hpp"
 #include "experiments/case/digest.hpp"
 #include "experiments/system/json.hpp"
 
@@ -244,6 +246,40 @@ std::string restarts(Prober& probe) {
   return "a run that goes on from a stored state stays within " + text(off) + " m";
 }
 
+/// Nothing that a program could fail: what its sweeps are at rest, for its author to compare.
+std::string acts_like_springs(Prober& probe) {
+  constexpr int kSide = 9, kSettled = 256, kAveraged = 128;
+  std::vector<int> upper;
+  for (int i = 0; i < kSide; ++i) upper.push_back(i);
+  Scene scene = sheet(kSide, upper);  // without damping, which a program may not know
+  scene.steps = kSettled + kAveraged;
+  probe.give(scene);
+  probe.run(scene, kSettled);
+  std::vector<Vec3> mean(scene.mesh.rest.size(),
+                         Vec3::Zero());  // what still swings swings about it
+  for (int n = 0; n < kAveraged; ++n) {
+    const State now = probe.run(scene, 1, false);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += now.x[i] / kAveraged;
+  }
+  double square = 0, count = 0;
+  for (const Link& l : scene.links) {
+    if (l.b < kSide) continue;  // between pins
+    const double e = (mean[to_index(l.b)] - mean[to_index(l.a)]).norm() / l.rest - 1;
+    square += e * e;
+    ++count;
+  }
+  const double rms = std::sqrt(square / count);
+  const std::string hung = "a sheet that hangs by a row stretches by " + text(100 * rms) +
+                           " % (RMS) in steps of " + text(kDt) + " s";
+  if (!(rms > 1e-6 && rms < 1)) return hung;
+  reference::StrainAtRest law(scene,
+                              parse_solver("jakobsen:projection=exact,order=mesh,substeps=1"));
+  double sweeps = 1;
+  for (int round = 0; round < 4; ++round) sweeps *= law.at(sweeps, 1).rms / rms;
+  return hung + ": its links act like springs of " + general(law.stiffness_of({.rms = rms}), 2) +
+         " N/m, as " + general(sweeps, 2) + " sweeps of exact projections do";
+}
+
 std::string refuses_nonsense(Prober& probe) {
   for (const std::string line :
        {R"({"op": "juggle"})", R"({"op": "scene", "file": "/does/not/exist.json", "params": {}})",
@@ -338,6 +374,7 @@ std::vector<Check> full_probe(const Command& command,
   });
   if (probe.checks().front().verdict == Verdict::failed) return probe.checks();
   physics(probe);
+  probe.check("stretch", [&] { return acts_like_springs(probe); });
   probe.check("bad requests", [&] { return refuses_nonsense(probe); });
   probe.check("end of input", [&] { return ends_with_its_input(probe); });
   probe.check("own word", [&] { return tells_its_time(probe); });

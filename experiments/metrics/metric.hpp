@@ -87,6 +87,8 @@ enum class Role {
 
 /// RMS strain of structural and shear links in the last second.
 inline constexpr std::string_view kStretch = "stretch.rms";
+/// The same as a law predicts it.
+inline constexpr std::string_view kPredicted = "stretch.predicted";
 /// RMS strain at the moment at which it is largest in a run; the last second hides it.
 inline constexpr std::string_view kRmsStretchPeak = "stretch.rms.peak";
 /// Distance from the dynamic reference over the displacement: 1 for a cloth that stands still. Its

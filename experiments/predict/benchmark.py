@@ -1,109 +1,105 @@
 #!/usr/bin/env python3
-"""taut.predict against runs: settings drawn at random, by a seed, and the ratio of the two strains.
+"""taut.predict against runs: scenes by their seeds (taut new scene), a setting of each solver in each, and the ratio of the two strains.
 
-    ./taut python experiments/predict/benchmark.py [--seed N] [--settings N]
+    ./taut python experiments/predict/benchmark.py [--scenes N] [--seed FIRST | --commit HASH]
 
-Prints Markdown. Sheets, strips, nets between close pins and irregular meshes; pins, masses, links, steps, orders; each run is damped
-until it rests. Settings that are refused are counted by reason and drawn again.
+Prints Markdown. --commit takes the seeds from a commit's hash, which nobody can choose: the code of the prediction was fixed before.
 """
 import argparse
 import collections
+import hashlib
 import pathlib
 import random
 import statistics
+import subprocess
 import tempfile
+import time
 
 import taut
 
-DURATION, DAMPING = 8, 2  # s, 1/s
-WORK = 4e8  # links times sweeps of a whole run, at most
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FROZEN = ["core/reference/resting_springs.*", "core/reference/strain_at_rest.*", "experiments/predict/prediction.*", "experiments/predict/benchmark.py"]
+SOLVERS = "jakobsen", "xpbd", "vbd"
+WORK = 1e8  # links times sweeps of a whole run, at most
 
 
-def irregular(draw, folder, n):
-    """A sheet whose vertices are displaced and whose quads are cut at random, as a file; its upper row is pinned."""
-    place = lambda i: i + draw.uniform(-0.25, 0.25) * (0 < i < n - 1)  # noqa: E731
-    lines = [f"v {place(i) / (n - 1)} {-place(j) / (n - 1)} 0" for j in range(n) for i in range(n)]
-    for j in range(n - 1):
-        for i in range(n - 1):
-            a, b, c, d = (1 + i + j * n, 2 + i + j * n, 2 + i + (j + 1) * n, 1 + i + (j + 1) * n)
-            lines += [f"f {a} {d} {c}", f"f {a} {c} {b}"] if draw.random() < 0.5 else [f"f {a} {d} {b}", f"f {b} {d} {c}"]
-    file = pathlib.Path(folder, f"irregular-{n}-{draw.randrange(10**6)}.obj")
-    file.write_text("\n".join(lines) + "\n")
-    return {"mesh": str(file), "pins": list(range(n))}
+def digest():
+    """SHA-256 of the sources of the prediction and of this benchmark"""
+    files = sorted(file for pattern in FROZEN for file in ROOT.glob(pattern) if file.is_file())
+    return hashlib.sha256(b"".join(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes() for file in files)).hexdigest()
 
 
-def scene(draw, folder):
-    kind = draw.choice(["sheet", "sheet", "strip", "net", "irregular"])
-    n = draw.randint(10, 36)
-    links = {"structural": True, "shear": True, "bend": draw.random() < 0.2}
-    if kind == "irregular":
-        cloth = irregular(draw, folder, n)
-    else:
-        grid = [n, n] if kind != "strip" else [draw.randint(8, 12), draw.randint(20, 36)]
-        cloth = {"grid": grid, "size": [(grid[0] - 1) / 30, (grid[1] - 1) / 30], "lumping": draw.choice(["area", "equal"]),
-                 "pins": draw.choice([["top-left", "top-right"], ["top"], ["top-left", "bottom-right"]])}
-    if kind == "net":
-        cloth |= {"pins": ["top-left", "top-right"], "span": draw.uniform(0.7, 0.95) * cloth["size"][0]}
-        links = {"structural": True, "shear": False, "bend": False}
-    cloth["mass"] = 10 ** draw.uniform(-1.5, 0)
-    text = lambda value: str(value).lower() if isinstance(value, bool) else repr(value).replace("'", '"')  # noqa: E731
-    section = lambda name, keys: f"[{name}]\n" + "".join(f"{key} = {text(value)}\n" for key, value in keys.items())  # noqa: E731
-    dt = draw.choice(["1/60", "1/120", "1/240"])
-    return kind, taut.scene(f'summary = "{kind}"\n' + section("cloth", cloth) + (section("links", links) if kind != "irregular" else "") +
-                            section("forces", {"damping": DAMPING}) + section("time", {"dt": dt, "duration": DURATION}), name=f"{folder}/{kind}")
-
-
-def solver(draw):
-    sweeps, substeps = round(10 ** draw.uniform(0, 1.7)), round(10 ** draw.uniform(0, 1))
-    name = draw.choice(["jakobsen", "xpbd", "vbd"])
+def setting(draw, name, cloth):
+    """(text, order) of a solver with sweeps and substeps that take at most WORK"""
+    sweeps, substeps = round(10 ** (1.7 * draw.random())), round(10 ** draw.random())
+    most = WORK / (len(cloth.links) * cloth.steps * (5 if name == "vbd" else 1))
+    substeps = max(1, min(substeps, int(most)))
+    sweeps = max(1, min(sweeps, int(most / substeps)))
+    one_of = lambda *values: values[int(draw.random() * len(values))]  # noqa: E731
     text = f"{name}:iterations={sweeps},substeps={substeps},precision=double"
+    order = "by vertex" if name == "vbd" else one_of("coloured", "coloured", "mesh", "reversed", "jolt") if name == "jakobsen" else one_of("coloured", "mesh")
     if name == "jakobsen":
-        text += f",order={draw.choice(['coloured', 'coloured', 'mesh', 'reversed', 'jolt'])},projection={draw.choice(['exact', 'sqrt-free'])}"
-    elif name == "xpbd":
-        compliance = 10 ** draw.uniform(-5, -1.5)
-        text += f",order={draw.choice(['coloured', 'mesh'])},structural={compliance:.3g},shear={compliance:.3g},bend={compliance:.3g}"
-    else:
-        stiffness = 10 ** draw.uniform(2, 5)
-        text += f",start=inertia,structural={stiffness:.3g},shear={stiffness:.3g},bend={stiffness:.3g}"
-    return name, sweeps * substeps, text
+        return text + f",order={order},projection={one_of('exact', 'sqrt-free')}", order
+    own = f"{10 ** (3.5 * draw.random() - 5):.2g}" if name == "xpbd" else f"{10 ** (2 + 3 * draw.random()):.2g}"
+    return text + (f",order={order}" if name == "xpbd" else ",start=inertia") + "".join(f",{family}={own}" for family in ("structural", "shear", "bend")), order
+
+
+def table(title, rows, groups, of):
+    """A row for each group: how many, and how far predicted and run are apart"""
+    off = lambda ratio: abs(ratio - 1)  # noqa: E731
+    print(f"\n| {title} | settings | ratio, median | 95 % of the ratios | median error | within 5 % | within 15 % | largest stretch: ratio, median |\n"
+          "|---|---|---|---|---|---|---|---|")
+    for name in groups:
+        some = [row for row in rows if of(row) == name]
+        if not some:
+            continue
+        ratios = sorted(row["ratio"] for row in some)
+        left_out = int(0.025 * len(ratios))
+        print(f"| {name} | {len(some)} | {statistics.median(ratios):.3f} | {ratios[left_out]:.2f} to {ratios[-1 - left_out]:.2f} | "
+              f"{100 * statistics.median(map(off, ratios)):.1f} % | {sum(off(r) <= 0.05 for r in ratios)} | {sum(off(r) <= 0.15 for r in ratios)} | "
+              f"{statistics.median(row['largest'] for row in some):.3f} |")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--settings", type=int, default=60)
+    parser.add_argument("--scenes", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1, help="the first; the others follow it")
+    parser.add_argument("--commit", help="the first seed is the number that its first 12 digits are")
     asked = parser.parse_args()
-    draw = random.Random(asked.seed)
+    first = int(asked.commit[:12], 16) if asked.commit else asked.seed
+    print(f"Seeds {first} to {first + asked.scenes - 1}; digest of the prediction's sources {digest()[:16]}.")
     rows, refused = [], collections.Counter()
     with tempfile.TemporaryDirectory() as folder:
-        while len(rows) < asked.settings:
-            kind, cloth = scene(draw, folder)
-            name, sweeps, text = solver(draw)
-            if len(cloth.links) * sweeps * cloth.steps * (5 if name == "vbd" else 1) > WORK:
-                continue
-            said = taut.predict(cloth, text)[0]
-            if said["refused"]:
-                refused[said["refused"][0].split(":")[0].split(" is ")[0]] += 1
-                continue
-            run = taut.simulate(cloth, text, every=0)
-            got = {key: run.values.get(value, float("nan")) for key, value in (("rms", "stretch.rms"), ("largest", "stretch.max"))}
-            rows.append((name, kind, len(cloth.x), text, run.status, said["rms"], said["rms"] / got["rms"], said["largest"] / got["largest"]))
-    off = lambda ratio: abs(ratio - 1)  # noqa: E731
-    print("| solver | settings | ratio, median | 95 % of the ratios | median error | within 5 % | largest stretch: ratio, median | its median error |\n"
-          "|---|---|---|---|---|---|---|---|")
-    for name in ("jakobsen", "xpbd", "vbd", "all"):
-        some = [row for row in rows if name in (row[0], "all")]
-        ratios, largest = sorted(row[6] for row in some), [row[7] for row in some]
-        if not some:
-            continue
-        left_out = int(0.025 * len(ratios))
-        print(f"| {name} | {len(some)} | {statistics.median(ratios):.3f} | {ratios[left_out]:.2f} to {ratios[-1 - left_out]:.2f} | "
-              f"{100 * statistics.median(map(off, ratios)):.1f} % | {sum(off(r) <= 0.05 for r in ratios)} | "
-              f"{statistics.median(largest):.3f} | {100 * statistics.median(map(off, largest)):.1f} % |")
-    print("\nThe worst:\n\n| cloth | vertices | solver | status | RMS predicted | over run |\n|---|---|---|---|---|---|")
-    for _, kind, vertices, text, status, rms, ratio, _ in sorted(rows, key=lambda row: -off(row[6]))[:10]:
-        print(f"| {kind} | {vertices} | `{text}` | {status} | {100 * rms:.3g} % | {ratio:.3f} |")
-    print(f"\nRefused: {', '.join(f'{why}: {n}' for why, n in refused.most_common())}.")
+        for seed in range(first, first + asked.scenes):
+            subprocess.run([ROOT / "build/default/taut", "new", "scene", f"{folder}/drawn-{seed}", "--seed", str(seed), "--quiet"], check=True)
+            cloth = taut.scene(f"{folder}/drawn-{seed}.toml")
+            kind = cloth.summary.split(" of ")[0].split(",")[0].removeprefix("a ")
+            for number, name in enumerate(SOLVERS):
+                text, order = setting(random.Random(len(SOLVERS) * seed + number), name, cloth)
+                said = taut.predict(cloth, text)[0]
+                if said["refused"]:
+                    refused[name, said["refused"][0].split(":")[0].split(" is ")[0]] += 1
+                    continue
+                run = taut.simulate(cloth, text, every=0)
+                rows.append({"solver": name, "order": order, "kind": kind, "seed": seed, "setting": text, "status": run.status, "rms": said["rms"],
+                             "s": said["s"], "ratio": said["rms"] / run.values.get("stretch.rms", float("nan")),
+                             "largest": said["largest"] / run.values.get("stretch.max", float("nan")), "settled": run.values.get("settle.time"),
+                             "weights": "weights" in pathlib.Path(folder, f"drawn-{seed}.toml").read_text()})
+    lost = [row for row in rows if not row["ratio"] > 0]
+    rows = [row for row in rows if row["ratio"] > 0]
+    table("solver", rows, SOLVERS, lambda row: row["solver"])
+    table("order", rows, ("coloured", "mesh", "reversed", "jolt", "by vertex"), lambda row: row["order"])
+    table("cloth", rows, sorted({row["kind"] for row in rows}), lambda row: row["kind"])
+    table("lower row", rows, ("as heavy", "3 to 30 times as heavy"), lambda row: "3 to 30 times as heavy" if row["weights"] else "as heavy")
+    table("all", rows, ("all",), lambda row: "all")
+    print("\nThe worst:\n\n| seed | cloth | solver | status | settled [s] | s | RMS predicted | over run |\n|---|---|---|---|---|---|---|---|")
+    for row in sorted(rows, key=lambda row: -abs(row["ratio"] - 1))[:10]:
+        print(f"| {row['seed']} | {row['kind']}{', heavy lower row' if row['weights'] else ''} | `{row['setting']}` | {row['status']} | {row['settled']:.2g} | "
+              f"{row['s']:.2g} | {100 * row['rms']:.3g} % | {row['ratio']:.3f} |")
+    print(f"\nRefused: {', '.join(f'{name}, {why}: {n}' for (name, why), n in sorted(refused.items()))}.")
+    if lost:
+        print("\nPredicted, but the run has no stretch: " + "; ".join(f"seed {row['seed']}, `{row['setting']}`, {row['status']}" for row in lost) + ".")
+    print(f"\nCPU time: {time.process_time():.0f} s.")
 
 
 if __name__ == "__main__":

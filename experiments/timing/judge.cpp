@@ -77,6 +77,16 @@ std::string astray(const Record& r) {
          " of its motion away, where a cloth that stands still is 100\u00A0%";
 }
 
+std::string off_prediction(const Record& r) {
+  constexpr double kApart = 0.15;
+  const double predicted = value(r, kPredicted), measured = value(r, kStretch);
+  const double apart = predicted / measured - 1;
+  if (!(std::abs(apart) > kApart)) return "";
+  return std::string(kOffPrediction) + ": its RMS stretch is " + shown(kShare, measured) +
+         ", and its sweeps should leave " + shown(kShare, predicted) + ", " +
+         shown(kShare, std::abs(apart)) + (apart > 0 ? " more" : " less");
+}
+
 double strain_error(const Record& r) {
   return std::abs(value(r, kStretch) - if_known(value(r, kMotionStrain)));
 }

@@ -75,6 +75,12 @@ std::string_view to_string(JudgedBy);
 /// first of kErrorLevels; "" if it is not, or if nobody knows.
 std::string astray(const Record&);
 
+/// A finding: the case's stretch at rest is not what its sweeps leave according to a law that holds
+/// for it (stretch.predicted), by more than 15 %; "" if it is, or if nothing is predicted. Either
+/// the solver does something else than it says, or the law is wrong there.
+inline constexpr std::string_view kOffPrediction = "off-prediction";
+std::string off_prediction(const Record&);
+
 /// The case's value of a metric, at least 0. Of kVerdict it is the largest of
 ///   - the distance from the reference in motion (motion.error) or, where a motion is too chaotic
 ///     to have one, from the observables of its references (ensemble.error);

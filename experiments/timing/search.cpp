@@ -105,13 +105,14 @@ class OpenParameters {
 class SettingSearch {
  public:
   SettingSearch(const std::string& solver, const Target& target, const Evaluation& run,
-                std::vector<Candidate> known, double dearest = kNone)
+                std::vector<Candidate> known, double dearest, const Expectation& expected)
       : solver_(solver),
         target_(target),
         run_(run),
         open_(solver),
         known_(std::move(known)),
-        dearest_(dearest) {}
+        dearest_(dearest),
+        expected_(expected) {}
 
   std::vector<Candidate> run(SearchDepth depth) {
     const Columns columns = open_.columns();
@@ -204,7 +205,10 @@ class SettingSearch {
       best_ = tried_.size() - 1;
       best_met_ = {candidate->cost.mid, values, substeps};
     }
-    if (target_.meets(*candidate)) met_.push_back({candidate->cost.mid, values, substeps});
+    if (target_.meets(*candidate))
+      met_.push_back({candidate->cost.mid, values, substeps});
+    else if (int& most = missed_[without_substeps(values)]; most < substeps)
+      most = substeps;
     return &tried_.back();
   }
 
@@ -226,10 +230,19 @@ class SettingSearch {
   /// affordable number does, returns the last number tried; `from` if all runs failed; or, at a
   /// floor, the number beyond which more did not help.
   int fewest(const Values& values, int from) {
-    int n = from;
     hopeless_ = at_floor_ = false;
+    const std::optional<int> expected = expected_substeps(values);
+    int n = expected.value_or(from);
+    const int first = n;
     const Candidate* candidate = attempt(values, n);
     if (!candidate) return n;
+    if (expected) {
+      if (beside(values, n, target_.meets(*candidate))) {
+        off_ *= static_cast<double>(n) / first;
+        return n;
+      }
+      candidate = attempt(values, n);  // others were added
+    }
     if (target_.meets(*candidate)) {
       while (n > 1 && (candidate = attempt(values, n / 2)) && target_.meets(*candidate)) n /= 2;
       return n;
@@ -239,7 +252,7 @@ class SettingSearch {
     bool any = candidate->failure.empty();
     while (stuck < 3 && n < kMostSubsteps && open_.has_substeps()) {
       if (2 * candidate->cost.mid > bar()) {
-        hopeless_ = n == from;  // the next column starts no cheaper
+        hopeless_ = n == first;  // the next column starts no cheaper
         return any ? n : from;
       }
       n *= 2;
@@ -255,6 +268,34 @@ class SettingSearch {
     floor_ = last;
     return !any ? from : at_floor_ ? helped : n;
   }
+
+  std::optional<int> expected_substeps(const Values& values) const {
+    if (!expected_ || !open_.has_substeps()) return {};
+    const std::optional<int> n = expected_(text(values), *target_.error);
+    if (!n) return {};
+    const double scaled = std::max(1.0, std::round(*n * off_));
+    return scaled <= kMostSubsteps ? std::optional(static_cast<int>(scaled)) : std::nullopt;
+  }
+
+  /// Goes from n, which was tried, by a tenth of it: to fewer as long as they meet the target, or
+  /// to more until they do, kNear times at most. Whether the fewest are known, which n becomes
+  /// then.
+  bool beside(const Values& values, int& n, bool meets) {
+    const int tenth = std::max(1, n / 10);
+    for (int time = 0; time < kNear; ++time) {
+      const int other = meets ? n - tenth : n + tenth;
+      if (other < 1) return true;
+      const Candidate* here = attempt(values, n);
+      if (!here || !here->failure.empty() || (!meets && here->cost.mid > bar())) return false;
+      const Candidate* candidate = attempt(values, other);
+      if (!candidate) return false;
+      const bool changed = target_.meets(*candidate) != meets;
+      if (!meets || !changed) n = other;
+      if (changed) return true;
+    }
+    return false;
+  }
+  static constexpr int kNear = 3;
 
   /// Uses as many substeps as the budget allows, going by the cost of previous attempts.
   void most(const Values& values) {
@@ -281,14 +322,15 @@ class SettingSearch {
       if (columns > 0 && (values == first || end.cost > 1.7 * ends.front().cost)) continue;
       if (columns++ == 0) first = values;
       if (columns > 2) return;
-      halve(end.substeps, [&](int substeps) { return attempt(values, substeps); });
+      halve(end.substeps, missed_[values], [&](int substeps) { return attempt(values, substeps); });
     }
   }
 
-  /// Bisects between `high`, which reaches the error, and half of it, which does not.
+  /// Bisects between `high`, which reaches the error, and half of it or `missed`, which do not.
   template <class At>
-  void halve(int high, const At& at) {
-    for (int low = high / 2; high - low > std::max(1, high / 10);) {
+  void halve(int high, int missed, const At& at) {
+    for (int low = std::max(high / 2, missed < high ? missed : 0);
+         high - low > std::max(1, high / 10);) {
       const int middle = (low + high) / 2;
       const Candidate* candidate = at(middle);
       if (!candidate) return;
@@ -301,7 +343,7 @@ class SettingSearch {
     if (!worth_more()) return;
     Values values = without_substeps(best_met_.values);
     const int substeps = best_met_.substeps;
-    halve(std::stoi(values[open_.sweeps()]), [&](int sweeps) {
+    halve(std::stoi(values[open_.sweeps()]), 0, [&](int sweeps) {
       values[open_.sweeps()] = std::to_string(sweeps);
       return attempt(values, substeps);
     });
@@ -337,6 +379,10 @@ class SettingSearch {
 
   /// Tries these values with the substeps of the best setting, then with as many as they need.
   void try_beside_best(const Values& values) {
+    if (target_.error && expected_substeps(values)) {
+      fewest(values, best_met_.substeps);
+      return;
+    }
     const Candidate* candidate = attempt(values, best_met_.substeps);
     if (!candidate) return;
     if (target_.budget) {  // a cheaper step leaves room for more substeps
@@ -375,9 +421,12 @@ class SettingSearch {
   OpenParameters open_;
   std::vector<Candidate> known_, tried_;
   double dearest_;
+  const Expectation& expected_;
+  double off_ = 1;  ///< fewest substeps that were found last, over those that were expected
   std::map<std::string, std::size_t> index_;
   std::optional<std::size_t> best_;
   std::vector<Met> met_;
+  std::map<Values, int> missed_;  ///< most substeps that do not meet the target, by other values
   Met best_met_{0, {}, 1};
   bool over_ = false, hopeless_ = false;
   bool at_floor_ = false;  ///< whether the last column ended because more substeps did not help
@@ -388,13 +437,14 @@ class SettingSearch {
 
 std::vector<Candidate> search_settings(const std::string& solver, const Target& target,
                                        const Evaluation& run, std::vector<Candidate> known,
-                                       SearchDepth depth, double dearest) {
-  return SettingSearch(solver, target, run, std::move(known), dearest).run(depth);
+                                       SearchDepth depth, double dearest,
+                                       const Expectation& expected) {
+  return SettingSearch(solver, target, run, std::move(known), dearest, expected).run(depth);
 }
 
 std::string cheapest_setting(const std::string& solver) {
   const Evaluation none;
-  return SettingSearch(solver, {}, none, {}).cheapest();
+  return SettingSearch(solver, {}, none, {}, kNone, {}).cheapest();
 }
 
 std::vector<std::string> cheapest_first(std::vector<std::string> solvers, const Evaluation& run) {

@@ -14,6 +14,10 @@ namespace taut {
 /// the search.
 using Evaluation = std::function<std::optional<Candidate>(const std::string& setting)>;
 
+/// The fewest substeps with which a setting, whose text leaves them open, is expected to reach an
+/// error. Nothing: nobody knows.
+using Expectation = std::function<std::optional<int>(const std::string& setting, double error)>;
+
 /// Extent of a search: only the columns; everything; or everything, repeated from its best until
 /// nothing improves.
 enum class SearchDepth { columns, refined, repeated };
@@ -23,10 +27,11 @@ enum class SearchDepth { columns, refined, repeated };
 /// solver's entry without covering their grid:
 ///   1. Columns of the second parameter (sweeps, or a stiffness). For an error, each column finds
 ///      by doubling the fewest substeps that reach it, from half of what the previous column
-///      needed; for a budget, the most substeps that it allows. The columns end after two without
-///      progress, or at a cost far above that of `known`, the candidates of other solvers. A solver
-///      with sweeps and a stiffness starts with its default stiffness and takes the next higher
-///      ones only if that does not reach the error.
+///      needed; it starts where the error is expected, if that is known, and goes on from there by
+///      tenths. For a budget, the most substeps that it allows. The columns end after two
+///      without progress, or at a cost far above that of `known`, the candidates of other solvers.
+///      A solver with sweeps and a stiffness starts with its default stiffness and takes the next
+///      higher ones only if that does not reach the error.
 ///   2. For an error: bisection of the substeps, then of the sweeps, within the last doubling.
 ///   3. The entry's alternatives, one at a time, including other stiffnesses, each with as few
 ///      substeps as it then needs.
@@ -36,7 +41,8 @@ enum class SearchDepth { columns, refined, repeated };
 std::vector<Candidate> search_settings(const std::string& solver, const Target&, const Evaluation&,
                                        std::vector<Candidate> known = {},
                                        SearchDepth depth = SearchDepth::refined,
-                                       double dearest = std::numeric_limits<double>::infinity());
+                                       double dearest = std::numeric_limits<double>::infinity(),
+                                       const Expectation& expected = {});
 
 /// The cheapest setting of `solver`: one substep and the first value of the second parameter, where
 /// its text leaves them open.

@@ -42,6 +42,30 @@ Status verdict_on(const Scene& scene, const std::string& solver) {
   return run_case(scene, parse_solver(solver)).record.status;
 }
 
+TEST(RunCase, WhatSweepsLeaveAtRestIsPredictedBesideWhatIsMeasured) {
+  Scene scene = at_rest({.nu = 9, .nv = 9, .width = 1, .height = 1, .mass = 0.2});
+  scene.pins = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  scene.damping = 2;
+  const auto stretch = [&](const char* solver) {
+    const Record r = run_case(scene, parse_solver(solver)).record;
+    return std::pair(r.value("stretch.predicted"), r.value("stretch.rms"));
+  };
+  constexpr const char* kSolver = "jakobsen:projection=exact,precision=double,iterations=8";
+  const auto [predicted, measured] = stretch(kSolver);
+  EXPECT_NEAR(predicted / measured, 1, 0.05);
+  EXPECT_TRUE(std::isnan(stretch("pd").first)) << "no law is known";
+  EXPECT_TRUE(std::isnan(stretch("jakobsen:levels=2").first)) << "nor here";
+  scene.damping = 0;
+  for (Vec3& x : scene.start.x) x = Vec3(x.x(), x.z(), x.y());
+  EXPECT_TRUE(std::isnan(stretch(kSolver).first)) << "it still swings";
+  scene.start.x = scene.mesh.rest;
+  scene.damping = 2;
+  scene.steps = 640;
+  scene.colliders = {{.shape = Ball{.center = {0.5, -9, 0.5}, .radius = 0.1}}};
+  const Record r = run_case(scene, parse_solver(kSolver)).record;
+  EXPECT_FALSE(r.values.contains("stretch.predicted")) << "contact";
+}
+
 TEST(RunCase, AMetricThatIsTooDearSaysSoAndTheCaseGoesOn) {
   const Scene scene = chain(4, 1.0 / 64);
   const CaseRun all = run_case(scene, parse_solver("jakobsen"));

@@ -781,6 +781,27 @@ searched = "mine-searched.toml"
         for name in ["../../x y", "a;b", ".hidden", "a\nb"]:
             self.taut("new", "scene", name, expect=2)
 
+    def test_a_scene_by_its_seed(self):
+        for seed in range(1, 6):  # 4 is a mesh
+            with self.subTest(seed=seed):
+                self.taut("new", "scene", f"drawn{seed}", "--seed", seed, *["--contact"] * (seed % 2))
+                run = json.loads(self.taut("case", f"./drawn{seed}.toml", "jakobsen:iterations=1", "--set", "time.duration=1", "--json").out)
+                self.assertEqual(run["status"]["kind"], "ok")
+        first = (self.folder / "drawn1.toml").read_text()
+        (self.folder / "drawn1.toml").unlink()
+        self.taut("new", "scene", "drawn1", "--seed", "1", "--contact")
+        self.assertEqual((self.folder / "drawn1.toml").read_text(), first)
+        self.assertIn("taut new scene drawn1 --seed 1 --contact", first)
+        names = json.loads(self.taut("new", "scene", "again", "--seed", 4, "--json").out)
+        self.assertEqual(len(list(self.folder.glob("again.*"))), 2, names)
+        (self.folder / "again.toml").unlink()
+        self.assertIn("again.obj already exists", self.taut("new", "scene", "again", "--seed", 4, expect=2).err)
+        self.assertFalse((self.folder / "again.toml").exists())
+        for words, why in [(["scene", "no", "--seed", "-1"], "--seed: '-1'"), (["scene", "no", "--seed", "1.5"], "--seed: '1.5'"),
+                           (["study", "no", "--seed", "1"], "--seed draws a scene"), (["scene", "no", "--contact"], "--seed")]:
+            self.assertIn(why, self.taut("new", *words, expect=2).err)
+        self.assertFalse((self.folder / "no.toml").exists())
+
     def test_a_reference_goes_to_the_results_and_replaces_nothing_unasked(self):
         (self.folder / "hang.toml").write_text((self.folder / "small.toml").read_text().replace('["top-left"]', '["top"]'))
         own = {**os.environ, "TAUT_RESULTS": str(self.folder / "own")}

@@ -77,7 +77,8 @@ class Toys(Programs):
             self.skipTest(f"{shlex.split(command)[0]} is not here: its SDK is not tested")
         probe = self.taut("external", "probe", command)
         self.assertRegex(probe.out, "may be scored +yes")
-        self.assertEqual(probe.out.count("passed"), 9, probe.out)
+        self.assertEqual(probe.out.count("passed"), 10, probe.out)
+        self.assertRegex(probe.out, r"its links act like springs of [0-9.e+]+ N/m, as 8 sweeps")
         (self.folder / "sheet.toml").write_text("[cloth]\ngrid = [6, 6]\nsize = [1, 1]\nmass = 0.1\npins = [\"top-left\", \"top-right\"]\n"
                                                 "[time]\ndt = \"1/64\"\nduration = 9.375\n")
         ours = self.end_of("./sheet.toml", LISTING + "6")
@@ -457,7 +458,7 @@ class Probe(Programs):
         told = self.answer("external", "probe", TOYS["cpp"])
         self.assertIs(facts_of(told)["passed"], True)
         self.assertEqual([c["check"] for c in rows_of(told, "checks")],
-                         ["hello", "free fall", "time step", "pins", "moving pins", "same bits", "restart", "bad requests", "end of input", "own word"])
+                         ["hello", "free fall", "time step", "pins", "moving pins", "same bits", "restart", "stretch", "bad requests", "end of input", "own word"])
 
 
 if __name__ == "__main__":

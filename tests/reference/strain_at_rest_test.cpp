@@ -49,6 +49,19 @@ TEST(RestingSprings, AChainCarriesTheWeightBelow) {
   }
 }
 
+TEST(RestingSprings, AHeavierLoadOnStifferSpringsStretchesThemAsMuch) {
+  const Scene s = sheet(21, 21, {.structural = true, .shear = true});
+  RestingSprings springs(s);
+  const std::vector<double> k(s.links.size(), 500), stiffer(s.links.size(), 1500);
+  const auto one = springs.rest(k),
+             loaded =
+                 springs.rest(stiffer, nullptr, std::vector<double>(to_index(s.mesh.size()), 3.0));
+  ASSERT_TRUE(one.found && loaded.found);
+  for (std::size_t j = 0; j < k.size(); ++j)
+    EXPECT_NEAR(loaded.tension[j], 3 * one.tension[j], 0.05) << j;
+  EXPECT_EQ(springs.rest(k).tension, one.tension) << "a load is not kept";
+}
+
 /// From a start that is neither stretched nor in the shape at rest.
 TEST(RestingSprings, ARopeHangsInTheElasticCatenary) {
   const int n = 16;
@@ -159,6 +172,16 @@ TEST(StrainAtRest, RefusesWithTheReason) {
   for (int i = 0; i < held.mesh.size(); ++i) held.pins.push_back(i);
   EXPECT_EQ(reasons(held, "jakobsen"),
             std::vector<std::string>{"no structural or shear link of it can stretch"});
+  constexpr const char* kVertices = "vbd:start=inertia";
+  EXPECT_TRUE(reasons(good, kVertices).empty());
+  EXPECT_TRUE(reasons(sheet(12, 12, {.structural = true}), kVertices)
+                  .front()
+                  .starts_with("no shear links"));
+  EXPECT_TRUE(reasons(sheet(1, 12, {.structural = true}), kVertices).empty()) << "a chain";
+  Scene heavy = good;
+  heavy.mesh.mass.back() *= 40;
+  EXPECT_TRUE(reasons(heavy, kVertices).front().starts_with("a vertex weighs more than 2.5 times"));
+  EXPECT_TRUE(reasons(heavy, "jakobsen").empty());
   Scene bending = good;
   bending.bending = Bending{1, 1};
   EXPECT_TRUE(reasons(bending, "jakobsen").front().starts_with("bending"));

@@ -85,6 +85,30 @@ TEST(Curves, PositionsFromAFileAreALevelOverSweeps) {
             (Points{{1.0 / 64, 1.0 / 64}, {1.0 / 32, 1.0 / 32}}));
 }
 
+TEST(Curves, PredictedStretchHasAChartWhoseLineIsEqual) {
+  StudyResult study;
+  for (const int sweeps : {4, 8, 16}) {
+    Record r = synthetic::record("hang", "jakobsen", sweeps, 1.0 / 64);
+    r.values = {{"stretch.rms", 0.1 / sweeps}, {"stretch.predicted", 0.11 / sweeps}};
+    study.records.push_back(r);
+  }
+  ReportInput input;
+  input.studies = {study};
+  const auto predicted = [&] {
+    std::vector<Chart> charts = scene_charts(input, "hang");
+    std::erase_if(charts, [](const Chart& c) { return c.id != "hang-predicted"; });
+    return charts;
+  };
+  ASSERT_EQ(predicted().size(), 1u);
+  const Chart chart = predicted().front();
+  EXPECT_EQ(theory_factor(chart), 1) << "not below the curves";
+  EXPECT_EQ(chart.slope, 1);
+  EXPECT_FALSE(chart.join);
+  EXPECT_EQ(chart.curves.at(0).points.at(0).x, 0.11 / 16);
+  for (Record& r : input.studies[0].records) r.values.erase("stretch.predicted");
+  EXPECT_TRUE(predicted().empty());
+}
+
 TEST(Curves, NameASettingWhereItsValueAloneSaysNothing) {
   std::vector<Record> all;
   const auto add = [&](const char* name, const char* value, const char* setting) {

@@ -10,6 +10,7 @@
 #include "experiments/case/record_io.hpp"
 #include "experiments/report/chart/palette.hpp"
 #include "experiments/report/chart/wording.hpp"
+#include "experiments/report/questions/case_list.hpp"
 #include "experiments/report/questions/rows.hpp"
 
 namespace taut::report::format_test {

@@ -19,8 +19,8 @@ bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
 experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|deforming_body|text|triangle|triangle_mesh)|reference/step_error)\.hpp|experiments/metrics/
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
-experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/
-experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp)
+experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/|core/reference/strain_at_rest\.hpp
+experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp|core/reference/strain_at_rest\.hpp)
 experiments/python       | (core/(model|io)|experiments/(metrics|case|predict|python))/|experiments/system/data.hpp
 experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|case|results))/
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
@@ -34,7 +34,7 @@ experiments/steps        | (core/(model|io|reference)|experiments/(answer|system
 experiments/baseline     | (core/(model|io)|experiments/(answer|system|case|results|study|truths|baseline))/
 experiments/history      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|baseline|history))/
 experiments/require      | (core/(model|io)|experiments/(answer|system|metrics|case|results|study|timing|require))/
-experiments/advise       | (core/(model|io)|experiments/(answer|system|case|results|study|timing|require|advise))/
+experiments/advise       | (core/(model|io)|experiments/(answer|system|case|predict|results|study|timing|require|advise))/
 experiments/truths       | (core/(model|reference)|experiments/(answer|system|metrics|case|truths))/
 experiments/render/image | (core/model|experiments/(system|render/image))/
 experiments/render/opengl | (core/(model|io)|experiments/render/(image|opengl))/

@@ -119,5 +119,24 @@ TEST(Judge, SaysHowNearTheBestCame) {
   EXPECT_EQ(why_not(within(0.01), all, kVerdict).note, "at best 20 % (jakobsen:iterations=2)");
 }
 
+TEST(OffPrediction, IsAStretchMoreThanASeventhFromWhatSweepsLeave) {
+  Record r;
+  EXPECT_EQ(off_prediction(r), "") << "nothing is known";
+  r.values = {{"stretch.rms", 0.02}};
+  EXPECT_EQ(off_prediction(r), "") << "nothing is predicted";
+  r.values["stretch.predicted"] = std::nan("");
+  EXPECT_EQ(off_prediction(r), "");
+  for (const double near : {0.0171, 0.0229}) {
+    r.values["stretch.predicted"] = near;
+    EXPECT_EQ(off_prediction(r), "") << near;
+  }
+  r.values["stretch.predicted"] = 0.016;
+  EXPECT_TRUE(off_prediction(r).starts_with("off-prediction: its RMS stretch is 2"))
+      << off_prediction(r);
+  EXPECT_TRUE(off_prediction(r).ends_with(" less"));
+  r.values["stretch.predicted"] = 0.024;
+  EXPECT_TRUE(off_prediction(r).ends_with(" more"));
+}
+
 }  // namespace
 }  // namespace taut::candidate_test

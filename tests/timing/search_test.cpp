@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "core/model/solver.hpp"
 
@@ -58,6 +61,32 @@ TEST(Search, FindsNearlyWhatAFullGridWouldFind) {
       EXPECT_LE(best.cost.mid, 1.25 * formula.cheapest(error)) << overhead << " " << error;
       EXPECT_LE(formula.runs, 40);
     }
+}
+
+TEST(Search, StartsWhereTheErrorIsExpected) {
+  for (const double error : {0.01, 1e-3, 1e-4}) {
+    Formula alone, told, misled;
+    const Target target{error, {}};
+    search_settings(kPlain, target, std::ref(alone));
+    const auto expected = [](double factor) {
+      return [factor](const std::string& setting, double wanted) -> std::optional<int> {
+        const auto k = parse_solver(setting).params.integer("iterations");
+        return std::max(1, static_cast<int>(std::ceil(factor / std::sqrt(wanted * k))));
+      };
+    };
+    const auto of = [&](Formula& formula, double factor) {
+      return best_of(search_settings(kPlain, target, std::ref(formula), {}, SearchDepth::refined,
+                                     std::numeric_limits<double>::infinity(), expected(factor)),
+                     target);
+    };
+    EXPECT_LE(of(told, 1).cost.mid, 1.25 * told.cheapest(error)) << error;
+    EXPECT_LT(told.runs, alone.runs) << error;
+    for (const double wrong : {0.3, 3.0}) {
+      const Candidate best = of(misled, wrong);
+      EXPECT_TRUE(target.meets(best));
+      EXPECT_LE(best.cost.mid, 1.25 * misled.cheapest(error)) << error << " " << wrong;
+    }
+  }
 }
 
 TEST(Search, SpendsABudgetButNotMore) {

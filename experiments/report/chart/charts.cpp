@@ -268,6 +268,7 @@ Chart make_chart(std::string kind, const Records& records, const std::string& x,
 }
 
 double theory_factor(const Chart& chart) {
+  if (chart.factor) return *chart.factor;
   double factor = std::numeric_limits<double>::infinity();
   if (chart.slope)
     for (const Curve& curve : chart.curves)
@@ -279,6 +280,7 @@ double theory_factor(const Chart& chart) {
 
 std::string theory_text(const Chart& chart) {
   if (chart.x.name == kSweeps && *chart.slope == -1) return "theory of relaxation: 1/sweeps";
+  if (*chart.slope == 1 && chart.factor == 1) return "as predicted";
   if (*chart.slope == 1) return "in proportion to " + chart.x.title;
   return "slope " + significant(*chart.slope, 2) + ", as the study says";
 }
@@ -342,11 +344,12 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
   std::vector<Chart> charts;
   // Curves along the time step are of one number of sweeps, all others of one time step.
   const auto add = [&](const std::string& id, const std::string& kind, const std::string& x,
-                       const std::string& y, const std::string& caption) {
+                       const std::string& y, const std::string& caption,
+                       const std::string& along = "") {
     const std::string held = x == "dt" ? kSweeps : "dt";
     const Slice slice = hold(records_along(input, scene, x, y), held);
     try {
-      Chart chart = make_chart(kind, slice.records, x, y, x);
+      Chart chart = make_chart(kind, slice.records, x, y, along.empty() ? x : along);
       chart.id = scene + "-" + id;
       chart.scene = scene;
       chart.caption = caption;
@@ -369,6 +372,13 @@ std::vector<Chart> scene_charts(const ReportInput& input, const std::string& sce
       if (const auto at = study.slopes.find(scene);
           value->falls_with_sweeps && at != study.slopes.end())
         charts.back().slope = at->second;
+  }
+  if (add("predicted", "convergence", std::string(kPredicted), std::string(kStretch),
+          "What sweeps leave at rest, measured over predicted without a run: on the line both are "
+          "equal.",
+          "setting")) {
+    charts.back().slope = charts.back().factor = 1;
+    charts.back().join = false;
   }
   for (const ValueSpec* value : values) {
     if (over_sweeps_alone(*value)) continue;

@@ -64,6 +64,8 @@ struct Chart {
   std::vector<double> ticks = {};       ///< of x: the values of a study's setting, SI, ascending
   bool join = true;                     ///< the points of a curve by a line
   std::optional<double> slope = {};     ///< the theory's exponent
+  /// c of its line c x^slope, which is drawn as it is; nothing: it is drawn below the curves.
+  std::optional<double> factor = {};
   /// The value below which y says nothing, and the reason.
   struct Floor {
     double y = 0;

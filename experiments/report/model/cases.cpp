@@ -12,6 +12,7 @@
 #include "experiments/report/chart/wording.hpp"
 #include "experiments/report/model/parts.hpp"
 #include "experiments/system/distinct.hpp"
+#include "experiments/timing/judge.hpp"
 
 namespace taut::report {
 
@@ -99,6 +100,7 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
            {"projections", r.projections},
            {"status", to_string(r.status.kind)}};
   add_if(one, "reason", r.status.reason.text());
+  add_if(one, "finding", off_prediction(r));
   if (r.status.step >= 0) one["step"] = r.status.step;
   if (r.status.vertex >= 0) one["vertex"] = r.status.vertex;
   one["values"] = Json::object();
@@ -123,10 +125,11 @@ Json json_of_case(const Record& r, const BenchedCase* timed, CaseList& refs) {
 
 Json facts_of(const CaseList& refs, const std::string& scene) {
   std::map<std::string, std::set<double>> seen;
-  std::size_t cases = 0;
+  std::size_t cases = 0, off = 0;
   for (const Record* r : refs.cases()) {
     if (r->scene != scene) continue;
     ++cases;
+    off += !off_prediction(*r).empty();
     for (const char* name : {"vertices", "links", "dt", kSubsteps, kSweeps})
       if (const double value = value_of(*r, name); std::isfinite(value)) seen[name].insert(value);
     seen["t"].insert(std::round(r->steps * r->dt * 100) / 100);
@@ -137,6 +140,8 @@ Json facts_of(const CaseList& refs, const std::string& scene) {
     facts.push_back({{"name", q.title}, {"value", range_of(values, q)}});
   }
   facts.push_back({{"name", "cases"}, {"value", std::to_string(cases)}});
+  if (off > 0)
+    facts.push_back({{"name", kOffPrediction}, {"value", std::to_string(off) + " of these"}});
   return facts;
 }
 

@@ -277,6 +277,7 @@ function fillCase(dialog, entry) {
         entry.step >= 0 && `, step ${entry.step}`, entry.vertex >= 0 && `, vertex ${entry.vertex}`
       ]
     },
+    ...(entry.finding ? [{name: 'finding', value: entry.finding}] : []),
     {name: 'time step', value: shown(entry.dt, metric('dt'), 4)},
     {name: 'steps', value: entry.steps}, {
       name: 'cloth',
