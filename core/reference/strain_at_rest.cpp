@@ -389,7 +389,8 @@ struct StrainAtRest::Work {
     Sums sums;
     for (int round = 0; round < kRounds; ++round) {
       const auto& [x, tension, unbalanced, solves, found] = rest(k, load);
-      sums = sum_over(scene, w, tension, [&](std::size_t j) { return tension[j] / spring; });
+      sums = sum_over(scene, w, tension,
+                      [&, &tension = tension](std::size_t j) { return tension[j] / spring; });
       const double sag = sums.energy / weight_of(scene, w, load) / factor;  // of the springs alone
       const double q = fall(h) / sag;
       const std::vector<double> held = held_along(scene, w, x);

@@ -556,6 +556,16 @@ TEST(Winners, AreTheCheapestBesideTiesAndWhatDoesNotCount) {
             "apart; 1 cell is reached by nobody.");
 }
 
+TEST(Winners, SayWhoWroteTheSolvers) {
+  const Mapped both({{"ball", "jakobsen", 1, 1, 0.2, 4e-3},
+                     {"ball", "bullet", 1, 1, 0.2, 4e-3},
+                     {"ball", "xpbd", 1, 1, 0.1, 1e-3}});
+  EXPECT_EQ(authors_text(both.map()),
+            "taut\u2019s authors wrote Jakobsen and XPBD; Bullet is the code of others.");
+  const Mapped own({{"ball", "jakobsen", 1, 1, 0.2, 4e-3}});
+  EXPECT_EQ(authors_text(own.map()), "");
+}
+
 TEST(Winners, SayWhereTheSolverOfThisProjectLoses) {
   Mapped one({{"ball", "jakobsen", 1, 1, 0.2, 4e-3}, {"ball", "xpbd", 1, 1, 0.1, 1e-3}});
   Answer answer{"report", ""};

@@ -76,6 +76,8 @@ Json json_of_winners(const ReportInput& input, const Answer& answer, CaseList& l
   json["frame"] = kFrame;
   json["rules"] = rules_of(map);
   json["certainty"] = certainty_text(map.noise);
+  json["noise"] = shown(kShare, map.noise);
+  add_if(json, "authors", authors_text(map));
   json["by_stretch"] = json_of(winners_of(input, list, std::string(kStretch)));
   for (const std::vector<Said>& sentence : sentences_of(map))
     json["sentences"].push_back(json_of(sentence));

@@ -226,8 +226,10 @@ function sceneFigure(figure) {
 function winnersPart() {
   if (!model.winners) return null;
   const costs = figuresOf('cost');
+  const {sentences = [], authors, noise} = model.winners;
   return [
-    (model.winners.sentences ?? []).map(sentence),
+    sentences.map(sentence),
+    note(`${authors ?? ''} Two runs of identical code differed by up to ${noise} in cost.`),
     el('div', {className: 'first'}, winnersCard(), costs.map(sceneFigure))
   ];
 }

@@ -191,11 +191,12 @@ std::vector<Said> bullet_sentence(const WinnerMap& map) {
 }  // namespace
 
 WinnerMap winners_of(const ReportInput& input, CaseList& list, const std::string& metric) {
-  WinnerMap map{metric, {}};
+  WinnerMap map{metric, {}, {}};
   if (!input.bench) return map;
   list.use(metric);
   for (const SceneBench& scene : input.bench->scenes) {
     map.rows.push_back(SceneWinners(scene, metric, input, list).row());
+    for (const std::string& solver : solvers_of(scene)) push_unique(map.solvers, solver);
     map.noise = std::max(map.noise, spread(scene.control));
   }
   return map;
@@ -277,6 +278,18 @@ std::string line_of(const WinnerRow& row, std::size_t level) {
             significant(cell.times.high) + ") times cheaper than " +
             solver_title(cell.next->solver);
   return text;
+}
+
+std::string authors_text(const WinnerMap& map) {
+  std::vector<std::string> own, theirs;
+  for (const std::string& solver : map.solvers) {
+    const SolverEntry& entry = *parse_solver(solver).entry;
+    // what needs a program of its own is a library with two builds
+    (entry.foreign() || entry.program ? theirs : own).push_back(solver_title(solver));
+  }
+  if (own.empty() || theirs.empty()) return "";
+  return "taut\u2019s authors wrote " + joined(own) + "; " + joined(theirs) +
+         (theirs.size() == 1 ? " is" : " are") + " the code of others.";
 }
 
 Table losses_of(const WinnerMap& map, const Answer& answer) {

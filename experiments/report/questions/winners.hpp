@@ -68,6 +68,7 @@ struct Said {
 struct WinnerMap {
   std::string metric;  ///< by which errors are judged; its levels: levels_of()
   std::vector<WinnerRow> rows;
+  std::vector<std::string> solvers;  ///< all that were timed, in order of appearance
   double noise = 0;  ///< how far identical code differed from itself, at most, as a share
 };
 WinnerMap winners_of(const ReportInput&, CaseList&, const std::string& metric = kVerdict);
@@ -80,6 +81,9 @@ std::string text_of(const std::vector<Said>&);
 /// One cell as a line: "Hang at 1 %: XPBD 1 × 8, ...: 0.07 ms a frame; 2.3 (2.1 to 2.5) times
 /// cheaper than Jakobsen", or "Hang at 1 %: nobody, ..." with the reason.
 std::string line_of(const WinnerRow&, std::size_t level);
+
+/// Which of the timed solvers this project's authors wrote, and which are others' code.
+std::string authors_text(const WinnerMap&);
 
 /// Where Jakobsen, the solver of this project, loses: cells of the map in which noise does not make
 /// it one of the cheapest, and questions of the answer in which another solver has the better
