@@ -16,15 +16,9 @@
 #include "core/solver/layout/order.hpp"
 #include "core/solver/layout/vertex_groups.hpp"
 #include "core/solver/loop.hpp"
+#include "core/solver/spring.hpp"
 
 namespace taut {
-
-/// A link of an elastic solver, with the energy K/2 C^2 where C = |x_b - x_a| - rest.
-struct Spring {
-  std::size_t a = 0, b = 0;  ///< vertices
-  double rest = 0;           ///< m
-  double stiffness = 0;      ///< K, N/m
-};
 
 /// Stiffness parameters of spring solvers, one for each family.
 inline constexpr std::array kStiffness{

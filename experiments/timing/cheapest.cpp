@@ -68,8 +68,9 @@ bool JudgedScene::is_upper_bound(std::size_t at) const {
   if (work(at) == 1) return false;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].solver != candidates[at].solver) continue;
-    const bool timed = bench.cases[i].stable();  // a cheaper one may have failed
-    if (timed ? candidates[i].cost.mid < candidates[at].cost.mid : work(i) < work(at)) return false;
+    const bool timed = bench.cases[i].stable();  // one of less work may have failed
+    if (work(i) < work(at) || (timed && candidates[i].cost.mid < candidates[at].cost.mid))
+      return false;
   }
   return true;
 }

@@ -61,8 +61,9 @@ struct JudgedScene {
   std::vector<std::size_t> best_of_each(const Target&) const;
   /// Why no setting of the solver ("" = any) serves the target (taut::why_not()).
   Cell why_not(const Target&, const std::string& solver = "") const;
-  /// Whether the case's cost is only an upper bound: no cheaper setting of the same solver was
-  /// tried, though there is one (the case does more than one sweep in one substep).
+  /// Whether the case's cost is only an upper bound: no setting of the same solver with less cost
+  /// or less work was tried, though there is one (the case does more than one sweep in one
+  /// substep).
   bool is_upper_bound(std::size_t at) const;
   /// A case beside another one.
   Rival beside(std::size_t at, std::size_t other, double tolerance = kTolerance) const;

@@ -366,13 +366,13 @@ class Answer(unittest.TestCase):
                                  set().union(*(bounds[scene] for scene in common)))
 
     def is_bound(self, rows, case):
-        """Whether no cheaper setting of the case's solver was tried, so that its cost is an upper bound."""
+        """Whether no setting of the case's solver with less cost or less work was tried, so that its cost is an upper bound."""
         def work(row):
             own = dict(part.split("=") for part in row["setting"].split(":", 1)[-1].split(",") if "=" in part)
             return int(own.get("substeps", 1)) * int(own["iterations"])
         if case is None or work(case) == 1:
             return False
-        return not any(r["cost"] < case["cost"] if r["stable"] == "1" else work(r) < work(case) for r in rows
+        return not any(work(r) < work(case) or (r["stable"] == "1" and r["cost"] < case["cost"]) for r in rows
                        if r["solver"] == case["solver"])
 
     def price_marks(self, row, noise, bounds):

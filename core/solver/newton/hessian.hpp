@@ -7,7 +7,7 @@
 
 #include "core/model/bending.hpp"
 #include "core/solver/panel_factor.hpp"
-#include "core/solver/springs.hpp"
+#include "core/solver/spring.hpp"
 
 namespace taut::solver::implicit {
 

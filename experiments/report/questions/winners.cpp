@@ -334,8 +334,8 @@ Table losses_of(const WinnerMap& map, const Answer& answer) {
         kTolerance * std::abs(last[own].number()))
       continue;
     const auto text = [&](std::size_t c) { return taut::text(last[c], asked.columns[c]); };
-    table.rows.push_back(
-        {asked.title, last[0], text(own), asked.columns[best].heading + " " + text(best)});
+    table.rows.push_back({asked.title, last[0], text(own),
+                          solver_title(asked.columns[best].name) + " " + text(best)});
   }
   return table;
 }
