@@ -22,6 +22,7 @@ Json json_of(const Contender& one) {
   add_if(json, "links", one.links);
   if (std::isfinite(one.motion)) json["motion"] = one.motion;
   if (std::isfinite(one.stretch)) json["stretch"] = one.stretch;
+  if (std::isfinite(one.largest)) json["largest"] = one.largest;
   if (one.bound) json["at_most"] = true;
   return json;
 }

@@ -99,6 +99,7 @@ function contender(one, row, how) {
     [one.arithmetic, one.links && `springs of ${one.links}`].filter(Boolean).join(', '),
     one.motion !== undefined && `error ${levelText(one.motion, model.winners)}`,
     one.stretch !== undefined && `RMS stretch ${levelText(one.stretch, model.winners)}`,
+    one.largest !== undefined && `largest ${levelText(one.largest, model.winners)}`,
     projections > 0 && `${number(projections)} projections a step`,
     largestStep(one.solver, row.scene)
   ];
@@ -215,7 +216,8 @@ function sceneFigure(figure) {
       all(figure.charts, charts)
           .map(({id, scene}) => [scene, node.querySelector(`#${CSS.escape(`chart-${id}`)}`)]);
   state.watch(() => {
-    const row = mapOf().rows.find(({title}) => openedCell().startsWith(title + '@'));
+    const {rows, levels} = mapOf(), opened = openedCell();
+    const row = rows.find((one) => levels.some((level) => cellId(one, level) === opened));
     const chosen = panels.some(([scene]) => scene === row?.scene) ? row.scene : panels[0][0];
     for (const [scene, panel] of panels) panel.hidden = scene !== chosen;
   });

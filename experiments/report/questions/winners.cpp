@@ -70,6 +70,7 @@ class SceneWinners {
             scene_.candidates[at].error,
             error_of(r, kVerdict),
             r.value(std::string(kStretch)),
+            r.value("stretch.max"),
             list_.key(r),
             {r.spec.scene, r.spec.settings, parse_solver(r.spec.solver).brief()},
             scene_.is_upper_bound(at)};

@@ -22,6 +22,7 @@ struct Contender {
   double error = 0;    ///< by which it is judged
   double motion = 0;   ///< by kVerdict; NaN: not judged
   double stretch = 0;  ///< RMS; NaN: unknown
+  double largest = 0;  ///< largest stretch of a link; NaN: unknown
   std::string key;     ///< of its case, short
   CaseSpec again;      ///< makes the case again; parameters at their defaults are left out
   bool bound = false;  ///< no cheaper setting of the solver was tried: its cost is at most this
