@@ -211,16 +211,26 @@ struct GlobalSystem<Real>::Contact {
 
   void select_rows(const PanelFactor& factor, const std::vector<int>& wanted) {
     if (wanted == rows) return;
-    rows = wanted;
-    find_columns(factor, rows);
+    find_columns(factor, wanted);
     coupled.compliance_changed();
-    const auto n = static_cast<Eigen::Index>(rows.size());
+    // Few rows are new: the others are copied, since each entry of a long column is a cache miss.
+    std::vector<Eigen::Index> was_at(inverse.size(), -1), from;
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      was_at[to_index(rows[r])] = static_cast<Eigen::Index>(r);
+    for (const int row : wanted) from.push_back(was_at[to_index(row)]);
+    const Eigen::MatrixXd before = std::move(compliance);
+    const auto n = static_cast<Eigen::Index>(wanted.size());
     compliance.resize(n, n);
     for (Eigen::Index c = 0; c < n; ++c) {
-      const Eigen::VectorXd& column = inverse[to_index(rows[static_cast<std::size_t>(c)])];
-      for (Eigen::Index r = 0; r < n; ++r)
-        compliance(r, c) = column[rows[static_cast<std::size_t>(r)]];
+      const auto at = static_cast<std::size_t>(c);
+      const Eigen::VectorXd& column = inverse[to_index(wanted[at])];
+      for (Eigen::Index r = 0; r < n; ++r) {
+        const auto other = static_cast<std::size_t>(r);
+        const bool known = from[at] >= 0 && from[other] >= 0;
+        compliance(r, c) = known ? before(from[other], from[at]) : column[wanted[other]];
+      }
     }
+    rows = wanted;
   }
 };
 

@@ -51,7 +51,9 @@ class AdaptiveStart {
 /// Sweeps of solvers that move one vertex at a time to the minimum of a quadratic model in its own
 /// three coordinates, with all others held. Colours come one after another; lanes and threads
 /// divide a colour, and any number of them computes the same bits. Links are computed in lanes.
-/// Bending and contact are computed vertex by vertex, and only if the scene has them.
+/// Bending and contact are computed vertex by vertex, and only if the scene has them: the lanes
+/// move a vertex with the forces by which colliders hold it, and then those at its new place are
+/// settled by the same Hessian.
 template <class Real, class Slot>
 class VertexBlocks {
  public:
@@ -86,7 +88,8 @@ class VertexBlocks {
     start_.begin(p, y_, h);
     if (h != inertia_of_) set_inertia(p, h);
     if (!contacts_) return;
-    if (before_.empty()) before_ = p.x;
+    held_.assign(groups_.size() * 3 * kLanes, Real(0));
+    hessians_.resize(groups_.size() * 6 * kLanes);
     contacts_->begin(t, h);
     contacts_->predict(p, h);
   }
@@ -99,6 +102,8 @@ class VertexBlocks {
                               .previous = p.previous.data(),
                               .inertia = inertia_.data(),
                               .bending = bending_.empty() ? nullptr : bending_forces_.data(),
+                              .held = contacts_ ? held_.data() : nullptr,
+                              .hessian = contacts_ ? hessians_.data() : nullptr,
                               .damping = static_cast<Real>(damping / h)};
     for (std::size_t colour = 0; colour < groups_.colours(); ++colour) {
       const std::size_t first = groups_.first_group(colour);
@@ -116,8 +121,9 @@ class VertexBlocks {
 
   std::size_t bytes() const {
     return bending_.size() * sizeof(BendingElement) + (contacts_ ? contacts_->bytes() : 0) +
-           slots_.size() * sizeof(Slot) + groups_.bytes() + y_.bytes() + before_.bytes() +
-           (inertia_.size() + bending_forces_.size()) * sizeof(Real);
+           slots_.size() * sizeof(Slot) + groups_.bytes() + y_.bytes() +
+           (inertia_.size() + bending_forces_.size() + held_.size() + hessians_.size()) *
+               sizeof(Real);
   }
 
  private:
@@ -192,33 +198,29 @@ class VertexBlocks {
                     std::size_t end) {
     if (!bending_.empty()) set_bending_forces(p, begin, end);
     if (!contacts_) return sweep_(v, slots_.data(), begin, end);
-    visit(begin, end, [&](std::size_t i, std::size_t, std::size_t) { before_.set(i, p.x[i]); });
+    visit(begin, end, [&](std::size_t i, std::size_t g, std::size_t lane) {
+      const Vec3 force = contacts_->force_at(i, p.x[i].template cast<double>(),
+                                             p.previous[i].template cast<double>());
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        held_[(3 * g + axis) * kLanes + lane] = static_cast<Real>(force[static_cast<int>(axis)]);
+    });
     sweep_(v, slots_.data(), begin, end);
     visit(begin, end, [&](std::size_t i, std::size_t g, std::size_t lane) {
       const Vec3 x = p.x[i].template cast<double>();
-      const Vec3 previous = p.previous[i].template cast<double>();
-      if (contacts_->reaches(i, x, previous)) move_in_contact(p, v, i, g, static_cast<int>(lane));
+      Vec3 to = x;
+      contacts_->settle_vertex(
+          i, [&] { return hessian(g, lane); }, p.previous[i].template cast<double>(), to);
+      if (to != x) p.x.set(i, to.cast<Real>());
     });
   }
 
-  /// Moves vertex i again from where it was before the lanes moved it: to the minimum of the same
-  /// model outside the colliders, with friction.
-  void move_in_contact(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t i, std::size_t g,
-                       int lane) {
-    p.x.set(i, before_[i]);  // slots without a link refer to the vertex itself
-    const Vec3 x = before_[i].template cast<double>();
-    const Vec3 previous = p.previous[i].template cast<double>();
-    const Vec3T<Real> at{before_[i].x(), before_[i].y(), before_[i].z()};
-    VertexModel<Real> m = vertex_model<Real>(v, slots_.data(), g, lane, at);
-    const Vec3 held = contacts_->force_at(i, x, previous);
-    m.force = m.force + Vec3T<Real>{static_cast<Real>(held.x()), static_cast<Real>(held.y()),
-                                    static_cast<Real>(held.z())};
-    const Vec3T<Real> way = m.minimum(v.inertia[g * kLanes + static_cast<std::size_t>(lane)]);
-    Eigen::Matrix<Real, 3, 3> hessian;
-    hessian << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
-    Vec3 to = x + Eigen::Matrix<Real, 3, 1>(way.x, way.y, way.z).template cast<double>();
-    contacts_->settle_vertex(i, hessian.template cast<double>(), previous, to);
-    p.x.set(i, to.cast<Real>());
+  /// That of the sweep's model of a vertex.
+  Eigen::Matrix3d hessian(std::size_t g, std::size_t lane) const {
+    const auto at = [&](std::size_t entry) {
+      return static_cast<double>(hessians_[(6 * g + entry) * kLanes + lane]);
+    };
+    const double xy = at(3), xz = at(4), yz = at(5);
+    return Eigen::Matrix3d{{at(0), xy, xz}, {xy, at(1), yz}, {xz, yz, at(2)}};
   }
 
   Sweep sweep_;
@@ -232,7 +234,8 @@ class VertexBlocks {
   double inertia_of_ = 0;                ///< s, substep of inertia_; 0: none yet
   std::vector<Real> bending_forces_;     ///< VertexSweep::bending; empty: no bending
   Points<Real> y_;                       ///< m, positions without links
-  Points<Real> before_;                  ///< m, before the lanes moved them; empty: no contact
+  std::vector<Real> held_;               ///< VertexSweep::held; empty: no contact
+  std::vector<Real> hessians_;           ///< VertexSweep::hessian; empty: no contact
   ThreadPool& pool_;
 };
 

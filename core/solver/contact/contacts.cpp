@@ -1,8 +1,8 @@
 #include "core/solver/contact/contacts.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <optional>
+#include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -270,13 +270,6 @@ void Contacts::predict_new(const Particles<Real>& p, double h) {
 template void Contacts::predict_new(const Particles<float>&, double);
 template void Contacts::predict_new(const Particles<double>&, double);
 
-bool Contacts::reaches(std::size_t vertex, const Vec3& x, const Vec3& previous) {
-  TouchingVertex at;
-  for (std::size_t k = 0; k < surfaces_.size(); ++k)
-    if (force(vertex, k).holds() || touches(vertex, k, x, previous, at)) return true;
-  return false;
-}
-
 Vec3 Contacts::force_at(std::size_t vertex, const Vec3& x, const Vec3& previous) {
   Vec3 sum = Vec3::Zero();
   TouchingVertex at;
@@ -286,22 +279,38 @@ Vec3 Contacts::force_at(std::size_t vertex, const Vec3& x, const Vec3& previous)
   return sum;
 }
 
-void Contacts::settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian,
-                             const Vec3& previous, Vec3& x) {
-  // Computed only on contact: hardly any vertex touches anything.
-  std::optional<MatrixCompliance> moves;
-  constexpr int kRounds = 8;  // for a vertex at several colliders, whose forces affect each other
-  for (int round = 0; round < kRounds; ++round) {
-    int touching = 0;
-    TouchingVertex at;
-    for (std::size_t k = 0; k < surfaces_.size(); ++k)
-      if (touches(vertex, k, x, previous, at)) {
-        ++touching;
-        if (!moves) moves = {hessian.inverse(), hessian};
-        settle(at, *moves, force(vertex, k), x);
-      }
-    if (touching < 2) return;
+ContactForce MatrixCompliance::slipping(const TouchingVertex& at, const Vec3& free) const {
+  const Vec3 u = at.normal.unitOrthogonal(), v = at.normal.cross(u);
+  const Vec3 by_push = value * at.normal, by_u = value * u, by_v = value * v;
+  const double along = at.normal.dot(by_push), pu = u.dot(by_push), pv = v.dot(by_push);
+  const double suu = u.dot(by_u) - pu * pu / along, suv = u.dot(by_v) - pu * pv / along,
+               svv = v.dot(by_v) - pv * pv / along;
+  const double alone = -at.gap(free) / along;  // the push without friction
+  const Vec3 way = free - at.from;
+  const double su = u.dot(way) + pu * alone, sv = v.dot(way) + pv * alone;
+  double lambda = 0, low = 0, high = std::numeric_limits<double>::infinity();
+  ContactForce force;
+  constexpr int kMostRounds = 50;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double a = suu + lambda, d = svv + lambda, det = a * d - suv * suv;
+    const double ru = (suv * sv - d * su) / det, rv = (suv * su - a * sv) / det;
+    const double length = std::sqrt(ru * ru + rv * rv);
+    force = {alone - (pu * ru + pv * rv) / along, ru * u + rv * v};
+    const double most = at.friction * force.push;
+    if (std::abs(length - most) <= 1e-14 * length) break;
+    (length > most ? low : high) = lambda;
+    const double wu = (d * ru - suv * rv) / det, wv = (a * rv - suv * ru) / det;
+    const double shorter = (ru * wu + rv * wv) / length;  // with lambda
+    const double more = at.friction * (pu * wu + pv * wv) / along;
+    const double next = lambda + (length - most) * length / (more * length + most * shorter);
+    const double within = std::isfinite(high) ? (low + high) / 2 : 2 * low + suu + svv;
+    const double to = next > low && next < high ? next : within;
+    if (to == lambda) break;
+    lambda = to;
   }
+  force.push = std::max(0.0, force.push);
+  force.rub *= at.cone(force.rub, force.push).share();
+  return force;
 }
 
 std::unique_ptr<Contacts> make_contacts(const Scene& scene, const Params& params) {

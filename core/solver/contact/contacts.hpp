@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,14 +53,24 @@ struct IsotropicCompliance {
   double value;
   Vec3 operator*(const Vec3& force) const { return value * force; }
   Vec3 force_for(const Vec3& way) const { return way / value; }
-  double across(const Vec3&) const { return value; }
+  /// The force on a vertex that slips and would be at `free` without it.
+  ContactForce slipping(const TouchingVertex& at, const Vec3& free) const {
+    const ContactForce force{-at.gap(free) / value, -at.slip(free) / value};
+    return {force.push, at.cone(force.rub, force.push).share() * force.rub};
+  }
 };
 struct MatrixCompliance {
-  Eigen::Matrix3d value, inverse;
+  Eigen::Matrix3d value, inverse;  ///< symmetric
   Vec3 operator*(const Vec3& force) const { return value * force; }
   Vec3 force_for(const Vec3& way) const { return inverse * way; }
-  /// Upper bound of the largest eigenvalue across the normal.
-  double across(const Vec3& normal) const { return value.trace() - normal.dot(value * normal); }
+  /// As above. A compliance that differs by direction couples push and friction r. Without the
+  /// push, whose gap is 0, the slip is s + S r in the plane of contact; friction against it is
+  ///
+  ///     r = -(S + lambda I)^-1 s,    |r(lambda)| = mu push(r(lambda)),    lambda >= 0
+  ///
+  /// which is one equation for lambda, solved as that of a trust region: Newton's method for the
+  /// inverse of |r|, which is nearly linear (More, Sorensen 1983), between bounds.
+  ContactForce slipping(const TouchingVertex& at, const Vec3& free) const;
 };
 
 /// Changes the force so that x, which it moves by `compliance`, keeps out of the half-space and
@@ -76,25 +88,12 @@ Vec3 settle(const TouchingVertex& at, const Compliance& compliance, ContactForce
     return change;
   };
   if (at.gap(free) >= 0) return leave({});
-  const double along = at.normal.dot(compliance * at.normal);
-  if (at.friction == 0) return leave({-at.gap(free) / along, Vec3::Zero()});
+  if (at.friction == 0)
+    return leave({-at.gap(free) / at.normal.dot(compliance * at.normal), Vec3::Zero()});
   const Vec3 sticking = compliance.force_for(-at.slip(free) - at.gap(free) * at.normal);
-  ContactForce now{at.normal.dot(sticking), at.across(sticking)};
-  if (now.push > 0 && at.cone(now.rub, now.push).sticks()) return leave(now);
-  // Slipping: push and rub in turn, which a compliance that differs by direction couples.
-  const double across = compliance.across(at.normal);
-  constexpr int kRounds = 20;
-  now.rub = force.rub;
-  for (int round = 0; round < kRounds; ++round) {
-    const double push = now.push;
-    now.push = std::max(0.0, -at.gap(free + compliance * now.rub) / along);
-    Vec3 rub = now.rub - at.slip(free + compliance * at.total(now)) / across;
-    rub *= at.cone(rub, now.push).share();
-    const double moved = std::abs(now.push - push) + (rub - now.rub).norm();
-    now.rub = rub;
-    if (moved <= 1e-12 * now.push) break;
-  }
-  return leave(now);
+  const ContactForce stuck{at.normal.dot(sticking), at.across(sticking)};
+  const bool sticks = stuck.push > 0 && at.cone(stuck.rub, stuck.push).sticks();
+  return leave(sticks ? stuck : compliance.slipping(at, free));
 }
 
 /// Contact as a constraint, for solvers that solve towards y. The forces of every vertex, by
@@ -143,13 +142,29 @@ class Contacts {
   template <class Real>
   void predict_new(const Particles<Real>& p, double h);
 
-  /// Whether any collider holds the vertex, or x is inside one.
-  bool reaches(std::size_t vertex, const Vec3& x, const Vec3& previous);
   /// Sum of the forces [N] on a vertex at x, linearised there.
   Vec3 force_at(std::size_t vertex, const Vec3& x, const Vec3& previous);
-  /// Settles the contacts of a vertex that has been moved to x, with this Hessian [N/m].
-  void settle_vertex(std::size_t vertex, const Eigen::Matrix3d& hessian, const Vec3& previous,
-                     Vec3& x);
+  /// Settles the contacts of a vertex that has been moved to x, if it has any. hessian(): of its
+  /// energy [N/m].
+  template <class Hessian>
+  void settle_vertex(std::size_t vertex, const Hessian& hessian, const Vec3& previous, Vec3& x) {
+    std::optional<MatrixCompliance> moves;  // computed only on contact: few vertices touch anything
+    constexpr int kRounds = 8;  // for a vertex at several colliders, whose forces affect each other
+    for (int round = 0; round < kRounds; ++round) {
+      int touching = 0;
+      TouchingVertex at;
+      for (std::size_t k = 0; k < surfaces_.size(); ++k)
+        if (touches(vertex, k, x, previous, at)) {
+          ++touching;
+          if (!moves) {
+            const Eigen::Matrix3d stiffness = hessian();
+            moves = {stiffness.inverse(), stiffness};
+          }
+          settle(at, *moves, force(vertex, k), x);
+        }
+      if (touching < 2) return;
+    }
+  }
 
   std::size_t bytes() const { return forces_.size() * sizeof(ContactForce); }
 

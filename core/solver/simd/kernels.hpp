@@ -171,6 +171,8 @@ struct VertexSweep {
   const Real* previous;  ///< x_t
   const Real* inertia;   ///< [groups][kLanes] m/h^2 [N/m]
   const Real* bending;   ///< [groups][4][kLanes] force x, y, z [N], Hessian [N/m]; null: none
+  const Real* held;      ///< [groups][3][kLanes] force of contact [N]; null: none
+  Real* hessian;         ///< [groups][6][kLanes] N/m, xx, yy, zz, xy, xz, yz, is set; null: none
   Real damping;          ///< k_d/h of the springs
 };
 template <class Real>

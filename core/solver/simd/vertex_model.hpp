@@ -48,6 +48,16 @@ struct VertexModel {
     return {xx * v.x + (xy * v.y + xz * v.z), xy * v.x + (yy * v.y + yz * v.z),
             xz * v.x + (yz * v.y + zz * v.z)};
   }
+  /// Stores xx, yy, zz, xy, xz, yz, kLanes apart.
+  template <class Real>
+  [[gnu::always_inline]] void store_hessian(Real* to) const {
+    store(to, xx);
+    store(to + kLanes, yy);
+    store(to + 2 * kLanes, zz);
+    store(to + 3 * kLanes, xy);
+    store(to + 4 * kLanes, xz);
+    store(to + 5 * kLanes, yz);
+  }
   /// H^-1 force by L D L^T. H is `least` times I plus something positive, so no element of D is
   /// less than `least`, except by rounding where links are a million times as stiff.
   [[gnu::always_inline]] Vec3T<T> minimum(T least) const {

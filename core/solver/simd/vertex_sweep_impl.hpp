@@ -15,7 +15,13 @@ void sweep_vertices(const VertexSweep<Real>& sweep, const Slot* slots, std::size
     for (int l = 0; l < kLanes; l += kWidth<T>) {
       const PackedSlot* const at = v.groups[g].particle + l;
       const Vec3T<T> x = gather_packed<T>(v.x, at);
-      const VertexModel<T> m = vertex_model<T>(v, slots, g, l, x);
+      VertexModel<T> m = vertex_model<T>(v, slots, g, l, x);
+      if (v.held) {
+        const Real* const held = v.held + 3 * kLanes * g + l;
+        m.force =
+            m.force + Vec3T<T>{load<T>(held), load<T>(held + kLanes), load<T>(held + 2 * kLanes)};
+      }
+      if (v.hessian) m.store_hessian(v.hessian + 6 * kLanes * g + l);
       scatter_packed(v.x, at, x + m.minimum(load<T>(v.inertia + kLanes * g + l)));
     }
 }

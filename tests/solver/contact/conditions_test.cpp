@@ -12,8 +12,10 @@
 #include "core/model/triangle.hpp"
 #include "core/reference/contact_residual.hpp"
 #include "core/reference/implicit_step.hpp"
+#include "core/solver/contact/contacts.hpp"
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
+#include "tests/support/draw.hpp"
 
 namespace taut::contact_conditions_test {
 namespace {
@@ -340,6 +342,47 @@ TEST(ContactConditions, HoldForAFace) {
       EXPECT_GT(after(one.few), 1e-6) << one.solver << ", friction " << friction;
     }
   }
+}
+
+// One vertex with any Hessian. Where it slips, push and friction depend on each other.
+TEST(ContactConditions, HoldForASettledVertex) {
+  Draw draw(5);
+  int sliding = 0, sticking = 0;
+  for (int n = 0; n < 4000; ++n) {
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Identity();
+    for (int link = 0; link < 4; ++link) {
+      const Vec3 along = draw.vector(1);
+      hessian += std::pow(10, draw.number(0, 4)) * along * along.transpose();
+    }
+    const MatrixCompliance compliance{hessian.inverse(), hessian};
+    TouchingVertex at;
+    at.normal = draw.vector(1).normalized();
+    at.offset = draw.number(-1, 1);
+    at.from = draw.vector(1);
+    at.friction = draw.number(0.01, 1.5);
+    ContactForce force{draw.number(0, 5), at.across(draw.vector(1))};
+    const Vec3 before = at.total(force), start = draw.vector(1);
+    Vec3 x = start;
+    const Vec3 change = settle(at, compliance, force, x);
+    EXPECT_LT((x - start - compliance * change).norm(), 1e-12);
+    EXPECT_LT((at.total(force) - before - change).norm(), 1e-9);
+    if (!force.holds()) {
+      EXPECT_GE(at.gap(x), 0);
+      continue;
+    }
+    const double most = at.friction * force.push;
+    const Vec3 slip = at.slip(x);
+    EXPECT_LT(std::abs(at.gap(x)), 1e-11);
+    EXPECT_LE(force.rub.norm(), most * (1 + 1e-12));
+    if (slip.norm() < 1e-10) {
+      ++sticking;
+      continue;
+    }
+    ++sliding;
+    EXPECT_LT((force.rub + most * slip.normalized()).norm(), 1e-9 * most) << "draw " << n;
+  }
+  EXPECT_GT(sliding, 800);
+  EXPECT_GT(sticking, 300);
 }
 
 TEST(ContactConditions, HoldForTheReference) {
