@@ -67,7 +67,7 @@ TAUT_TRUTH(turning_disc, 7, 10,
                  omega / alpha, 1e-12);
   findings.equal("closed form", "alpha of a thin ring, mu g/R", "rad/s^2",
                  turning(mu, radius - 1e-6, radius), mu * kG / radius, 1e-4);
-  Scene s = disc_of_rings(8, 24, radius);
+  Scene s = disc_of_rings(6, 16, radius);
   Motion turn;
   turn.spin = Vec3(0, omega, 0);
   s.dt = 1.0 / 256;
