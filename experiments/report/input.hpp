@@ -10,6 +10,7 @@
 #include "experiments/case/record.hpp"
 #include "experiments/history/history.hpp"
 #include "experiments/report/footage.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/steps/one_step.hpp"
 #include "experiments/study/frontier/parameter_frontier.hpp"
 #include "experiments/system/json.hpp"
@@ -97,6 +98,7 @@ struct ReportInput {
   /// Hosts that measured the cost of this study, and which of them are shown.
   std::vector<std::string> cost_hosts;
   std::vector<std::pair<std::string, std::string>> provenance;  ///< "compiler" -> "g++ 12.2.0"
+  std::map<std::string, Spent> spent = {};  ///< CPU time that cases took, by key
   std::vector<SolverInfo> solvers;
   std::vector<SceneInfo> scenes;
   std::vector<StudyResult> studies;

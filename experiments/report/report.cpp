@@ -371,6 +371,7 @@ class Builder {
       one["studies"].push_back(std::move(at));
     }
     add_table(one, assertions_table(input_.truths), tables_);
+    add_table(one, spent_table(refs_.cases(), input_.spent), tables_);
     for (const auto& [what, value] : input_.provenance)
       one["facts"].push_back({{"name", what}, {"value", value}});
     for (const std::string& host : input_.cost_hosts)

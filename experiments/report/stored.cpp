@@ -343,6 +343,7 @@ ReportInput stored_results(const std::vector<Study>& studies, const Store& store
   }
   for (const Study& study : studies) add_study(input, study, store, timed);
   complete_quoted(input, store);
+  input.spent = store.spent();
   const ComparedSolvers compared = compared_solvers_of(input);
   for (const QuotedScene& quoted : compared.scenes)
     for (TimeSeries& series : series_of(quoted, compared, store))

@@ -94,6 +94,12 @@ CREATE TABLE ran (
   FOREIGN KEY (study, build) REFERENCES builds) WITHOUT ROWID;
 CREATE INDEX ran_key ON ran (key);
 
+-- CPU time [s] of the last run of a case: of its process, and of its metrics in it.
+CREATE TABLE spent (
+  key TEXT PRIMARY KEY,
+  cpu REAL NOT NULL,
+  metrics REAL NOT NULL) WITHOUT ROWID;
+
 -- CPU and wall time of a step of one build over that of another, timed in turns.
 CREATE TABLE ratios (
   study TEXT NOT NULL,

@@ -6,7 +6,7 @@
 namespace taut {
 
 /// PRAGMA user_version of a results file. Files with another version are not read.
-inline constexpr int kSchemaVersion = 8;
+inline constexpr int kSchemaVersion = 9;
 
 /// The SQL statements that create the tables of a results file.
 std::string tables();

@@ -284,6 +284,9 @@ Store::Commit Store::commit(const Record& record, const CaseFiles& files) {
       const std::optional<Record> old = sound_record(database, record.key, damage);
       done = beside(old, record, !files.motion.empty() && !has_frames(record.key));
       if (done == Commit::stored) insert(database, record, files);
+      if (files.spent)
+        database.run("INSERT OR REPLACE INTO spent VALUES (?, ?, ?)", record.key, files.spent->cpu,
+                     files.spent->metrics);
       if (done == Commit::conflict)
         database.run("INSERT OR IGNORE INTO conflicts VALUES (?, ?, ?, ?)", record.key,
                      result_digest(record), utc_stamp(), to_json(record));
@@ -295,13 +298,22 @@ Store::Commit Store::commit(const Record& record, const CaseFiles& files) {
   return done;
 }
 
-Store::Commit Store::commit(const fs::path& staged, const Record& record) {
+Store::Commit Store::commit(const fs::path& staged, const Record& record, const Spent& spent) {
   const Commit done =
       commit(record, {text_if_there(staged / kSeriesFile), text_if_there(staged / kFramesFile),
-                      end_of(staged / kErrorsFile, kMostErrors)});
+                      end_of(staged / kErrorsFile, kMostErrors), spent});
   std::error_code ignored;
   fs::remove_all(staged, ignored);
   return done;
+}
+
+std::map<std::string, Spent> Store::spent() const {
+  std::map<std::string, Spent> all;
+  Database* database = reading();
+  if (!database) return all;
+  Database::Rows row = database->rows("SELECT key, cpu, metrics FROM spent");
+  while (row.next()) all[row.text(0)] = {row.number(1), row.number(2)};
+  return all;
 }
 
 void Store::together(const std::function<void()>& work) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,11 +18,18 @@ namespace taut {
 
 class Database;
 
+/// CPU time that a case took.
+struct Spent {
+  double cpu = 0;      ///< s, of its process: start, solver, metrics, result
+  double metrics = 0;  ///< s, of that
+};
+
 /// Files that a case leaves beside its record, as texts; "" if there is no such file.
 struct CaseFiles {
   std::string series;  ///< kSeriesFile: values over time, in the form of to_json(Series)
   std::string motion;  ///< kFramesFile
   std::string errors;  ///< the end of kErrorsFile
+  std::optional<Spent> spent = {};  ///< by the process that ran the case
 };
 inline constexpr const char* kRecordFile = "case.json";
 inline constexpr const char* kErrorsFile = "stderr.txt";
@@ -75,7 +83,7 @@ class Store {
   /// failure. Throws InputError if the disk refuses.
   Commit commit(const Record&, const CaseFiles& = {});
   /// Stores a record with the files in a staged folder, and removes the folder.
-  Commit commit(const std::filesystem::path& staged, const Record&);
+  Commit commit(const std::filesystem::path& staged, const Record&, const Spent&);
   /// Makes many commits as one: all of them, or none if `work` throws.
   void together(const std::function<void()>& work);
 
@@ -106,6 +114,8 @@ class Store {
   /// InputError.
   void mark_missing(const std::vector<PlannedKey>&);
   std::vector<Missing> still_missing() const;  ///< sorted by study
+
+  std::map<std::string, Spent> spent() const;  ///< what the last run of each case took, by key
 
   /// Stores a verb's answer in place of an earlier one of the same kind and subject. Throws
   /// InputError.

@@ -84,6 +84,7 @@ void Store::take(const Store& other) {
           "INSERT OR IGNORE INTO main.planned SELECT * FROM other.planned;"
           "INSERT OR IGNORE INTO main.builds SELECT * FROM other.builds;"
           "INSERT OR IGNORE INTO main.ran SELECT * FROM other.ran;"
+          "INSERT OR IGNORE INTO main.spent SELECT * FROM other.spent;"
           "INSERT OR IGNORE INTO main.ratios SELECT * FROM other.ratios;"
           "INSERT INTO main.frames SELECT mine, motion, digest FROM taken JOIN other.frames "
           "ON case_id = theirs;"

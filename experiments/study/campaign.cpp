@@ -97,7 +97,7 @@ class Campaign {
         ++one;
         continue;
       }
-      const Store::Commit commit = store_.commit(one->folder(), *record);
+      const Store::Commit commit = store_.commit(one->folder(), *record, one->spent());
       ++progress_.ran;
       ++progress_.by_status[record->status.kind];
       if (commit == Store::Commit::conflict) ++progress_.conflicts;

@@ -181,6 +181,8 @@ Record IsolatedCase::wait() {
     ::poll(&ended, 1, static_cast<int>(std::min(1e3 * left + 1, 1e6)));
   }
   Record record = record_of(process_.wait(0));
+  const std::optional<ProcessEnd> end = process_.poll();
+  spent_ = {end ? end->cpu : 0, Heartbeat::last_measuring(folder_ / kHeartbeatFile).seconds};
   std::error_code ignored;
   fs::remove(folder_ / kHeartbeatFile, ignored);
   if (fs::file_size(folder_ / kErrorsFile, ignored) == 0)

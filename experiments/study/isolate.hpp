@@ -6,6 +6,7 @@
 
 #include "experiments/case/case.hpp"
 #include "experiments/case/record.hpp"
+#include "experiments/results/store.hpp"
 #include "experiments/system/process.hpp"
 
 namespace taut {
@@ -79,6 +80,7 @@ class IsolatedCase {
   Record wait();  ///< waits for that and returns the record
   const std::filesystem::path& folder() const { return folder_; }
   const Case& of() const { return case_; }
+  const Spent& spent() const { return spent_; }  ///< of a case that has ended
 
  private:
   /// When it has to end. The time of its metrics, and of the one at work, is not the solver's.
@@ -92,6 +94,7 @@ class IsolatedCase {
   double seconds_;
   std::size_t bytes_;
   Process process_;
+  Spent spent_;
 };
 
 /// The child's side: runs the case in this process and writes kRecordFile, kSeriesFile, its

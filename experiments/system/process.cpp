@@ -32,6 +32,9 @@ using Stream = ProcessOptions::Stream;
 /// The system's error in a largest resident set [bytes].
 constexpr std::size_t kPeakError = std::size_t{1} << 20;
 
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
 std::size_t peak_of(const rusage& used) { return static_cast<std::size_t>(used.ru_maxrss) * 1024; }
 
 /// A file descriptor that closes itself.
@@ -231,6 +234,7 @@ ProcessEnd Process::reap() {
   // exec() does not forget what the copy of this process held: only a larger peak is its own.
   const std::size_t peak = peak_of(used);
   end_->peak_bytes = peak > inherited_ + kPeakError ? peak : 0;
+  end_->cpu = seconds(used.ru_utime) + seconds(used.ru_stime);
   return *end_;
 }
 

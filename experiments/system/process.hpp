@@ -41,6 +41,7 @@ struct ProcessEnd {
   int exit_code = -1;  ///< -1 if a signal ended it
   int signal = 0;
   std::size_t peak_bytes = 0;  ///< largest resident set; 0 if the starting process's was as large
+  double cpu = 0;              ///< s, of the process and of those that it waited for
   bool good() const { return exit_code == 0; }
   /// Whether something outside ended it: a signal that asks it to end (a taut process reports that
   /// by its exit code), or SIGKILL while it used less than half of `memory`, its limit. A system

@@ -209,9 +209,11 @@ TEST_F(StoreTest, OfWhatACaseLeavesSeriesAndMotionAreKept) {
     frames += frame_bytes(
         {t, {std::vector<Vec3>(static_cast<std::size_t>(r.vertices), Vec3(1, 2, 3)), {}}});
   write_file(staged / kFramesFile, frames);
-  EXPECT_EQ(store_.commit(staged, r), Store::Commit::stored);
+  EXPECT_EQ(store_.commit(staged, r, {2, 0.5}), Store::Commit::stored);
   EXPECT_FALSE(fs::exists(staged));
   Store other(root_);
+  EXPECT_EQ(other.spent().at(r.key).cpu, 2);
+  EXPECT_EQ(other.spent().at(r.key).metrics, 0.5);
   EXPECT_EQ(other.series(r.key).columns, series.columns);
   EXPECT_EQ(other.series(r.key).rows, series.rows);
   ASSERT_TRUE(other.has_frames(r.key));

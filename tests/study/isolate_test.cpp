@@ -211,8 +211,11 @@ TEST_F(Isolated, WhatIsNoPropertyOfTheCaseIsNoRecord) {
 TEST(IsolatedRun, GivesWhatTheCaseGivesAndItsMotion) {
   const Scratch scratch;
   const Case one = make_case({kSmall.scene, kSmall.settings, "jakobsen:iterations=2"});
-  const Record record = IsolatedCase(one, scratch.path(), {}, 4).wait();
+  IsolatedCase process(one, scratch.path(), {}, 4);
+  const Record record = process.wait();
   EXPECT_EQ(to_json(record), to_json(run_case(one).record));
+  EXPECT_GT(process.spent().metrics, 0);
+  EXPECT_GT(process.spent().cpu, process.spent().metrics);
   const auto frames = frames_in(read_text(scratch.path() / kFramesFile), one.scene->mesh.size());
   std::vector<int> steps;
   for (const Frame& frame : frames)

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <set>
 
 #include "core/model/solver.hpp"
@@ -143,6 +145,36 @@ Json facts_of(const CaseList& refs, const std::string& scene) {
   if (off > 0)
     facts.push_back({{"name", kOffPrediction}, {"value", std::to_string(off) + " of these"}});
   return facts;
+}
+
+Table spent_table(const std::vector<const Record*>& cases,
+                  const std::map<std::string, Spent>& spent) {
+  const Unit seconds{Unit::Kind::time, "s", "s"};
+  Table table{"spent",
+              "CPU time that the cases took",
+              {{"solver"},
+               {"cases"},
+               {"cpu", "CPU time of their processes", seconds},
+               {"metrics", "of which metrics", seconds}}};
+  struct Sum {
+    std::string solver;
+    double cases = 0, cpu = 0, metrics = 0;
+  };
+  std::map<std::string, Sum> sums;
+  for (const Record* r : cases)
+    if (const auto at = spent.find(r->key); at != spent.end())
+      for (const std::string& who : {r->solver, std::string("all")}) {
+        Sum& sum = sums[who];
+        sum.solver = who;
+        ++sum.cases;
+        sum.cpu += at->second.cpu;
+        sum.metrics += at->second.metrics;
+      }
+  std::vector<Sum> all;
+  for (const auto& [solver, sum] : sums) all.push_back(sum);
+  std::ranges::stable_sort(all, std::greater(), &Sum::cpu);
+  for (const Sum& sum : all) table.rows.push_back({sum.solver, sum.cases, sum.cpu, sum.metrics});
+  return table;
 }
 
 }  // namespace taut::report

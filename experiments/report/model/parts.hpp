@@ -50,6 +50,8 @@ Json json_of_limits(const ReportInput&, CaseList&, Answer& tables);
 Json json_of_steps(const ReportInput&, CaseList&, DrawnCharts&, Answer& tables);
 /// Assertions of publications with verdicts, which follow from the truths if those were checked.
 Table assertions_table(const std::optional<Truths>&);
+/// CPU time that the cases of each solver took, and how much of it metrics did.
+Table spent_table(const std::vector<const Record*>&, const std::map<std::string, Spent>&);
 /// Resolved settings of every solver on a scene, one per row; without rows if nothing was run.
 Table resolved_settings_table(const QuotedScene&, const ComparedSolvers&, CaseList&);
 /// Sentences on what this run does not show.
