@@ -19,6 +19,10 @@ std::filesystem::path registered_folder();
 /// program.
 std::string why_silent(const SolverEntry&);
 
+/// Runs programs that did not pass the quick probe, too, from now on: for the conformance suite,
+/// which finds the same errors and names them.
+void run_unprobed();
+
 /// Command of "external:cmd='...'" or of a registered name; any other text is itself a command.
 /// Throws InputError.
 Command command_of(const std::string& text);

@@ -15,6 +15,9 @@
 
 namespace taut::external {
 
+/// Whether a program has to pass the quick probe before it runs a scene; true at first.
+void set_probe_required(bool);
+
 /// Value of a key in the parameters of a solver text; "" if it is absent.
 std::string value_in(std::string_view params, std::string_view key);
 

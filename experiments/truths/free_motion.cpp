@@ -234,7 +234,7 @@ TAUT_TRUTH(float_gravity, 3, 9,
   }
 }
 
-TAUT_TRUTH(free_spin, 3, 11,
+TAUT_TRUTH(free_spin, 3, 10,
            "two masses on a link: projections keep momentum, and lose angular momentum as "
            "tan(phi') = sin(phi)/(2 - cos(phi)); springs keep both",
            "a correction along the link as it will lie turns it back; phi = angle per step") {

@@ -33,7 +33,7 @@ TruthVerdict verdict_of(std::string_view text) {
 }
 
 std::string_view section_title(int section) {
-  constexpr std::array<std::string_view, 10> titles{"One constraint",
+  constexpr std::array<std::string_view, 11> titles{"One constraint",
                                                     "The twin: Bullet is Jakobsen's algorithm",
                                                     "Motion without constraints",
                                                     "Pendulum, stick, chain",
@@ -42,7 +42,8 @@ std::string_view section_title(int section) {
                                                     "Contact",
                                                     "Published numbers",
                                                     "References",
-                                                    "Metrics"};
+                                                    "Metrics",
+                                                    "Conformance: one test of each phenomenon"};
   return titles[static_cast<std::size_t>(section - 1)];
 }
 
@@ -126,6 +127,7 @@ Simulation::Simulation(const Scene& scene, std::string_view solver, int steps)
     : scene_(scene), state_(scene.start) {
   const SolverChoice choice = parse_solver(solver);
   solver_ = choice.entry->make(scene_, choice.params);
+  foreign_ = choice.entry->foreign();
   solver_->load(state_);
   if (steps > 0) step(steps);
 }
@@ -133,6 +135,9 @@ Simulation::Simulation(const Scene& scene, std::string_view solver, int steps)
 void Simulation::step(int n) {
   for (int i = 0; i < n; ++i, ++n_) solver_->step(n_ * scene_.dt, scene_.dt);
   solver_->store(state_);
+  const auto finite = [](const Vec3& a) { return a.allFinite(); };
+  if (foreign_ && !(std::ranges::all_of(state_.x, finite) && std::ranges::all_of(state_.v, finite)))
+    throw SolverFailure(Status::Kind::exploded, "a state that is not finite");
 }
 
 bool can_run(Findings& findings, std::string_view solver, const Scene& scene) {

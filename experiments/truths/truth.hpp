@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -81,12 +82,16 @@ class Findings {
 struct TruthEntry {
   std::string_view name;  ///< "hanging-chain-sweeps"
   /// 1 constraint, 2 twin, 3 free motion, 4 pendulum and chain, 5 stability, 6 cloth, 7 contact, 8
-  /// published, 9 references, 10 metrics.
+  /// published, 9 references, 10 metrics, 11 conformance.
   int section = 0;
   int row = 0;                 ///< within the section, from 1
   std::string_view statement;  ///< what must hold, one sentence with the formula
   std::string_view source;     ///< paper, book or derivation
   void (*check)(Findings&);
+  /// The phenomenon whose one test in the conformance suite this is (experiments/truths/
+  /// conformance); "": it does not belong to the suite.
+  std::string_view phenomenon = "";
+  std::string_view needs = "";  ///< what a solver has to have for it: "links, gravity"
 };
 
 /// An identifier with hyphens: "hanging-chain-sweeps" for hanging_chain_sweeps.
@@ -104,11 +109,15 @@ std::span<const TruthEntry* const> truths();
 /// Title of a section of the list.
 std::string_view section_title(int section);
 
+/// The larger of two errors; NaN if one of them is NaN, which std::max() may lose.
+inline double larger(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
+
 /// A solver on a scene, stepped by hand. Solvers with a link order use the mesh order, which the
 /// recurrences of the truths assume, unless the text chooses another.
 class Simulation {
  public:
-  /// Starts the scene and makes this many steps.
+  /// Starts the scene and makes this many steps. From a program of its own a state that is not
+  /// finite is a failure (SolverFailure: exploded), as in a case.
   Simulation(const Scene&, std::string_view solver, int steps = 0);
   void step(int n = 1);
   /// The values that `value()` returns after each of `steps` steps.
@@ -127,7 +136,7 @@ class Simulation {
     double most = 0;
     for (int n = 1; n <= steps; ++n) {
       step();
-      most = std::max(most, error(n));
+      most = larger(most, error(n));
     }
     return most;
   }
@@ -139,6 +148,7 @@ class Simulation {
  private:
   Scene scene_;
   std::unique_ptr<Solver> solver_;
+  bool foreign_;
   State state_;
   int n_ = 0;
 };
@@ -207,9 +217,11 @@ inline constexpr double kG = 9.81;  ///< m/s^2
 /// (as in `taut verify --section 4`), what must hold, and its source; then follows the function
 /// that checks it:
 ///     TAUT_TRUTH(weightless, 3, 99, "Without forces ...", "Newton") { findings.below(...); }
-#define TAUT_TRUTH(id, section, row, statement, source)                                     \
-  static void check_##id(Findings&);                                                        \
-  static constexpr Hyphenated name_##id(#id);                                               \
-  extern const TruthEntry truth_##id;                                                       \
-  const TruthEntry truth_##id{name_##id.text, section, row, statement, source, check_##id}; \
+/// A test of the conformance suite also has its phenomenon and what it needs.
+#define TAUT_TRUTH(id, section, row, statement, source, ...)                                   \
+  static void check_##id(Findings&);                                                           \
+  static constexpr Hyphenated name_##id(#id);                                                  \
+  extern const TruthEntry truth_##id;                                                          \
+  const TruthEntry truth_##id{name_##id.text, section, row,                                    \
+                              statement,      source,  check_##id __VA_OPT__(, ) __VA_ARGS__}; \
   static void check_##id(Findings& findings)

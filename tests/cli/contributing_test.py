@@ -60,8 +60,8 @@ class Contributing(CommandLine):
     def test_the_truths_for_every_solver_bind_it(self):
         for solver in ("toy", "toy-pass"):
             done = self.taut("verify", "--solver", solver, program="taut-toy")
-            self.assertIn("any-solver", done.out)
-            self.assertRegex(done.err, r"5 numbers: [45] passed, 0 deviate as explained, [01] not applicable, 0 broken")
+            self.assertIn("any-rest", done.out)
+            self.assertRegex(done.err, r"numbers: (22|51) passed, [01] deviate as explained, \d+ not applicable, 0 broken")
 
     def test_the_code_is_formatted_as_the_tree_is(self):
         if not shutil.which("clang-format"):

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <thread>
 
 #include "taut_solver.hpp"
 
@@ -207,6 +209,8 @@ class Planted {
       if (has("friction-of-the-first-body")) bodies_.back().friction = bodies_[0].friction;
     }
     if (scene["wind"].something()) {
+      if (has("dies-in-wind")) std::abort();
+      while (has("hangs-in-wind")) std::this_thread::sleep_for(std::chrono::seconds(1));
       wind_ = vec(scene["wind"]["velocity"]);
       strength_ = has("wind-ignored") ? 0 : scene["wind"]["strength"].number;
       relative_ = scene["wind"]["law"].text == "relative" && !has("wind-without-own-speed");
@@ -266,6 +270,7 @@ class Planted {
       if (has("positions-in-half-precision")) {
         p = {half(p.x), half(p.y), half(p.z)};
       }
+      if (has("lies-in-wind") && !faces_.empty()) p.x = std::nan("");
       const std::size_t at = has("vertices-reversed") ? x_.size() - 1 - i : i;
       const double all[] = {p.x, p.y, p.z, u.x, u.y, u.z};
       std::copy(all, all + 3, x + 3 * at);

@@ -23,7 +23,11 @@ ZERO = ("strain of 1 % after ten passes", "speed two steps after the impact", "h
         "way of a vertex along the floor in 10 s, mu = 0.0", "way of a vertex along the floor in 10 s, mu = 0.5",
         "way of a vertex along the floor in 10 s, mu = 1.0", "way of two pinned vertices in 1 s", "way of a sheet at rest that nothing moves, in 1 s",
         "distance of the pin from its motion at the release", "distance of two moving pins from their places, within 1 s",
-        "distance on a million segments from the box's", "depth of the chord, faces=edges")
+        "distance on a million segments from the box's", "depth of the chord, faces=edges",
+        "distance of the velocity from v0", "distance of three moving pins from their places, within 1 s",
+        "way in 1 s of a chain of springs that starts at rest, over its sag", "height over its place at rest, from 0.05 s after the impact on",
+        "way at mu = 1.05 tan(30 degrees)", "way at mu = 1.05 tan(30 degrees), above a smooth plane", "share that passes a box of 0.4 ways",
+        "distance of a run that goes on from its state after 0.25 s", "the same of runs with a moving pin, after 0.25 s")
 
 
 def verify():

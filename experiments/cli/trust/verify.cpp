@@ -1,25 +1,34 @@
 #include "experiments/truths/verify.hpp"
 
+#include "core/io/text_file.hpp"
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/baseline/assertion_baseline.hpp"
+#include "experiments/case/digest.hpp"
 #include "experiments/command_line/verb.hpp"
+#include "experiments/external/external.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/timing/timing.hpp"
+#include "experiments/truths/suite.hpp"
 
 namespace taut::verb::verify {
 
 namespace {
 
 struct Options {
-  std::vector<std::string> names, solvers;
+  std::vector<std::string> names, solvers, beside;
   int section = 0, jobs = 2;
   bool assertions = false, update = false, list = false, record = false;
+  bool suite = false;
   bool here = false;  ///< whether to check in this process
   Format format;
   std::string baselines, out;
 
+  bool of_suite() const { return suite || !beside.empty(); }
   /// Whether every truth that an assertion rests on is checked for every solver.
-  bool of_all_assertions() const { return names.empty() && solvers.empty() && section == 0; }
+  bool of_all_assertions() const {
+    return names.empty() && solvers.empty() && section == 0 && !of_suite();
+  }
 };
 
 std::vector<const TruthEntry*> choose(const Options& options) {
@@ -29,7 +38,8 @@ std::vector<const TruthEntry*> choose(const Options& options) {
   std::erase_if(chosen, [&](const TruthEntry* truth) {
     const bool named = options.names.empty() || std::ranges::count(options.names, truth->name) > 0;
     const bool within = options.section == 0 || truth->section == options.section;
-    return (options.assertions && !is_asserted(*truth)) || !named || !within;
+    return (options.assertions && !is_asserted(*truth)) || !named || !within ||
+           (options.of_suite() && truth->phenomenon.empty());
   });
   return chosen;
 }
@@ -64,6 +74,47 @@ Answer list_of(const std::vector<const TruthEntry*>& chosen) {
   return answer;
 }
 
+/// Whether the text names a file with an earlier result of the suite, and no solver.
+bool is_result(const std::string& text) { return text.ends_with(".json"); }
+
+/// Runs the suite for each engine, or reads what it found before.
+int run_suite(const Options& options) {
+  std::vector<std::string> engines = options.solvers;
+  engines.insert(engines.end(), options.beside.begin(), options.beside.end());
+  if (engines.empty())
+    for (const SolverEntry* entry : solvers()) engines.emplace_back(entry->name);
+  for (const std::string& engine : engines)
+    if (!is_result(engine)) parse_solver(engine);
+  const std::string ours = "taut " TAUT_VERSION " " + program_digest().substr(0, 10);
+  std::vector<Conformance> all;
+  for (const std::string& engine : engines) {
+    if (is_result(engine)) {
+      for (Conformance& one : conformances_in(answer_from_json(read_text(engine), engine)))
+        all.push_back(std::move(one));
+      continue;
+    }
+    const Verification found = taut::verify({.truths = choose(options),
+                                             .solvers = {engine},
+                                             .jobs = options.jobs,
+                                             .progress = Countdown("test")});
+    all.push_back(conformance_of(engine, found.truths, ours, machine_name()));
+  }
+  const Answer answer = answer_of(all);
+  if (options.record) {
+    Store store(options.out);
+    store.prepare();
+    store.keep(answer);
+  }
+  print(answer, options.format);
+  bool failed = false, any = false;
+  for (const Conformance& one : all)
+    for (const Conformance::Number& n : one.numbers) {
+      failed = failed || n.finding.verdict == TruthVerdict::broken;
+      any = any || n.finding.verdict != TruthVerdict::not_applicable;
+    }
+  return failed ? kRegression : any ? kPass : kNothing;
+}
+
 int run(const Options& options) {
   if (options.list) {
     print(list_of(choose(options)), options.format);
@@ -72,7 +123,12 @@ int run(const Options& options) {
   if (options.update && !(options.assertions && options.of_all_assertions()))
     throw InputError(
         "--update keeps the verdicts of all assertions: taut verify --assertions --update");
-  const Verification found = taut::verify({.truths = choose(options),
+  const std::vector<const TruthEntry*> truths = choose(options);
+  // The suite finds what the quick probe finds, and names it.
+  if (std::ranges::none_of(truths, &std::string_view::empty, &TruthEntry::phenomenon))
+    external::run_unprobed();
+  if (options.of_suite()) return run_suite(options);
+  const Verification found = taut::verify({.truths = truths,
                                            .solvers = options.solvers,
                                            .jobs = options.jobs,
                                            .here = options.here,
@@ -101,11 +157,18 @@ void add_options(Arguments& args, Options& options) {
   args.add_option(own_words::kSolver, options.solvers,
                   "Only findings of these solvers (\"reference\": of the references)");
   args.add_option("--section", options.section, "Only one section of the truths")
-      .check(in_range(1, 10));
+      .check(in_range(1, 11));
   args.add_option("-j,--jobs", options.jobs,
                   "Truths at a time, each in a process of its own (default: " +
                       std::to_string(options.jobs) + ")")
       .check(in_range(1, 64));
+  args.add_flag("--suite", options.suite,
+                "Only the conformance suite: one test of each phenomenon, engine by engine")
+      .excludes("--assertions");
+  args.add_option("--beside", options.beside,
+                  "The suite for these solvers side by side; a file.json is what --suite --json "
+                  "found before")
+      .excludes("--assertions");
   add_record(args, options.record);
   add_results(args, options.out);
   args.add_flag("--assertions", options.assertions,
@@ -130,6 +193,8 @@ TAUT_VERB(verify) = {
         "taut verify --section 4 --solver jakobsen\n"
         "  taut verify hanging-chain-sweeps --all\n"
         "  taut verify --assertions\n"
+        "  taut verify --suite --solver \"external:cmd='python3 mine.py'\" --json >mine.json\n"
+        "  taut verify --beside mine.json jakobsen bullet\n"
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
         "did; 4 nothing was compared",
     .answer =
@@ -138,5 +203,11 @@ TAUT_VERB(verify) = {
          {"findings",
           "verdict truth subject quantity unit measured expected tolerance uncertainty why"},
          {"assertions", "source section verdict assertion figure"},
-         {"broken", "truth number"}},
+         {"broken", "*"},
+         {"engines",
+          "engine version passed deviates failed not_claimed first_failed solver suite machine"},
+         {"phenomena", "*"},
+         {"numbers",
+          "engine version solver phenomenon test needs verdict quantity unit value closed_form "
+          "ratio tolerance why"}},
     .bind = taut::bind_verb<taut::verb::verify::add_options, taut::verb::verify::run>};
