@@ -232,6 +232,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
     reasons.emplace_back("stepSimulation ignores a substep this short");
   if (scene.bending)
     reasons.emplace_back("bending: Bullet's cloth has links alone, and no bending stiffness");
+  if (scene.membrane)
+    reasons.emplace_back("a membrane: Bullet's cloth has links alone, whose stiffness has no unit");
   return reasons;
 }
 

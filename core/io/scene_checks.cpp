@@ -15,6 +15,8 @@ namespace taut {
 namespace {
 
 constexpr double kShortestLink = 1e-9;  ///< m
+/// Least area of a triangle of a membrane, as a share of its longest side's square.
+constexpr double kLeastArea = 1e-9;
 
 bool starts_pinned(const Scene& scene, std::size_t i) {
   return std::binary_search(scene.pins.begin(), scene.pins.end(), static_cast<int>(i));
@@ -111,9 +113,20 @@ void judge_frames(const Value& item, Section& root, const Collider& collider, co
     }
 }
 
-/// Length of the shortest structural link, seams excluded [m]; 0 if there is no such link.
+/// Length of the shortest structural link, seams excluded, or side of a membrane's triangle [m]; 0
+/// if there is neither.
 double spacing(const Scene& scene) {
   double least = 0;
+  const auto add = [&](int a, int b) {
+    const double side = (scene.mesh.rest[to_index(b)] - scene.mesh.rest[to_index(a)]).norm();
+    if (least == 0 || side < least) least = side;
+  };
+  if (scene.membrane)
+    for (const auto& [a, b, c] : scene.mesh.triangles) {
+      add(a, b);
+      add(b, c);
+      add(a, c);
+    }
   for (const Link& link : scene.links)
     if (link.family == Family::structural && !is_seam(link) && (least == 0 || link.rest < least))
       least = link.rest;
@@ -134,6 +147,34 @@ void judge_sizes(Section& root, const FileKeys& said, const Scene& scene) {
                                       " m apart: at most half of that, or set overlap = true");
 }
 
+/// Reports a membrane whose triangles cannot have a strain.
+void judge_membrane(Section& root, const Scene& scene) {
+  Diagnostics& diagnostics = root.diagnostics();
+  const auto report = [&](const std::string& what) {
+    diagnostics.report(root.place("membrane"), what);
+  };
+  if (scene.mesh.triangles.empty()) report("[membrane] acts on faces, and this cloth has none");
+  if (scene.membrane->direction.isZero(0))
+    report(
+        "'warp' in [membrane] is missing: a mesh needs the direction of its warp where that "
+        "matters");
+  const auto flat = [](const std::vector<Vec3>& x, const Triangle& t) {
+    const Vec3 &a = x[to_index(t[0])], &b = x[to_index(t[1])], &c = x[to_index(t[2])];
+    const double longest =
+        std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    return !((b - a).cross(c - a).norm() > kLeastArea * longest);
+  };
+  for (const Triangle& t : scene.mesh.triangles) {
+    const bool at_rest = flat(scene.mesh.rest, t);
+    if (!at_rest && !flat(scene.start.x, t)) continue;
+    const std::string who = "the face of vertices " + std::to_string(t[0]) + ", " +
+                            std::to_string(t[1]) + " and " + std::to_string(t[2]);
+    return report(who + (at_rest ? " has no area: [membrane] has no strain there"
+                                 : " starts on a line: [membrane] has no direction there in which "
+                                   "to open it; move a vertex of it off the line"));
+  }
+}
+
 }  // namespace
 
 void check_whole(Section& root, const Scene& scene) {
@@ -151,6 +192,7 @@ void check_whole(Section& root, const Scene& scene) {
     diagnostics.report(root.place("bending"),
                        "'warp' in [bending] is missing: where warp and weft differ, a mesh needs "
                        "the direction of its warp");
+  if (scene.membrane) judge_membrane(root, scene);
   if (scene.wind && scene.mesh.triangles.empty())
     diagnostics.report(root.place("wind"), "[wind] acts on faces, and this cloth has none");
 }

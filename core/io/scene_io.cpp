@@ -10,6 +10,7 @@
 #include "core/io/scene_readers.hpp"
 #include "core/model/angle.hpp"
 #include "core/model/index.hpp"
+#include "core/model/membrane.hpp"
 #include "core/model/text.hpp"
 
 namespace taut {
@@ -263,22 +264,28 @@ void judge_fabric(Section& root) {
     }
 }
 
+/// Reads the 'stiffness' of a section of the cloth: one number, or that of warp and weft.
+template <class Part>
+void read_warp_and_weft(Section& section, Part& part) {
+  const Range& range = allowed_at(section.scene_section() + ".stiffness");
+  const Value* value = section.find("stiffness");
+  if (value && value->is_table()) {
+    Section both(section.diagnostics(), *value, "'stiffness' in " + section.name());
+    both.need({"warp", "weft"});
+    part.warp = both.number("warp", range, 1);
+    part.weft = both.number("weft", range, 1);
+    both.finish();
+  } else {
+    part.warp = part.weft = section.number("stiffness", range, 1);
+  }
+}
+
 /// Reads bending: one stiffness [N m], or that of warp and weft, unless the fabric has it. The
 /// direction of the warp is v of a grid unless given.
 Bending read_bending(Section& section, const Fabric* fabric) {
   Bending bending;
   if (!fabric) section.need({"stiffness"});
-  const Range& range = allowed_at("bending.stiffness");
-  const Value* value = section.find("stiffness");
-  if (value && value->is_table()) {
-    Section both(section.diagnostics(), *value, "'stiffness' in [bending]");
-    both.need({"warp", "weft"});
-    bending.warp = both.number("warp", range, 1);
-    bending.weft = both.number("weft", range, 1);
-    both.finish();
-  } else {
-    bending.warp = bending.weft = section.number("stiffness", range, 1);
-  }
+  read_warp_and_weft(section, bending);
   if (fabric) {
     bending.warp = fabric->warp;
     bending.weft = fabric->weft;
@@ -287,6 +294,61 @@ Bending read_bending(Section& section, const Fabric* fabric) {
   read_keys(section, bending);
   section.finish();
   return bending;
+}
+
+/// Reports what arap, which has one number, does not have.
+void judge_arap(Section& section, const Membrane& membrane) {
+  for (const char* key : {"poisson", "shear"})
+    if (section.find(key))
+      section.report(key, "is not free with law = \"arap\": it is " +
+                              std::string(key[0] == 'p' ? "0" : "half the stiffness"));
+  if (membrane.warp != membrane.weft)
+    section.report("stiffness", "must be one number with law = \"arap\"");
+}
+
+/// Reads the membrane: its stiffness [N/m] and, unless given, the shear of a material that is the
+/// same in all directions. Its direction is zero unless given.
+Membrane read_membrane(Section& section) {
+  Membrane membrane;
+  section.need({"stiffness"});
+  read_warp_and_weft(section, membrane);
+  membrane.direction.setZero();
+  read_keys(section, membrane);
+  if (membrane.law == Membrane::Law::arap) {
+    judge_arap(section, membrane);
+    membrane.shear = membrane.warp / 2;
+  } else if (const double most = most_poisson(membrane); !(std::abs(membrane.poisson) < most)) {
+    section.report("poisson", "must be within " + as_typed(most) +
+                                  ", the root of warp over weft: beyond it a strain has a negative "
+                                  "energy");
+  } else if (!section.find("shear")) {
+    if (membrane.warp != membrane.weft) section.missing("shear");
+    membrane.shear = membrane.warp / (2 + 2 * membrane.poisson);
+  }
+  section.finish();
+  return membrane;
+}
+
+/// Reports links along faces that a membrane already stretches.
+void judge_doubled(Section& links, const FileKeys& said) {
+  for (const auto& [key, there] :
+       {std::pair("structural", said.structural), std::pair("shear", said.shear)})
+    if (there)
+      links.report(key,
+                   "doubles the membrane: [membrane] resists what these links resist; leave "
+                   "one of them out");
+}
+
+/// Gives bending and membrane the one direction of the warp, where only one of them says it.
+void agree_on_warp(Section& root, Scene& scene) {
+  Vec3& bent = scene.bending->direction;
+  Vec3& stretched = scene.membrane->direction;
+  if (bent.isZero(0)) bent = stretched;
+  if (stretched.isZero(0)) stretched = bent;
+  if ((bent - stretched).norm() > 1e-9)
+    root.diagnostics().report(
+        root.table("membrane")->find("warp")->place,
+        "'warp' in [membrane] is not that of [bending]: a cloth has one warp");
 }
 
 /// Sets dt and the number of steps. dt is rounded to binary32, which is how Bullet keeps it even in
@@ -305,12 +367,16 @@ void set_steps(const FileKeys& said, Section& time, Scene& scene) {
 
 /// Sets the warp's direction if the scene does not: along v of a grid; any direction if warp and
 /// weft are equally stiff.
-void complete(Bending& bending, const Mesh& mesh) {
-  if (!bending.direction.isZero(0)) return;
+template <class Part>
+void complete(Part& part, const Mesh& mesh, bool alike) {
+  if (!part.direction.isZero(0)) return;
   if (mesh.grid && mesh.grid->nv > 1)
-    bending.direction = (mesh.rest[to_index(mesh.grid->nu)] - mesh.rest[0]).normalized();
-  else if (bending.warp == bending.weft)
-    bending.direction = -Vec3::UnitY();
+    part.direction = (mesh.rest[to_index(mesh.grid->nu)] - mesh.rest[0]).normalized();
+  else if (alike)
+    part.direction = -Vec3::UnitY();
+}
+bool is_isotropic(const Membrane& m) {
+  return m.warp == m.weft && m.shear == m.warp / (2 + 2 * m.poisson);
 }
 
 Scene scene_of(const Document& document, const std::filesystem::path& path,
@@ -332,8 +398,11 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
     (read_keys(section, own), ...);
     return section;
   };
+  const bool membrane = root.table("membrane");
+  if (membrane) said.structural = said.shear = false;
   Section links = read("links");
   read_stiffness(links, scene);
+  if (membrane) judge_doubled(links, said);
   links.finish();
   Section cloth = read("cloth");
   const bool built =
@@ -344,6 +413,10 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   if (root.table("bending") || fabric) {
     Section bending = read("bending");
     scene.bending = read_bending(bending, fabric);
+  }
+  if (membrane) {
+    Section section(diagnostics, part(root, "membrane"), "[membrane]", "membrane");
+    scene.membrane = read_membrane(section);
   }
   if (root.table("wind")) read("wind", scene.wind.emplace()).finish();
   if (root.table("self_collision")) read("self_collision", scene.self_collision.emplace()).finish();
@@ -361,7 +434,12 @@ Scene scene_of(const Document& document, const std::filesystem::path& path,
   std::vector<std::string> paths;
   for (const SceneKey& key : scene_keys()) paths.emplace_back(key.path);
   root.finish(paths);
-  if (built && scene.bending) complete(*scene.bending, scene.mesh);
+  if (scene.bending && scene.membrane) agree_on_warp(root, scene);
+  if (built && scene.bending)
+    complete(*scene.bending, scene.mesh, scene.bending->warp == scene.bending->weft);
+  if (built && scene.membrane)
+    complete(*scene.membrane, scene.mesh,
+             scene.membrane->law == Membrane::Law::arap || is_isotropic(*scene.membrane));
   if (built) check_whole(root, scene);
   if (built && diagnostics.clean()) check_contact(root, said, scene);
   diagnostics.throw_if_any();

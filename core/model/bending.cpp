@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "core/model/membrane.hpp"
+
 namespace taut {
 
 namespace {
@@ -34,12 +36,8 @@ Opposite opposites(const std::vector<Triangle>& triangles) {
 
 Patch patch(const Mesh& mesh, const Triangle& t, const Opposite& opposite, const Vec3& warp) {
   const auto rest = [&](int v) -> const Vec3& { return mesh.rest[to_index(v)]; };
-  const Vec3 normal = (rest(t[1]) - rest(t[0])).cross(rest(t[2]) - rest(t[0]));
-  Vec3 along = warp - warp.dot(normal) / normal.squaredNorm() * normal;
-  if (along.norm() < 1e-6) along = rest(t[1]) - rest(t[0]);  // the warp is normal to the triangle
-  along.normalize();
-  const Vec3 across = normal.normalized().cross(along);
-  Patch p{.area = normal.norm() / 2};
+  const auto [along, across, area] = warp_axes({rest(t[0]), rest(t[1]), rest(t[2])}, warp);
+  Patch p{.area = area};
   for (const int v : t) {
     const Vec3 d = rest(v) - rest(t[0]);
     p.vertex.push_back(v);

@@ -67,6 +67,7 @@ class Bytes {
     add_each(b.warp, b.weft);
     add_keys(b);
   }
+  void add(const Membrane& m) { add_each(m.law, m.warp, m.weft, m.poisson, m.shear, m.direction); }
   void add(const Wind& w) { add_keys(w); }
   void add(const SelfCollision& s) { add_keys(s); }
   void add(const Mesh& m) { add_each(m.rest, m.triangles, m.mass, m.grid); }
@@ -206,6 +207,8 @@ Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
     for (const double k : s.stiffness) bytes.add(k);
   if (s.bending) bytes.add(s.bending);
   if (!s.releases.empty()) bytes.add(s.releases);
+  if (s.membrane)
+    bytes.add_later(*find_scene_key(kMembraneKey), [&](Bytes& b) { b.add(*s.membrane); });
   return bytes;
 }
 

@@ -43,6 +43,20 @@ struct Bending {
   Vec3 direction = -Vec3::UnitY();  ///< unit vector along the warp of the rest shape
 };
 
+/// Stretching of the cloth as a membrane (core/model/membrane.hpp).
+struct Membrane {
+  enum class Law {
+    stvk,  ///< St Venant-Kirchhoff, plane stress, orthotropic
+    arap   ///< distance from the nearest rotation: isotropic, without Poisson's effect
+  };
+  Law law = Law::stvk;
+  double warp = 0;                  ///< N/m, > 0: Y1, force per width and strain along the warp
+  double weft = 0;                  ///< N/m, > 0: Y2, the same along the weft
+  double poisson = 0;               ///< nu12: what a strip along the warp narrows by its strain
+  double shear = 0;                 ///< N/m, > 0: G, shear force per width and angle
+  Vec3 direction = -Vec3::UnitY();  ///< unit vector along the warp of the rest shape
+};
+
 /// Pins that follow one prescribed motion.
 struct PinMotion {
   std::vector<int> vertices;  ///< each of them in Scene::pins
@@ -75,6 +89,7 @@ struct Scene {
   /// Stiffness of the links of each family [N/m], > 0; infinite: rigid.
   std::array<double, kFamilies.size()> stiffness = kRigid;
   std::optional<Bending> bending;
+  std::optional<Membrane> membrane;
   std::vector<Collider> colliders;
   std::optional<Wind> wind;
   std::optional<SelfCollision> self_collision;

@@ -137,6 +137,28 @@ const SceneKey kKeys[] = {
               "stiffnesses differ")
         .otherwise("a grid's v"),
 
+    other(kMembraneKey, "number or table", "N/m", Range{1e-6, 1e9}, "needed",
+          "{ warp = 1200, weft = 800 }",
+          "force per width and strain; one number, or of a strip along the warp and one across it")
+        .came_later(5),
+    choice("membrane.law", &Membrane::law, "stvk|arap", "\"arap\"",
+           "St Venant and Kirchhoff's, or the distance from the nearest rotation, which is another "
+           "material: no `poisson`, no `shear`, warp and weft alike")
+        .came_later(5),
+    number("membrane.poisson", &Membrane::poisson, "1", Range::within(1e3), "0.3",
+           "nu12: how much a strip along the warp narrows, by its strain")
+        .limited("its square below warp/weft")
+        .came_later(5),
+    number("membrane.shear", &Membrane::shear, "N/m", Range{1e-6, 1e9}, "350",
+           "shear force per width and angle; needed where warp and weft differ")
+        .otherwise("stiffness/(2 + 2 poisson)")
+        .came_later(5),
+    direction("membrane.warp", &Membrane::direction, "[1, 0, 0]",
+              "of the warp over the rest shape, as `bending.warp`, and the same where both are "
+              "given; needed for a mesh whose stiffnesses differ")
+        .otherwise("that of bending; a grid's v")
+        .came_later(5),
+
     vector("forces.gravity", &Scene::gravity, "m/s^2", Range::within(1e6), "[0, 0, -1.62]",
            "of every vertex"),
     number("forces.damping", &Scene::damping, "1/s", Range::non_negative(1e6), "0.5",

@@ -26,6 +26,9 @@ inline constexpr double kFar = 1e6;
 /// added later.
 inline constexpr std::string_view kFramesKey = "collider.frames";
 
+/// Key of a membrane's stiffness, by which content() includes the whole membrane.
+inline constexpr std::string_view kMembraneKey = "membrane.stiffness";
+
 /// Allowed range of a number. Non-finite numbers are never allowed.
 struct Range {
   double min = -std::numeric_limits<double>::max();
@@ -76,10 +79,11 @@ struct SceneKey {
   using Member =
       std::variant<std::monostate, double Scene::*, Vec3 Scene::*, bool Scene::*, double Wind::*,
                    Vec3 Wind::*, Wind::Law Wind::*, double SelfCollision::*, double Bending::*,
-                   Vec3 Bending::*, double Collider::*, Vec3 Motion::*, double Plane::*,
-                   Vec3 Plane::*, double Ball::*, Vec3 Ball::*, Vec3 Box::*, double Capsule::*,
-                   Vec3 Capsule::*, Vec3 MeshBody::*, MeshBody::Sides MeshBody::*,
-                   double FileKeys::*, Vec3 FileKeys::*, bool FileKeys::*, Lumping FileKeys::*,
+                   Vec3 Bending::*, Membrane::Law Membrane::*, double Membrane::*, Vec3 Membrane::*,
+                   double Collider::*, Vec3 Motion::*, double Plane::*, Vec3 Plane::*,
+                   double Ball::*, Vec3 Ball::*, Vec3 Box::*, double Capsule::*, Vec3 Capsule::*,
+                   Vec3 MeshBody::*, MeshBody::Sides MeshBody::*, double FileKeys::*,
+                   Vec3 FileKeys::*, bool FileKeys::*, Lumping FileKeys::*,
                    FileKeys::Inside FileKeys::*>;
 
   std::string_view path;  ///< "forces.damping"; "summary" is at the top of the file

@@ -8,6 +8,7 @@
 
 #include "core/model/bending.hpp"
 #include "core/model/index.hpp"
+#include "core/model/membrane.hpp"
 #include "core/reference/dense.hpp"
 
 namespace taut {
@@ -60,9 +61,28 @@ double largest_eigenvalue(Eigen::Index n, const Apply& apply) {
   return reference::tridiagonal_eigenvalues(diagonal.head(size), off.head(size - 1))[size - 1];
 }
 
+/// A block of the membrane's second derivative at the start.
+struct PairBlock {
+  int a, b;
+  Eigen::Matrix3d block;  ///< N/m
+};
+
+std::vector<PairBlock> membrane_blocks(const Scene& scene) {
+  std::vector<PairBlock> blocks;
+  const MembraneModel membrane = make_membrane(scene);
+  for (const MembraneElement& e : membrane.elements)
+    membrane.add_second(
+        e, [&](std::size_t v) { return scene.start.x[v]; }, true,
+        [&](std::size_t a, std::size_t b, const Eigen::Matrix3d& block) {
+          blocks.push_back({static_cast<int>(a), static_cast<int>(b), block});
+        });
+  return blocks;
+}
+
 struct Elastic {
   std::vector<Bar> springs;
   std::vector<BendingElement> bending;
+  std::vector<PairBlock> membrane;
 };
 
 /// Largest eigenvalue of M^-1/2 (stiff K + damped C) M^-1/2, where C is drag times the identity on
@@ -88,6 +108,11 @@ double spring_eigenvalue(const Elastic& parts, const std::vector<double>& w, dou
       });
       for (std::size_t i = 0; i < e.size; ++i)
         y.segment<3>(3 * e.vertex[i]) += std::sqrt(w[to_index(e.vertex[i])]) * e.weight[i] * pull;
+    }
+    for (const auto& [a, b, block] : parts.membrane) {
+      const double both = stiff * std::sqrt(w[to_index(a)] * w[to_index(b)]);
+      y.segment<3>(3 * a) += both * block * x.segment<3>(3 * b);
+      if (a != b) y.segment<3>(3 * b) += both * block.transpose() * x.segment<3>(3 * a);
     }
     return y;
   });
@@ -118,8 +143,8 @@ std::optional<LinearStability> stability(const Scene& scene, const LinearSprings
   const std::vector<double> w = inverse_masses(scene);
   const double h = scene.dt / model.substeps, drag = model.drag;
   const double q = std::exp(-scene.damping * h);
-  const Elastic all{bars(scene, w, model.stiffness), make_bending(scene)};
-  if (all.springs.empty() && all.bending.empty()) return {};
+  const Elastic all{bars(scene, w, model.stiffness), make_bending(scene), membrane_blocks(scene)};
+  if (all.springs.empty() && all.bending.empty() && all.membrane.empty()) return {};
   if (model.explicit_euler) {
     if (scene.damping > 0) return {};
     if (drag > 0) return dragged_explicit_euler(w, all, h, drag);

@@ -139,6 +139,12 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
   return loop::make(scene, params, links<float>, links<double>);
 }
 
+std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
+  std::vector<std::string> reasons = loop::unsupported(scene, params);
+  loop::refuse_membrane(scene, "its local steps are of links; take implicit, vbd or xpbd", reasons);
+  return reasons;
+}
+
 ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
   const ResolvedSettings own{
       is_rigid(scene, params) ? ResolvedSetting(kLinksSetting, "rigid")
@@ -164,7 +170,7 @@ TAUT_SOLVER(admm) = {
     .source = "Narain, Overby, Brown 2016; Overby et al. 2017",
     .params = taut::solver::admm::kParams,
     .make = taut::solver::admm::make,
-    .unsupported = taut::loop::unsupported,
+    .unsupported = taut::solver::admm::unsupported,
     .resolved_settings = taut::solver::admm::resolved_settings,
     .declared_step = taut::loop::implicit_euler,
     .accuracy = {.substeps = "substeps",

@@ -126,6 +126,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
   loop::refuse_faces(scene, params, "avbd", reasons);
   for (std::string& reason : elastic_links(scene)) reasons.push_back(std::move(reason));
+  loop::refuse_membrane(scene, "its multipliers are of rigid links; take vbd", reasons);
   return reasons;
 }
 

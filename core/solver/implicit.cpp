@@ -8,10 +8,11 @@
 //     K [ u u^T + c (I - u u^T) ],     c = 1 - r/|d|
 //
 // where c is clamped to at least 0, which keeps H positive definite (Choi, Ko: Stable but
-// Responsive Cloth, SIGGRAPH 2002). Once full steps no longer reduce the gradient fast, the
-// unclamped Hessian is used if it is positive definite. The step is halved until G falls (Armijo).
-// One iteration from x_t without line search is the linearised step of Baraff, Witkin: Large Steps
-// in Cloth Simulation (SIGGRAPH 1998). start=inertia starts at y instead, unless something touches.
+// Responsive Cloth, SIGGRAPH 2002); that of the membrane (core/model/membrane.hpp) is clamped
+// alike. Once full steps no longer reduce the gradient fast, the unclamped Hessian is used if it is
+// positive definite. The step is halved until G falls (Armijo). One iteration from x_t without line
+// search is the linearised step of Baraff, Witkin: Large Steps in Cloth Simulation (SIGGRAPH 1998).
+// start=inertia starts at y instead, unless something touches.
 //
 // With multipliers=keep (core/solver/newton/kept_tensions.hpp), each link's tension is kept from
 // step to step as its resistance to sideways motion, and iterations start at y. A step is
@@ -169,11 +170,17 @@ class NewtonPass final : public Pass<double> {
   std::vector<PassCost> cost() const override {
     const std::size_t bytes = step_.y.bytes() + step_.springs.size() * sizeof(Spring) +
                               step_.bending.size() * sizeof(BendingElement);
-    return {{.pass = "spring Hessians", .items = step_.springs.size(), .bytes = bytes},
-            {.pass = step_.hessian.factored() ? "LDLT" : "conjugate gradients",
-             .items = step_.hessian.factored() ? step_.hessian.factor_entries()
-                                               : to_index(step_.hessian.size()),
-             .bytes = step_.hessian.bytes()}};
+    std::vector<PassCost> costs{
+        {.pass = "spring Hessians", .items = step_.springs.size(), .bytes = bytes}};
+    if (!step_.membrane.empty())
+      costs.push_back({.pass = "membrane Hessians",
+                       .items = step_.membrane.elements.size(),
+                       .bytes = step_.membrane.bytes()});
+    costs.push_back({.pass = step_.hessian.factored() ? "LDLT" : "conjugate gradients",
+                     .items = step_.hessian.factored() ? step_.hessian.factor_entries()
+                                                       : to_index(step_.hessian.size()),
+                     .bytes = step_.hessian.bytes()});
+    return costs;
   }
 
  private:
@@ -327,6 +334,8 @@ class NewtonPass final : public Pass<double> {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = unsupported_of_springs(scene, params);
+  if (scene.membrane && params.is("multipliers", "keep"))
+    reasons.emplace_back("multipliers=keep keeps tensions of links, and a membrane has none");
   if (params.is("integrator", "euler")) return reasons;
   const std::string own = "integrator=" + std::string(params.choice("integrator"));
   if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
@@ -348,6 +357,7 @@ loop::Links<double> links(const loop::Setup& s) {
   return {.layout = Layout::packed(s.w.size()),
           .pass = std::make_unique<NewtonPass>(s),
           .bends = true,
+          .stretches = true,
           .contacts = true};
 }
 

@@ -97,6 +97,7 @@ std::vector<std::string> unsolvable_lines(const Scene& scene, const Params& para
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
   for (std::string& reason : elastic_links(scene)) reasons.push_back(std::move(reason));
+  loop::refuse_membrane(scene, "rigid projections have no stiffness; xpbd gives them one", reasons);
   if (params.is("method", "lines"))
     for (std::string& reason : unsolvable_lines(scene, params))
       reasons.push_back(std::move(reason));

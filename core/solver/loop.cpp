@@ -10,6 +10,7 @@
 #include "core/model/text.hpp"
 #include "core/solver/bending.hpp"
 #include "core/solver/constraints/tethers.hpp"
+#include "core/solver/membrane.hpp"
 #include "core/solver/wind.hpp"
 
 namespace taut::loop {
@@ -122,6 +123,8 @@ class Loop final : public Solver {
             std::make_unique<TetherPass<Real>>(scene, tethers, links.tethers, simd_));
     Pass<Real>* const solving = links.contacts ? links.pass.get() : nullptr;
     if (links.pass) constraints_.push_back(std::move(links.pass));
+    if (scene.membrane && !links.stretches)
+      constraints_.push_back(make_membrane_pass<Real>(scene, w));
     if (scene.bending && !links.bends) constraints_.push_back(make_bending_pass<Real>(scene, w));
     pins_ = Pins(scene, *p_.layout);
     contact_ = make_contact<Real>(scene, *p_.layout, contact_settings(params), solving, pool_);
@@ -384,10 +387,16 @@ void refuse_faces(const Scene& scene, const Params& params, std::string_view sol
                     std::string(solver) + "; take implicit, pd or admm");
 }
 
+void refuse_membrane(const Scene& scene, std::string_view why, std::vector<std::string>& reasons) {
+  if (scene.membrane) reasons.push_back("a membrane: " + std::string(why));
+}
+
 DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
   DeclaredStep step{.stiffness = stiffness_of(scene, params),
                     .substeps = params.integer("substeps")};
-  if (scene.self_collision && !params.is("self", "off"))
+  if (scene.membrane)
+    step.none = "the exact step leaves out the membrane";
+  else if (scene.self_collision && !params.is("self", "off"))
     step.none = "the exact step leaves out self-collision";
   else if (!scene.colliders.empty() && !params.is("faces", "off"))
     step.none = "the exact step leaves out contact of faces";
@@ -413,6 +422,13 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
     lines.emplace_back("bending", shortest(scene.bending->warp) + " N m along the warp, " +
                                       shortest(scene.bending->weft) + " N m along the weft, " +
                                       std::string(bending));
+  if (scene.membrane) {
+    const auto& [law, warp, weft, poisson, shear, direction] = *scene.membrane;
+    lines.emplace_back("membrane", std::string(law == Membrane::Law::arap ? "arap" : "stvk") +
+                                       ": " + shortest(warp) + " N/m along the warp, " +
+                                       shortest(weft) + " N/m along the weft, Poisson's number " +
+                                       shortest(poisson) + ", shear " + shortest(shear) + " N/m");
+  }
   lines.emplace_back("gravity", "the scene's");
   lines.emplace_back("precision", precision_of(scene, params),
                      in_float(params) ? "float" : "double");

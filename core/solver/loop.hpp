@@ -43,7 +43,8 @@
 ///  4. `iterations` times: apply() moves p.x once towards the links' lengths, then contact with
 ///     friction pushes out what is inside colliders. apply() finds p.x as contact left it. With
 ///     Links::contacts, contact comes once, after the last iteration.
-///     In between, the loop projects the scene's bending, unless Links::bends (make_bending_pass).
+///     In between, the loop projects the scene's membrane and bending, unless Links::stretches and
+///     Links::bends (make_membrane_pass, make_bending_pass).
 ///  5. end(): after the last iteration. To move p.x without changing its velocity, move p.previous
 ///     by the same amount.
 ///
@@ -70,6 +71,7 @@ struct Links {
   std::unique_ptr<Pass<Real>> pass = nullptr;       ///< null: no link can move
   bool accelerates = false;                         ///< `pass` has accelerate(), which needs p.a
   bool bends = false;                               ///< `pass` includes the scene's bending
+  bool stretches = false;                           ///< `pass` includes the scene's membrane
   bool contacts = false;                            ///< `pass` includes contact (Contacts)
   std::vector<std::unique_ptr<Pass<Real>>> coarse;  ///< accelerators of `pass`
   Projection tethers = Projection::exact;
@@ -95,6 +97,9 @@ std::vector<std::string> unsupported(const Scene&, const Params&);
 /// collider does not come to rest with it.
 void refuse_faces(const Scene&, const Params&, std::string_view solver,
                   std::vector<std::string>& reasons);
+
+/// Adds the reason why `solver` refuses a membrane: `why`.
+void refuse_membrane(const Scene&, std::string_view why, std::vector<std::string>& reasons);
 
 /// How friction acts where contact is projected, and where it is part of the solve (Contacts).
 inline constexpr std::string_view

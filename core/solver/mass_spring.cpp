@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/model/bending.hpp"
+#include "core/model/membrane.hpp"
 #include "core/model/text.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/loop.hpp"
@@ -54,6 +55,7 @@ class Springs final : public Pass<Real> {
         explicit_(setup.params.is("integrator", "explicit-euler")),
         damping_(setup.scene.damping),
         bending_(make_bending(setup.scene)),
+        membrane_(make_membrane(setup.scene)),
         moved_(central_ || explicit_ ? setup.w.size() : 0),
         pool_(setup.pool) {
     const auto k = stiffnesses(setup.scene, setup.params);
@@ -94,6 +96,12 @@ class Springs final : public Pass<Real> {
         if (const std::size_t v = to_index(e.vertex[i]); p.w[v] > 0)
           p.a.add(v, p.w[v] * static_cast<Real>(e.weight[i]) * pull);
     }
+    for (const MembraneElement& e : membrane_.elements)
+      membrane_.add_forces(
+          e, [&](std::size_t v) { return p.x[v]; },
+          [&](std::size_t v, const Vec3& force) {
+            if (p.w[v] > 0) p.a.add(v, p.w[v] * V(force.cast<Real>()));
+          });
   }
 
   /// Corrects the loop's Verlet step, x* = x + v' h, for central drag or explicit Euler.
@@ -123,6 +131,10 @@ class Springs final : public Pass<Real> {
       costs.push_back({.pass = "bending forces",
                        .items = bending_.size(),
                        .bytes = bending_.size() * sizeof(BendingElement)});
+    if (!membrane_.empty())
+      costs.push_back({.pass = "membrane forces",
+                       .items = membrane_.elements.size(),
+                       .bytes = membrane_.bytes()});
     if (!costs.empty())
       costs.front().bytes += slots_.size() * sizeof slots_[0] + groups_.bytes() +
                              w_.size() * sizeof w_[0] + moved_.size() * sizeof moved_[0];
@@ -135,6 +147,7 @@ class Springs final : public Pass<Real> {
   bool central_, explicit_;
   double damping_;
   std::vector<BendingElement> bending_;
+  MembraneModel membrane_;
   std::array<std::size_t, kFamilies.size()> count_{};  ///< number of springs by family
   VertexGroups groups_;
   std::vector<SpringSlot<Real>> slots_;
@@ -147,7 +160,11 @@ template <class Real>
 loop::Links<Real> make_links(const loop::Setup& setup) {
   auto pass = std::make_unique<Springs<Real>>(setup);
   Layout layout = pass->layout();
-  return {.layout = std::move(layout), .pass = std::move(pass), .accelerates = true, .bends = true};
+  return {.layout = std::move(layout),
+          .pass = std::move(pass),
+          .accelerates = true,
+          .bends = true,
+          .stretches = true};
 }
 
 std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {

@@ -378,6 +378,7 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = unsupported_of_springs(scene, params);
+  loop::refuse_membrane(scene, "its local steps are of links; take implicit, vbd or xpbd", reasons);
   if (params.real("chebyshev") > 0 && params.integer("anderson") > 0)
     reasons.emplace_back("chebyshev and anderson are two ways to accelerate: take one");
   if (!params.is("method", "plain")) {

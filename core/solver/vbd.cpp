@@ -53,10 +53,14 @@ class DescentPass final : public Pass<Real> {
   void apply(Particles<Real>& p, double, double h) override { blocks_.sweep(p, damping_, h); }
 
   std::vector<PassCost> cost() const override {
-    return {{.pass = "vertices", .items = blocks_.groups().vertices(), .bytes = 0},
-            {.pass = "links, each from both ends",
-             .items = 2 * springs_.size(),
-             .bytes = blocks_.bytes()}};
+    std::vector<PassCost> costs{
+        {.pass = "vertices", .items = blocks_.groups().vertices(), .bytes = 0},
+        {.pass = "links, each from both ends",
+         .items = 2 * springs_.size(),
+         .bytes = blocks_.bytes()}};
+    if (const std::size_t triangles = blocks_.membrane().elements.size(); triangles > 0)
+      costs.push_back({.pass = "membrane, each triangle from its corners", .items = 3 * triangles});
+    return costs;
   }
 
  private:
@@ -73,6 +77,7 @@ loop::Links<Real> links(const loop::Setup& s) {
       .layout = std::move(layout),
       .pass = with_chebyshev<Real>(std::move(pass), s.params.real("chebyshev"), s.w.size(), s.pool),
       .bends = true,
+      .stretches = true,
       .contacts = true};
 }
 
@@ -91,6 +96,8 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params) {
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = unsupported_of_springs(scene, params);
   loop::refuse_faces(scene, params, "vbd", reasons);
+  if (scene.membrane && params.real("damping") > 0)
+    reasons.emplace_back("damping is of links: the membrane has none");
   return reasons;
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/model/adjacency.hpp"
 #include "core/model/bending.hpp"
+#include "core/model/membrane.hpp"
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/layout/vertex_groups.hpp"
 #include "core/solver/loop.hpp"
@@ -51,9 +52,9 @@ class AdaptiveStart {
 /// Sweeps of solvers that move one vertex at a time to the minimum of a quadratic model in its own
 /// three coordinates, with all others held. Colours come one after another; lanes and threads
 /// divide a colour, and any number of them computes the same bits. Links are computed in lanes.
-/// Bending and contact are computed vertex by vertex, and only if the scene has them: the lanes
-/// move a vertex with the forces by which colliders hold it, and then those at its new place are
-/// settled by the same Hessian.
+/// Bending, membrane and contact are computed vertex by vertex, and only if the scene has them: the
+/// lanes move a vertex with the forces by which colliders hold it, and then those at its new place
+/// are settled by the same Hessian.
 template <class Real, class Slot>
 class VertexBlocks {
  public:
@@ -68,6 +69,7 @@ class VertexBlocks {
   std::vector<Slot>& slots() { return slots_; }
   const std::vector<Slot>& slots() const { return slots_; }
   Points<Real>& target() { return y_; }  ///< Pass::target
+  const MembraneModel& membrane() const { return membrane_; }
 
   void restart() {
     y_ = {};
@@ -102,6 +104,7 @@ class VertexBlocks {
                               .previous = p.previous.data(),
                               .inertia = inertia_.data(),
                               .bending = bending_.empty() ? nullptr : bending_forces_.data(),
+                              .membrane = membrane_.empty() ? nullptr : membrane_rows_.data(),
                               .held = contacts_ ? held_.data() : nullptr,
                               .hessian = contacts_ ? hessians_.data() : nullptr,
                               .damping = static_cast<Real>(damping / h)};
@@ -120,16 +123,20 @@ class VertexBlocks {
   }
 
   std::size_t bytes() const {
-    return bending_.size() * sizeof(BendingElement) + (contacts_ ? contacts_->bytes() : 0) +
-           slots_.size() * sizeof(Slot) + groups_.bytes() + y_.bytes() +
-           (inertia_.size() + bending_forces_.size() + held_.size() + hessians_.size()) *
+    return bending_.size() * sizeof(BendingElement) + membrane_.bytes() +
+           (contacts_ ? contacts_->bytes() : 0) + slots_.size() * sizeof(Slot) + groups_.bytes() +
+           y_.bytes() +
+           (inertia_.size() + bending_forces_.size() + membrane_rows_.size() + held_.size() +
+            hessians_.size()) *
                sizeof(Real);
   }
 
  private:
-  struct Bent {
+  /// An element of bending or of the membrane at a vertex.
+  struct At {
     std::size_t element, place;  ///< index of the vertex within the element
   };
+  static constexpr std::size_t kRows = 9;  ///< of VertexSweep::membrane
   /// Fewest vertices for which threads share a sweep, which takes as long as one of
   /// ThreadPool::kWorthSharing particles over links.
   static constexpr std::size_t kWorthSharing = ThreadPool::kWorthSharing / 4;
@@ -138,16 +145,22 @@ class VertexBlocks {
                const Adjacency& ends)
       : sweep_(kernel),
         bending_(make_bending(s.scene)),
-        groups_(ends, bending_, s.w, s.params.is("order", "coloured")),
+        membrane_(make_membrane(s.scene)),
+        groups_(ends, bending_, membrane_.elements, s.w, s.params.is("order", "coloured")),
         slots_(slots_of_springs<Slot>(groups_, ends, springs, kNothingElse)),
         start_(s.scene, s.params.is("start", "adaptive")),
         contacts_(make_contacts(s.scene, s.params)),
         bent_(bending_.empty() ? 0 : s.w.size()),
+        stretched_(membrane_.empty() ? 0 : s.w.size()),
         pool_(s.pool) {
     for (std::size_t k = 0; k < bending_.size(); ++k)
       for (std::size_t i = 0; i < bending_[k].size; ++i)
         bent_[to_index(bending_[k].vertex[i])].push_back({k, i});
     set_bending_stiffness();
+    for (std::size_t k = 0; k < membrane_.elements.size(); ++k)
+      for (std::size_t a = 0; a < 3; ++a)
+        stretched_[to_index(membrane_.elements[k].vertex[a])].push_back({k, a});
+    if (!membrane_.empty()) membrane_rows_.assign(groups_.size() * kRows * kLanes, Real(0));
   }
 
   /// Calls f(vertex, group, lane) for the vertices of groups [begin, end).
@@ -166,7 +179,7 @@ class VertexBlocks {
     inertia_of_ = h;
   }
 
-  double bending_stiffness(const Bent& b) const {
+  double bending_stiffness(const At& b) const {
     return bending_[b.element].stiffness * bending_[b.element].weight[b.place];
   }
   Real& bending_force(std::size_t g, std::size_t row, std::size_t lane) {
@@ -178,7 +191,7 @@ class VertexBlocks {
     bending_forces_.assign(groups_.size() * 4 * kLanes, Real(0));
     visit(0, groups_.size(), [&](std::size_t i, std::size_t g, std::size_t lane) {
       double sum = 0;
-      for (const Bent& b : bent_[i])
+      for (const At& b : bent_[i])
         sum += bending_stiffness(b) * bending_[b.element].weight[b.place];
       bending_force(g, 3, lane) = static_cast<Real>(sum);
     });
@@ -186,7 +199,7 @@ class VertexBlocks {
   void set_bending_forces(const Particles<Real>& p, std::size_t begin, std::size_t end) {
     visit(begin, end, [&](std::size_t i, std::size_t g, std::size_t lane) {
       typename Points<Real>::Point force = Points<Real>::Point::Zero();
-      for (const Bent& b : bent_[i])
+      for (const At& b : bent_[i])
         force -= static_cast<Real>(bending_stiffness(b)) *
                  bending_[b.element].value([&](std::size_t v) { return p.x[v]; });
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -194,9 +207,30 @@ class VertexBlocks {
     });
   }
 
+  /// Sets the membrane's force on each vertex and its Hessian there, without its negative part.
+  void set_membrane_rows(const Particles<Real>& p, std::size_t begin, std::size_t end) {
+    visit(begin, end, [&](std::size_t i, std::size_t g, std::size_t lane) {
+      Vec3 force = Vec3::Zero();
+      Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+      for (const At& b : stretched_[i]) {
+        const MembraneElement& e = membrane_.elements[b.element];
+        const Deformation f = e.deformation([&](std::size_t v) { return p.x[v]; });
+        const Eigen::Vector2d& own = e.gradient[b.place];
+        force -= e.area * (membrane_.law.stress(f) * own);
+        hessian += e.area * membrane_.law.second(f, true).between(own, own);
+      }
+      const double rows[kRows]{force.x(),     force.y(),     force.z(),
+                               hessian(0, 0), hessian(1, 1), hessian(2, 2),
+                               hessian(0, 1), hessian(0, 2), hessian(1, 2)};
+      for (std::size_t r = 0; r < kRows; ++r)
+        membrane_rows_[(kRows * g + r) * kLanes + lane] = static_cast<Real>(rows[r]);
+    });
+  }
+
   void sweep_groups(Particles<Real>& p, const VertexSweep<Real>& v, std::size_t begin,
                     std::size_t end) {
     if (!bending_.empty()) set_bending_forces(p, begin, end);
+    if (!membrane_.empty()) set_membrane_rows(p, begin, end);
     if (!contacts_) return sweep_(v, slots_.data(), begin, end);
     visit(begin, end, [&](std::size_t i, std::size_t g, std::size_t lane) {
       const Vec3 force = contacts_->force_at(i, p.x[i].template cast<double>(),
@@ -225,17 +259,20 @@ class VertexBlocks {
 
   Sweep sweep_;
   std::vector<BendingElement> bending_;
+  MembraneModel membrane_;
   VertexGroups groups_;
   std::vector<Slot> slots_;
   AdaptiveStart<Real> start_;
-  std::unique_ptr<Contacts> contacts_;   ///< null: no contact
-  std::vector<std::vector<Bent>> bent_;  ///< [n] elements of each vertex; empty: no bending
-  std::vector<Real> inertia_;            ///< [groups][kLanes] N/m
-  double inertia_of_ = 0;                ///< s, substep of inertia_; 0: none yet
-  std::vector<Real> bending_forces_;     ///< VertexSweep::bending; empty: no bending
-  Points<Real> y_;                       ///< m, positions without links
-  std::vector<Real> held_;               ///< VertexSweep::held; empty: no contact
-  std::vector<Real> hessians_;           ///< VertexSweep::hessian; empty: no contact
+  std::unique_ptr<Contacts> contacts_;      ///< null: no contact
+  std::vector<std::vector<At>> bent_;       ///< [n] elements of each vertex; empty: no bending
+  std::vector<std::vector<At>> stretched_;  ///< [n] the same of the membrane; empty: none
+  std::vector<Real> inertia_;               ///< [groups][kLanes] N/m
+  double inertia_of_ = 0;                   ///< s, substep of inertia_; 0: none yet
+  std::vector<Real> bending_forces_;        ///< VertexSweep::bending; empty: no bending
+  std::vector<Real> membrane_rows_;         ///< VertexSweep::membrane; empty: no membrane
+  Points<Real> y_;                          ///< m, positions without links
+  std::vector<Real> held_;                  ///< VertexSweep::held; empty: no contact
+  std::vector<Real> hessians_;              ///< VertexSweep::hessian; empty: no contact
   ThreadPool& pool_;
 };
 

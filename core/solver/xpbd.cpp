@@ -96,6 +96,7 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   if (!primal) return reasons;
   const std::string own = "primal=on minimises an energy of links and contact, without ";
   if (scene.bending) reasons.push_back(own + "bending");
+  if (scene.membrane) reasons.push_back(own + "membrane");
   if (params.is("tethers", "on")) reasons.push_back(own + "tethers");
   loop::refuse_faces(scene, params, "primal=on", reasons);
   return reasons;

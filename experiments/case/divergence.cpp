@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "core/model/bending.hpp"
 #include "core/model/body_frames.hpp"
 #include "core/model/index.hpp"
+#include "core/model/membrane.hpp"
 #include "core/model/triangle.hpp"
 #include "core/model/triangle_mesh.hpp"
 
@@ -16,7 +20,22 @@ namespace {
 
 double square(double value) { return value * value; }
 
-/// The cloth as seen from its pins: breadth first along the links.
+/// What holds the cloth together: its links and, as structural ones, the sides of a membrane's
+/// triangles, each once.
+std::vector<Link> ties(const Scene& scene) {
+  std::vector<Link> all = scene.links;
+  if (!scene.membrane) return all;
+  std::set<std::pair<int, int>> sides;
+  for (const Triangle& t : scene.mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) sides.insert(std::minmax(t[k], t[(k + 1) % 3]));
+  for (const auto& [a, b] : sides) {
+    const double rest = (scene.mesh.rest[to_index(b)] - scene.mesh.rest[to_index(a)]).norm();
+    all.push_back({a, b, rest, Family::structural});
+  }
+  return all;
+}
+
+/// The cloth as seen from its pins: breadth first along its ties.
 struct Hanging {
   std::vector<int> hops;    ///< [n] links to the nearest pin; -1: no way to any
   std::vector<double> way;  ///< [n] m along that way at rest
@@ -26,8 +45,9 @@ struct Hanging {
 
 Hanging hang(const Scene& scene) {
   const std::size_t n = scene.mesh.rest.size();
+  const std::vector<Link> all = ties(scene);
   std::vector<std::vector<const Link*>> links_of(n);
-  for (const Link& link : scene.links) {
+  for (const Link& link : all) {
     links_of[to_index(link.a)].push_back(&link);
     links_of[to_index(link.b)].push_back(&link);
   }
@@ -61,7 +81,7 @@ Softest softest(const Scene& scene, const Hanging& hanging, double dt) {
   const std::vector<double> w = inverse_masses(scene);
   for (std::size_t i = 0; i < w.size(); ++i)
     if (hanging.hops[i] > 0) mass[to_index(hanging.hops[i])] += scene.mesh.mass[i];
-  for (const auto& [a, b, rest, family] : scene.links) {
+  for (const auto& [a, b, rest, family] : ties(scene)) {
     const int from = hanging.hops[to_index(a)], to = hanging.hops[to_index(b)];
     if (from == to || from < 0) continue;
     const std::size_t cut = to_index(std::max(from, to));
@@ -201,16 +221,16 @@ double longest_way_out(const Scene& scene) {
 /// What the start of a scene holds besides its height.
 struct Held {
   double kinetic = 0;  ///< J
-  double bending = 0;  ///< J
+  double elastic = 0;  ///< J, of bending and membrane
   double links = 0;    ///< J, if they are the stiffest springs that a step can hold
   double way = 0;      ///< m, of a vertex in one step because the start breaks constraints
 };
 /// w: inverse masses [1/kg].
 Held held_at_start(const Scene& scene, const std::vector<double>& w, double dt) {
   const auto& x = scene.start.x;
-  Held held{.bending = bending_energy(make_bending(scene), x)};
+  Held held{.elastic = bending_energy(make_bending(scene), x) + make_membrane(scene).energy(x)};
   double excess = 0;
-  for (const auto& [a, b, rest, family] : scene.links) {
+  for (const auto& [a, b, rest, family] : ties(scene)) {
     const double longer = (x[to_index(b)] - x[to_index(a)]).norm() - rest,
                  yielding = w[to_index(a)] + w[to_index(b)];
     excess += std::abs(longer);
@@ -253,7 +273,7 @@ EnergyBudget::EnergyBudget(const Scene& scene, int substeps)
   const double rounding = 1e-6 * (farthest + extent(scene));
   const Held held = held_at_start(last, w, dt_);
   constant_ =
-      held.kinetic + held.bending +
+      held.kinetic + held.elastic +
       mass / 2 *
           (square(2 * motion_speed(scene)) + (square(held.way) + square(rounding)) / square(dt_));
   stored_ = held.links;
@@ -315,6 +335,7 @@ std::optional<double> settling_time(const Scene& scene, const std::vector<PassCo
 DivergenceDetector::DivergenceDetector(const Scene& scene, const std::vector<PassCost>& step_cost,
                                        int substeps)
     : scene_(scene),
+      ties_(ties(scene)),
       budget_(scene, substeps),
       legitimate_strain_(legitimate_strain(scene, substeps)),
       free_mass_(scene.mesh.mass),
@@ -331,7 +352,7 @@ bool DivergenceDetector::explode(Reason reason, int step, std::size_t vertex) {
 }
 
 void DivergenceDetector::judge_stretch(int step, const State& state) {
-  for (const Link& link : scene_.links) {
+  for (const Link& link : ties_) {
     const double most = (1 + legitimate_strain_) * link.rest;
     if ((state.x[to_index(link.b)] - state.x[to_index(link.a)]).squaredNorm() > square(most) &&
         strain_in_plane(scene_, link, state.x) > 0) {

@@ -19,7 +19,8 @@ namespace taut {
 ///
 ///   start    m v^2/2 of every free vertex
 ///   gravity  m |g| h. h is the discrete free fall |g| t (t + dt)/2. For a piece of cloth that is
-///            pinned it is at most its reach, twice the longest way along links from a pin, plus
+///            pinned it is at most its reach, twice the longest way along links (or sides of a
+///            membrane's triangles, here and below) from a pin, plus
 ///            the extension of the softest relaxation (one sweep a step), doubled for overshoot.
 ///            In that relaxation a cut across c links with the mass M below it opens by
 ///            M |g| dt^2 w/c (truth hanging-chain-sweeps: e_j = (N - j) |g| dt^2)
@@ -31,7 +32,7 @@ namespace taut {
 ///            start breaks constraints: the summed excess of the links (at most the extent of the
 ///            cloth, at start and at rest), the longest way of a vertex, an edge or a face out of a
 ///            collider, twice the self-collision radius
-///   bending  the scene's bending energy at the start
+///   bending  the scene's energy of bending and of the membrane at the start
 ///   stored   energy of links that the start strains by e, k e^2/2. Solvers choose k; the largest
 ///            stable one is taken, 4/((w1 + w2) dt^2). Up to it the motion stays bounded, but grows
 ///            over n steps by a factor of at most 2n + 1: x_n = x_0 cos((n + 1/2) a)/cos(a/2),
@@ -104,6 +105,7 @@ class DivergenceDetector {
   bool explode(Reason, int step, std::size_t vertex);
   void judge_stretch(int step, const State&);
   const Scene& scene_;
+  std::vector<Link> ties_;
   EnergyBudget budget_;
   double legitimate_strain_ = 0;
   std::vector<double> free_mass_;  ///< [n] kg, 0 for pins that hold to the end

@@ -224,7 +224,9 @@ std::vector<Later> later_parts(const Scene& scene) {
   if (std::ranges::any_of(scene.links, is_seam)) all.push_back({2, "a seam"});
   if (is_there<MeshBody>(scene)) all.push_back({3, "a body of triangles"});
   for (const LaterKey& key : later_keys(scene)) {
-    const std::string words = key.path == kFramesKey ? "a body that deforms" : key.path;
+    const std::string words = key.path == kFramesKey     ? "a body that deforms"
+                              : key.path == kMembraneKey ? "a membrane"
+                                                         : key.path;
     if (std::ranges::find(all, words, &Later::words) == all.end())
       all.push_back({key.since, words});
   }
@@ -283,6 +285,15 @@ std::string scene_file(const Scene& scene) {
     file["bending"].update({{"warp", scene.bending->warp},
                             {"weft", scene.bending->weft},
                             {"direction", json_of(scene.bending->direction)}});
+  }
+  if (scene.membrane) {
+    const Membrane& m = *scene.membrane;
+    file["membrane"] = {{"law", m.law == Membrane::Law::arap ? "arap" : "stvk"},
+                        {"warp", m.warp},
+                        {"weft", m.weft},
+                        {"poisson", m.poisson},
+                        {"shear", m.shear},
+                        {"direction", json_of(m.direction)}};
   }
   return to_text(file) + "\n";
 }

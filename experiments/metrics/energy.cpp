@@ -49,7 +49,7 @@ class Energy final : public Metric {
 }  // namespace
 
 TAUT_METRIC(energy, Energy, "Mechanical energy; relaxation dissipates it legitimately",
-            "sum of m v^2/2 - m g . (x - x_start) over vertices, and the energy of bending and of "
-            "elastic links");
+            "sum of m v^2/2 - m g . (x - x_start) over vertices, and the energy of bending, of the "
+            "membrane and of elastic links");
 
 }  // namespace taut

@@ -11,7 +11,8 @@ MechanicalEnergy::MechanicalEnergy(const Scene& scene)
     : mass_(scene.mesh.mass),
       start_(scene.start.x),
       gravity_(scene.gravity),
-      bending_(make_bending(scene)) {
+      bending_(make_bending(scene)),
+      membrane_(make_membrane(scene)) {
   for (const Link& link : scene.links) {
     const double stiffness = scene.stiffness[static_cast<std::size_t>(link.family)];
     if (std::isfinite(stiffness)) springs_.push_back({link, stiffness});
@@ -34,7 +35,7 @@ double MechanicalEnergy::potential(const State& state) const {
 }
 
 double MechanicalEnergy::stored(const std::vector<Vec3>& x) const {
-  double sum = bending_energy(bending_, x);
+  double sum = bending_energy(bending_, x) + membrane_.energy(x);
   for (const auto& [link, stiffness] : springs_) {
     const double longer = (x[to_index(link.a)] - x[to_index(link.b)]).norm() - link.rest;
     sum += stiffness / 2 * longer * longer;

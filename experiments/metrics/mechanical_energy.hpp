@@ -3,13 +3,14 @@
 #include <vector>
 
 #include "core/model/bending.hpp"
+#include "core/model/membrane.hpp"
 #include "core/model/scene.hpp"
 
 namespace taut {
 
-/// Energies of a scene's cloth [J]: kinetic energy, and potential energy of gravity, bending and
-/// the links that the scene makes elastic, K/2 (length - rest length)^2 each. Rigid links store no
-/// energy.
+/// Energies of a scene's cloth [J]: kinetic energy, and potential energy of gravity, bending, the
+/// membrane and the links that the scene makes elastic, K/2 (length - rest length)^2 each. Rigid
+/// links store no energy.
 class MechanicalEnergy {
  public:
   explicit MechanicalEnergy(const Scene&);
@@ -30,6 +31,7 @@ class MechanicalEnergy {
   std::vector<Vec3> start_;
   Vec3 gravity_;
   std::vector<BendingElement> bending_;
+  MembraneModel membrane_;
   std::vector<Spring> springs_;
   double unit_ = 0, at_start_ = 0;
 };

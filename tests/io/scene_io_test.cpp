@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <numeric>
+#include <set>
 #include <sstream>
 
 #include "core/io/fabrics.hpp"
@@ -333,6 +334,75 @@ TEST(SceneFiles, BendingIsOneStiffnessOrThatOfWarpAndWeft) {
   EXPECT_NE(error("stiffness = 1", "cloth = { grid = [1, 9], size = [0, 1], mass = 1 }\n")
                 .find("[bending] acts on faces"),
             std::string::npos);
+}
+
+TEST(SceneFiles, AMembraneTakesThePlaceOfLinks) {
+  EXPECT_FALSE(shipped("hang").membrane);
+  const Scene one = shipped("hang", {"membrane.stiffness=1000"}),
+              two = shipped("hang", {"membrane.stiffness={ warp = 1200, weft = 800 }",
+                                     "membrane.poisson=0.3", "membrane.shear=350"}),
+              arap = shipped("hang", {"membrane.stiffness=1000", "membrane.law=\"arap\""}),
+              bent = shipped("hang", {"membrane.stiffness=1000", "links.bend=true"});
+  EXPECT_TRUE(one.links.empty());
+  EXPECT_EQ(one.membrane->law, Membrane::Law::stvk);
+  EXPECT_EQ(one.membrane->warp, 1000);
+  EXPECT_EQ(one.membrane->weft, 1000);
+  EXPECT_EQ(one.membrane->poisson, 0);
+  EXPECT_EQ(one.membrane->shear, 500) << "of a material that is the same in all directions";
+  EXPECT_EQ(one.membrane->direction, -Vec3::UnitY()) << "along v";
+  EXPECT_EQ(two.membrane->weft, 800);
+  EXPECT_EQ(two.membrane->poisson, 0.3);
+  EXPECT_EQ(two.membrane->shear, 350);
+  EXPECT_EQ(arap.membrane->law, Membrane::Law::arap);
+  EXPECT_FALSE(bent.links.empty()) << "what it does not double";
+  std::set<std::string> contents{content(shipped("hang")), content(one), content(two),
+                                 content(arap), content(bent)};
+  EXPECT_EQ(contents.size(), 5u);
+  const auto turned = [](const SceneSettings& more) {
+    SceneSettings all{"membrane.stiffness=1000", "bending.stiffness=1e-6"};
+    all.insert(all.end(), more.begin(), more.end());
+    return shipped("hang", all);
+  };
+  for (const Scene& s : {turned({"bending.warp=[1, 0, 0]"}), turned({"membrane.warp=[3, 0, 0]"}),
+                         turned({"membrane.warp=[1, 0, 0]", "bending.warp=[1, 0, 0]"})}) {
+    EXPECT_EQ(s.membrane->direction, Vec3::UnitX());
+    EXPECT_EQ(s.bending->direction, Vec3::UnitX()) << "one warp for both";
+  }
+}
+
+TEST(SceneFiles, AMembraneThatIsNoneIsRefusedWithLineAndKey) {
+  const std::string cloth = "cloth = { grid = [3, 3], size = [1, 1] }\n";
+  const auto refused = [&](const std::string& membrane, const std::string& place,
+                           const std::string& words, const std::string& start) {
+    const std::string all = errors_of(start + "[membrane]\n" + membrane);
+    EXPECT_NE(all.find(place), std::string::npos) << membrane << " got: " << all;
+    EXPECT_NE(all.find(words), std::string::npos) << all;
+  };
+  refused("stiffness = 0", ":3:13", "'stiffness' in [membrane] must be", cloth);
+  refused("stiffness = -5", ":3:13", "'stiffness' in [membrane] must be", cloth);
+  refused("", ":2:1", "missing key 'stiffness'", cloth);
+  refused("stiffness = 10\nstifness = 1", ":4:1", "stifness", cloth);
+  refused("stiffness = 10\nlaw = \"neo\"", ":4:7", "'law' in [membrane] must be", cloth);
+  refused("stiffness = 10\npoisson = 1", ":4:11", "'poisson' in [membrane] must be within 1",
+          cloth);
+  refused("stiffness = 10\npoisson = -1", ":4:11", "'poisson' in [membrane]", cloth);
+  refused("stiffness = { warp = 1, weft = 4 }\nshear = 1\npoisson = 0.5", ":5:11",
+          "must be within 0.5", cloth);
+  refused("stiffness = { warp = 1, weft = 4 }", ":2:1", "missing key 'shear'", cloth);
+  refused("stiffness = 10\nlaw = \"arap\"\npoisson = 0.2", ":5:11", "is not free", cloth);
+  refused("stiffness = 10\nlaw = \"arap\"\nshear = 0.2", ":5:9", "is not free", cloth);
+  refused("stiffness = { warp = 1, weft = 4 }\nlaw = \"arap\"", ":3:13", "one number", cloth);
+  refused("stiffness = 10\nwarp = [1, 0, 0]", ":5:8", "a cloth has one warp",
+          cloth + "bending = { stiffness = 1, warp = [0, 1, 0] }\n");
+  refused("stiffness = 10", ":2:24", "'structural' in [links] doubles the membrane",
+          cloth + "links = { structural = true }\n");
+  refused("stiffness = 10", ":2:19", "'shear' in [links] doubles the membrane",
+          cloth + "links = { shear = true }\n");
+  refused("stiffness = 10", ":2:", "acts on faces",
+          "cloth = { grid = [1, 9], size = [0, 1], mass = 1 }\n");
+  refused("stiffness = 10", ":2:", "starts on a line",
+          "cloth = { grid = [3, 3], size = [1, 1], placed = [{ vertex = 0, at = [0.5, -0.25, 0] "
+          "}] }\n");
 }
 
 TEST(SceneFiles, AFabricIsMassAndBendingInPlaceOfTheScenes) {

@@ -59,6 +59,7 @@ const std::vector<Effect> kEffects{
      [](Scene& s) {
        s.bending = Bending{1e-5, 1e-5};
      }},
+    {"membrane", [](Scene& s) { s.membrane = Membrane{.warp = 100, .weft = 100, .shear = 50}; }},
     {"shear",
      [](Scene& s) {
        s.links = hanging_sheet(20, 20, {true, true, false}).links;

@@ -124,6 +124,11 @@ Scene changed(Scene s, const Change& c) {
     s.bending->weft *= factor(c, "N m");
     vector(s.bending->direction, 1);
   }
+  if (s.membrane) {
+    for (double* one : {&s.membrane->warp, &s.membrane->weft, &s.membrane->shear})
+      *one *= factor(c, "N/m");
+    vector(s.membrane->direction, 1);
+  }
   if (s.self_collision) s.self_collision->radius *= c.metre;
   vector(s.gravity, factor(c, "m/s^2"));
   s.damping /= c.second;

@@ -17,7 +17,7 @@ core/solver/contact      | core/(model/|solver/((simd|layout|contact)/|thread_po
 core/reference           | core/(model|reference)/|core/solver/(panel_factor|newton/hessian)\.hpp
 bullet_ref               | (core/model|bullet_ref)/
 experiments/system       | (core/(model|io)|experiments/system)/
-experiments/metrics      | core/(model/(bending|crossings|declared_step|index|scene|deforming_body|text|triangle|triangle_mesh)|reference/step_error)\.hpp|experiments/metrics/
+experiments/metrics      | core/(model/(bending|membrane|crossings|declared_step|index|scene|deforming_body|text|triangle|triangle_mesh)|reference/step_error)\.hpp|experiments/metrics/
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/|core/reference/strain_at_rest\.hpp
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp|core/reference/strain_at_rest\.hpp)

@@ -13,10 +13,13 @@ using Colours = std::vector<std::vector<int>>;
 
 /// Greedy colouring, vertex after vertex: each takes the first colour that no neighbour has.
 Colours colour_vertices(const Adjacency& ends, std::span<const BendingElement> bending,
-                        std::span<const double> w) {
+                        std::span<const MembraneElement> membrane, std::span<const double> w) {
   std::vector<std::vector<const BendingElement*>> bent(bending.empty() ? 0 : w.size());
   for (const BendingElement& e : bending)
     for (std::size_t k = 0; k < e.size; ++k) bent[to_index(e.vertex[k])].push_back(&e);
+  std::vector<std::vector<const MembraneElement*>> stretched(membrane.empty() ? 0 : w.size());
+  for (const MembraneElement& e : membrane)
+    for (const int v : e.vertex) stretched[to_index(v)].push_back(&e);
   std::vector<int> colour_of(w.size(), -1);
   Colours colours;
   for (std::size_t i = 0; i < w.size(); ++i) {
@@ -26,9 +29,13 @@ Colours colour_vertices(const Adjacency& ends, std::span<const BendingElement> b
     const auto bends = [&](const BendingElement* e) {
       return std::any_of(e->vertex.begin(), e->vertex.begin() + static_cast<long>(e->size), has);
     };
+    const auto stretches = [&](const MembraneElement* e) {
+      return std::ranges::any_of(e->vertex, has);
+    };
     const auto taken = [&] {
       return std::ranges::any_of(ends.of(static_cast<int>(i)), has, &Adjacency::End::vertex) ||
-             (!bent.empty() && std::ranges::any_of(bent[i], bends));
+             (!bent.empty() && std::ranges::any_of(bent[i], bends)) ||
+             (!stretched.empty() && std::ranges::any_of(stretched[i], stretches));
     };
     while (taken()) ++colour;
     colour_of[i] = static_cast<int>(colour);
@@ -59,8 +66,9 @@ Layout side_by_side(const Colours& colours, std::span<const double> w) {
 }  // namespace
 
 VertexGroups::VertexGroups(const Adjacency& ends, std::span<const BendingElement> bending,
-                           std::span<const double> w, bool coloured) {
-  const Colours colours = coloured ? colour_vertices(ends, bending, w) : one_by_one(w);
+                           std::span<const MembraneElement> membrane, std::span<const double> w,
+                           bool coloured) {
+  const Colours colours = coloured ? colour_vertices(ends, bending, membrane, w) : one_by_one(w);
   layout_ = coloured ? side_by_side(colours, w) : Layout::packed(w.size());
   add_colours(colours, ends);
 }

@@ -7,22 +7,23 @@
 
 #include "core/model/adjacency.hpp"
 #include "core/model/bending.hpp"
+#include "core/model/membrane.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/simd/kernels.hpp"
 
 namespace taut {
 
 /// The vertices that move, divided for sweeps that move one vertex at a time while all others are
-/// held. If coloured, no two vertices of a colour are linked or in one bending element. Colours are
-/// divided into groups of kLanes, whatever lanes the machine has, and the particles of a group lie
-/// side by side.
+/// held. If coloured, no two vertices of a colour are linked, in one bending element or in one
+/// triangle of a membrane. Colours are divided into groups of kLanes, whatever lanes the machine
+/// has, and the particles of a group lie side by side.
 class VertexGroups {
  public:
   VertexGroups() = default;
   /// w: inverse masses [1/kg], 0: pinned. If not coloured, each vertex is a colour of its own, in
   /// the given order.
-  VertexGroups(const Adjacency&, std::span<const BendingElement>, std::span<const double> w,
-               bool coloured);
+  VertexGroups(const Adjacency&, std::span<const BendingElement>, std::span<const MembraneElement>,
+               std::span<const double> w, bool coloured);
   /// One colour of all vertices that move, in this order, for sweeps that only read positions.
   VertexGroups(const Adjacency&, std::vector<int> order, std::span<const double> w);
 

@@ -48,6 +48,7 @@ bool Hessian::solve(double h, const Vector& right, Vector& p) {
 
 std::size_t Hessian::bytes() const {
   return factor_.bytes() + bent_.size() * sizeof bent_[0] + blocks_.size() * sizeof blocks_[0] +
+         stretched_.size() * sizeof(PairBlock) +
          (diagonal_.size() + beside_.size()) * sizeof diagonal_[0] +
          static_cast<std::size_t>(in_order_.size()) * sizeof(double);
 }
@@ -101,6 +102,17 @@ void Hessian::fill(double h) {
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) at(r, c) -= block(r, c);
   }
+  for (const auto& [a, b, block] : stretched_) {
+    if (column_[a] < 0 || column_[b] < 0) continue;
+    if (a == b) {
+      add_diagonal(column_[a], block);
+      continue;
+    }
+    const Block at = place(column_[a], column_[b]);
+    const bool in_order = rank_[to_index(column_[a]) / 3] > rank_[to_index(column_[b]) / 3];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) at(r, c) += in_order ? block(r, c) : block(c, r);
+  }
   for (const auto& [a, b, block] : contacts_) {
     if (column_[a] < 0 || column_[b] < 0) continue;
     if (a == b) {
@@ -134,6 +146,8 @@ bool Hessian::conjugate_gradients(double h, const Vector& right, Vector& p) cons
   each_bending([&](int row, int column, double k) {
     if (row == column) inverse[to_index(row) / 3](row % 3, row % 3) += k;
   });
+  for (const auto& [a, b, block] : stretched_)
+    if (a == b && column_[a] >= 0) inverse[to_index(column_[a]) / 3] += block;
   for (const auto& [a, b, block] : contacts_)
     if (a == b && column_[a] >= 0) inverse[to_index(column_[a]) / 3] += block;
   for (Matrix3d& m : inverse) m = Matrix3d(m.inverse());

@@ -23,13 +23,14 @@ struct SpringHessian {
   Vec3 times(const Vec3& v) const { return isotropic * v + axial * u.dot(v) * u; }
 };
 
-/// H = M/h^2 + springs + bending + contact, over the vertices that move. Vectors have three numbers
-/// for each of them. Linear systems are solved by a sparse LDLT, whose pattern is analysed once, or
-/// by conjugate gradients with a block Jacobi preconditioner.
+/// H = M/h^2 + springs + bending + membrane + contact, over the vertices that move. Vectors have
+/// three numbers for each of them. Linear systems are solved by a sparse LDLT, whose pattern is
+/// analysed once, or by conjugate gradients with a block Jacobi preconditioner.
 class Hessian {
  public:
   /// Springs and bending must outlive it. w: inverse masses [1/kg]. beside: pairs of vertices
-  /// between which add_contact() may add a block, besides those of springs and bending.
+  /// between which add_contact() and add_membrane() may add a block, besides those of springs and
+  /// bending.
   Hessian(const std::vector<Spring>& springs, const std::vector<BendingElement>& bending,
           std::span<const double> w, bool factored, Simd simd,
           std::span<const std::pair<int, int>> beside = {});
@@ -39,6 +40,11 @@ class Hessian {
   int column(std::size_t vertex) const { return column_[vertex]; }
   double mass(std::size_t vertex) const { return mass_[to_index(column_[vertex]) / 3]; }
   SpringHessian& block(std::size_t spring) { return blocks_[spring]; }
+  void clear_membrane() { stretched_.clear(); }
+  /// Adds a block of the membrane [N/m], minus d force_a/d x_b, and its transpose for b and a.
+  void add_membrane(std::size_t a, std::size_t b, const Eigen::Matrix3d& block) {
+    stretched_.push_back({a, b, block});
+  }
   void clear_contacts() { contacts_.clear(); }
   /// Adds a block of contact [N/m] at a vertex that moves.
   void add_contact(std::size_t vertex, const Eigen::Matrix3d& block) {
@@ -77,6 +83,10 @@ class Hessian {
         if (const int c = column_[to_index(e.vertex[i])]; c >= 0)
           out.segment<3>(c) += e.weight[i] * pull;
     }
+    for (const auto& [a, b, block] : stretched_) {
+      if (column_[a] >= 0) out.segment<3>(column_[a]) += block * at(b);
+      if (a != b && column_[b] >= 0) out.segment<3>(column_[b]) += block.transpose() * at(a);
+    }
     for (const auto& [a, b, block] : contacts_) {
       if (column_[a] >= 0) out.segment<3>(column_[a]) += block * at(b);
       if (a != b && column_[b] >= 0) out.segment<3>(column_[b]) += block * at(a);
@@ -95,7 +105,7 @@ class Hessian {
     double& operator()(int r, int c) const { return first[to_index(r) * stride + to_index(c)]; }
   };
 
-  struct ContactBlock {
+  struct PairBlock {
     std::size_t a, b;  ///< vertices
     Eigen::Matrix3d block;
   };
@@ -115,7 +125,7 @@ class Hessian {
   std::vector<int> column_;
   std::vector<double> mass_;  ///< kg, of the vertices that move
   std::vector<SpringHessian> blocks_;
-  std::vector<ContactBlock> contacts_;
+  std::vector<PairBlock> stretched_, contacts_;
   PanelFactor factor_;                          ///< empty: conjugate gradients
   std::vector<Block> diagonal_;                 ///< [vertices that move]
   std::vector<Block> beside_;                   ///< [springs]

@@ -28,10 +28,12 @@ double rolling_stiffness(const TouchingPiece& piece, const Vec3& along, double p
   return bends > 0 ? push / bends : 0;
 }
 
-/// Pairs of vertices between which contact of faces and edges acts; empty if the scene has none.
-std::vector<std::pair<int, int>> sides_of_pieces(const loop::Setup& s) {
+/// Pairs of vertices between which the membrane, or contact of faces and edges, acts; empty if the
+/// scene has neither.
+std::vector<std::pair<int, int>> sides_of_faces(const loop::Setup& s) {
   std::vector<std::pair<int, int>> sides;
-  if (s.scene.colliders.empty() || s.params.is("faces", "off")) return sides;
+  const bool contact = !s.scene.colliders.empty() && !s.params.is("faces", "off");
+  if (!contact && !s.scene.membrane) return sides;
   for (const Triangle& face : s.scene.mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) sides.emplace_back(face[k], face[(k + 1) % 3]);
   return sides;
@@ -42,7 +44,8 @@ std::vector<std::pair<int, int>> sides_of_pieces(const loop::Setup& s) {
 StepEnergy::StepEnergy(const loop::Setup& s, bool factored)
     : springs(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
       bending(make_bending(s.scene)),
-      hessian(springs, bending, s.w, factored, s.simd, sides_of_pieces(s)),
+      membrane(make_membrane(s.scene)),
+      hessian(springs, bending, s.w, factored, s.simd, sides_of_faces(s)),
       stiffness(s.w.size()),
       contacts(s.scene, s.params) {
   for (const Spring& spring : springs) {
@@ -53,10 +56,15 @@ StepEnergy::StepEnergy(const loop::Setup& s, bool factored)
     for (std::size_t i = 0; i < e.size; ++i)
       for (std::size_t j = 0; j < e.size; ++j)
         stiffness[to_index(e.vertex[i])] += e.stiffness * std::abs(e.weight[i] * e.weight[j]);
+  for (const MembraneElement& e : membrane.elements)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const Eigen::Vector2d& g : e.gradient)
+        stiffness[to_index(e.vertex[a])] +=
+            e.area * membrane.law.stiffest() * e.gradient[a].norm() * g.norm();
 }
 
 double StepEnergy::energy(const std::vector<Vec3>& x, double h) const {
-  double sum = bending_energy(bending, x);
+  double sum = bending_energy(bending, x) + membrane.energy(x);
   for (std::size_t i = 0; i < x.size(); ++i)
     if (hessian.column(i) >= 0) sum += hessian.mass(i) / (2 * h * h) * (x[i] - y[i]).squaredNorm();
   for (const auto& [a, b, rest, k] : springs) {
@@ -93,6 +101,12 @@ Vector StepEnergy::elastic(const std::vector<Vec3>& x) const {
       if (const int c = hessian.column(to_index(e.vertex[i])); c >= 0)
         g.segment<3>(c) += e.weight[i] * pull;
   }
+  for (const MembraneElement& e : membrane.elements)
+    membrane.add_forces(
+        e, [&](std::size_t v) { return x[v]; },
+        [&](std::size_t v, const Vec3& force) {
+          if (const int c = hessian.column(v); c >= 0) g.segment<3>(c) -= force;
+        });
   contacts.each(x, [&](std::size_t vertex, const AugmentedContacts::Part& part) {
     g.segment<3>(hessian.column(vertex)) -= part.force;
   });
@@ -126,7 +140,14 @@ void StepEnergy::linearise(const std::vector<Vec3>& x, bool clamped) {
     const double c = clamped ? std::max(0.0, across) : across;
     hessian.block(j) = {k * c, k * (1 - c), d / length};
   }
+  hessian.clear_membrane();
   hessian.clear_contacts();
+  for (const MembraneElement& e : membrane.elements)
+    membrane.add_second(
+        e, [&](std::size_t v) { return x[v]; }, clamped,
+        [&](std::size_t a, std::size_t b, const Eigen::Matrix3d& block) {
+          hessian.add_membrane(a, b, block);
+        });
   contacts.each(x, [&](std::size_t vertex, const AugmentedContacts::Part& part) {
     hessian.add_contact(vertex, part.hessian);
   });

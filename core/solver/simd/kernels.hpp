@@ -131,9 +131,9 @@ struct FaceBatch {
   Real w[3][kLanes];                ///< 1/kg
 };
 
-/// kLanes packed particles, no two of which are joined by a link or a bending element. Their links
-/// are in slots [first_slot, end_slot), each with one link of every lane. A lane without a particle
-/// has one of the spare ones of Layout::packed.
+/// kLanes packed particles, no two of which are joined by a link, a bending element or a triangle
+/// of a membrane. Their links are in slots [first_slot, end_slot), each with one link of every
+/// lane. A lane without a particle has one of the spare ones of Layout::packed.
 struct VertexGroup {
   PackedSlot particle[kLanes];
   std::uint32_t first_slot, end_slot;
@@ -171,9 +171,11 @@ struct VertexSweep {
   const Real* previous;  ///< x_t
   const Real* inertia;   ///< [groups][kLanes] m/h^2 [N/m]
   const Real* bending;   ///< [groups][4][kLanes] force x, y, z [N], Hessian [N/m]; null: none
-  const Real* held;      ///< [groups][3][kLanes] force of contact [N]; null: none
-  Real* hessian;         ///< [groups][6][kLanes] N/m, xx, yy, zz, xy, xz, yz, is set; null: none
-  Real damping;          ///< k_d/h of the springs
+  /// [groups][9][kLanes] force x, y, z [N], Hessian xx, yy, zz, xy, xz, yz [N/m]; null: none
+  const Real* membrane;
+  const Real* held;  ///< [groups][3][kLanes] force of contact [N]; null: none
+  Real* hessian;     ///< [groups][6][kLanes] N/m, xx, yy, zz, xy, xz, yz, is set; null: none
+  Real damping;      ///< k_d/h of the springs
 };
 template <class Real>
 struct AugmentedStep {

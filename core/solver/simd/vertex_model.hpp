@@ -147,6 +147,16 @@ template <class T, class Slot, class Real>
               Vec3T<T>{load<T>(bending), load<T>(bending + kLanes), load<T>(bending + 2 * kLanes)};
     m.isotropic += load<T>(bending + 3 * kLanes);
   }
+  if (v.membrane) {
+    const Real* const row = v.membrane + 9 * kLanes * g + l;
+    m.force = m.force + Vec3T<T>{load<T>(row), load<T>(row + kLanes), load<T>(row + 2 * kLanes)};
+    m.xx += load<T>(row + 3 * kLanes);
+    m.yy += load<T>(row + 4 * kLanes);
+    m.zz += load<T>(row + 5 * kLanes);
+    m.xy += load<T>(row + 6 * kLanes);
+    m.xz += load<T>(row + 7 * kLanes);
+    m.yz += load<T>(row + 8 * kLanes);
+  }
   const T inertia = load<T>(v.inertia + kLanes * g + l);
   m.force = m.force - inertia * (x - gather_packed<T>(v.y, group.particle + l));
   m.isotropic += inertia;

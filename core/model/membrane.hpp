@@ -1,0 +1,124 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <type_traits>
+#include <vector>
+
+#include "core/model/index.hpp"
+#include "core/model/scene.hpp"
+
+namespace taut {
+
+/// Axes of a triangle in its own plane, the first of which is the warp's projection.
+struct WarpAxes {
+  Vec3 along, across;  ///< unit vectors
+  double area = 0;     ///< m^2
+};
+/// corners: [m], not on a line. The first side stands for a warp that is normal to the triangle.
+WarpAxes warp_axes(const std::array<Vec3, 3>& corners, const Vec3& warp);
+
+/// Derivative F of position over the cloth: columns along warp and weft, f1 and f2.
+using Deformation = Eigen::Matrix<double, 3, 2>;
+
+/// A triangle of the membrane, in which F is constant.
+struct MembraneElement {
+  Triangle vertex{};
+  double area = 0;                            ///< m^2, at rest
+  std::array<Eigen::Vector2d, 3> gradient{};  ///< g_a [1/m] of corner a's shape function
+
+  /// F = sum_a x_a g_a^T, from differences, which stay exact for nearby positions in float. at(v):
+  /// position of vertex v.
+  template <class At>
+  Deformation deformation(const At& at) const {
+    const auto first = at(to_index(vertex[0]));
+    const Vec3 to_second = (at(to_index(vertex[1])) - first).template cast<double>();
+    const Vec3 to_third = (at(to_index(vertex[2])) - first).template cast<double>();
+    return to_second * gradient[1].transpose() + to_third * gradient[2].transpose();
+  }
+};
+
+/// The law of a membrane: energy by area of F, and its derivatives. With the identity's two columns
+/// F = R, a rotation, nothing is strained.
+///
+///     stvk   psi = e.C e/2,         e = ((f1.f1 - 1)/2, (f2.f2 - 1)/2, f1.f2)     Green's strain
+///            C = 1/(1 - nu12 nu21) [Y1, nu21 Y1, 0;  nu12 Y2, Y2, 0;  0, 0, G (1 - nu12 nu21)],
+///            nu21 = nu12 Y2/Y1 (plane stress; valid while nu12^2 < Y1/Y2)
+///     arap   psi = Y/2 |F - R|^2,   R the rotation nearest to F: nu = 0 and G = Y/2 for small
+///            strains (Sorkine, Alexa, As-Rigid-As-Possible Surface Modeling, SGP 2007)
+class MembraneLaw {
+ public:
+  explicit MembraneLaw(const Membrane&);
+
+  double energy(const Deformation&) const;  ///< J/m^2
+  /// The strain c with psi = c.C c/2 and its derivatives, of which row k is d c_k/d f_i. It is e
+  /// for stvk, and (T11 - 1, T22 - 1, sqrt 2 T12) with F = R T for arap, where C = Y I.
+  struct Strain {
+    Vec3 value;
+    Eigen::Matrix3d by_f1, by_f2;
+    /// d c/d x_a [1/m], for the shape gradient of corner a.
+    Eigen::Matrix3d by_corner(const Eigen::Vector2d& gradient) const {
+      return gradient.x() * by_f1 + gradient.y() * by_f2;
+    }
+  };
+  Strain strain(const Deformation&) const;
+  /// The energy's derivative P [N/m].
+  Deformation stress(const Deformation&) const;
+  /// The second derivative: `of(i, j)` is d P_i/d f_j [N/m], with (2, 1) the transpose of (1, 2).
+  struct Second {
+    Eigen::Matrix3d of11, of12, of22;
+    /// d force_a/d x_b without the area, for the shape gradients of a and b [N/m^3].
+    Eigen::Matrix3d between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+      return a.x() * b.x() * of11 + a.x() * b.y() * of12 + a.y() * b.x() * of12.transpose() +
+             a.y() * b.y() * of22;
+    }
+  };
+  /// positive: without what makes it indefinite. That is, for stvk, the negative part of the stress
+  /// where it resists turning, and for arap the negative eigenvalues.
+  Second second(const Deformation&, bool positive) const;
+
+  const Eigen::Matrix3d& stiffness() const { return stiffness_; }  ///< C of `strain` [N/m]
+  /// Largest resistance to a strain [N/m]: the largest eigenvalue of `second` at rest.
+  double stiffest() const;
+
+ private:
+  Membrane::Law law_;
+  double young_;  ///< N/m, Y of arap
+  Eigen::Matrix3d stiffness_;
+};
+
+/// The membrane of a scene. Empty without one.
+struct MembraneModel {
+  MembraneLaw law;
+  std::vector<MembraneElement> elements;
+
+  bool empty() const { return elements.empty(); }
+  double energy(const std::vector<Vec3>& x) const;  ///< J
+  std::size_t bytes() const { return elements.size() * sizeof elements[0]; }
+
+  /// Calls add(vertex, force [N]) for the corners of an element at these positions.
+  template <class At, class Add>
+  void add_forces(const MembraneElement& e, const At& at, const Add& add) const {
+    const Deformation stress = law.stress(e.deformation(at));
+    for (std::size_t a = 0; a < 3; ++a)
+      add(to_index(e.vertex[a]), Vec3(-e.area * (stress * e.gradient[a])));
+  }
+  /// Calls add(a, b, block [N/m]) for each pair of corners of an element, of which only one order
+  /// is visited: the energy's second derivative by their positions.
+  template <class At, class Add>
+  void add_second(const MembraneElement& e, const At& at, bool positive, const Add& add) const {
+    const MembraneLaw::Second second = law.second(e.deformation(at), positive);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b <= a; ++b)
+        add(to_index(e.vertex[a]), to_index(e.vertex[b]),
+            Eigen::Matrix3d(e.area * second.between(e.gradient[a], e.gradient[b])));
+  }
+};
+
+/// One element for each triangle of the mesh with a vertex that ever moves.
+MembraneModel make_membrane(const Scene&);
+
+/// Largest |poisson| that has an energy for these stiffnesses: sqrt(warp/weft), which is excluded.
+double most_poisson(const Membrane&);
+
+}  // namespace taut
