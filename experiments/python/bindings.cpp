@@ -14,6 +14,7 @@
 #include "core/model/solver.hpp"
 #include "core/model/text.hpp"
 #include "experiments/metrics/metric.hpp"
+#include "experiments/python/conformance.hpp"
 #include "experiments/python/docstrings.hpp"
 #include "experiments/python/predictions.hpp"
 #include "experiments/python/python_solver.hpp"
@@ -141,6 +142,7 @@ void define_module(py::module_& m) {
   define_scene(m);
   define_run(m);
   define_predict(m);
+  define_verify(m);
 
   m.def(
       "scene",

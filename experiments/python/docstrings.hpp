@@ -86,6 +86,21 @@ meanwhile; Ctrl-C ends it after the step.
     run = taut.simulate("hang", "jakobsen:iterations=8", duration=2)
     run.status, run.values["stretch.rms"], run.x.shape)";
 
+inline constexpr const char* kVerify =
+    R"(verify(solver)
+--
+
+The conformance suite: one test with a closed form for each phenomenon, as `taut verify --suite` runs it.
+
+solver  a solver's text, "jakobsen" or "mine:iterations=8"; also one that taut.solver() made.
+
+Returns a list of dicts, a number each, elementary phenomena first: phenomenon, test, needs, verdict
+('passed', 'deviates', 'not applicable', 'broken'), quantity, unit, value, closed_form, ratio (nan
+where the closed form is 0), tolerance, why. What the solver's unsupported() refuses is 'not
+applicable'; what its methods raise breaks the test that called them.
+
+Raises InputError if there is no such solver.)";
+
 inline constexpr const char* kPredict =
     R"(predict(scene, solver='jakobsen', *, dt=None, error=None, stiffness=None, budget=None, as_stiffness=False)
 --

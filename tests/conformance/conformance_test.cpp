@@ -1,5 +1,5 @@
 // The conformance suite names the errors that are planted in a toy solver, and finds none in the
-// sound toy.
+// sound toy, which claims all but bending.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ TEST_F(Conformance, EachPhenomenonHasOneTest) {
   std::set<std::string_view> phenomena;
   for (const TruthEntry* test : suite())
     EXPECT_TRUE(phenomena.insert(test->phenomenon).second) << test->phenomenon;
-  EXPECT_GE(phenomena.size(), 29u);
+  EXPECT_GE(phenomena.size(), 31u);
   for (const auto& [name, phenomenon] : kPlantedErrors)
     EXPECT_TRUE(phenomena.contains(phenomenon)) << name;
 }
@@ -72,7 +72,7 @@ TEST_F(Conformance, TheSoundToyPassesAllThatItClaims) {
       EXPECT_NE(f.verdict, TruthVerdict::broken) << test->name << ": " << f.quantity;
       compared += f.verdict != TruthVerdict::not_applicable;
     }
-    EXPECT_GT(compared, 0u) << test->name;
+    EXPECT_EQ(compared > 0, test->phenomenon != "elastica") << test->name;
   }
 }
 

@@ -46,11 +46,46 @@ class Still:
     def store(self): return self.x, self.v
 
 
+class Falls:
+    """Vertices without links, under this share of gravity."""
+    share = 1.0
+
+    @staticmethod
+    def unsupported(scene): return scene.effects + (["links"] if len(scene.links) else [])
+    def load(self, scene, x, v): self.x, self.v, self.gravity = x, v, self.share * scene.gravity * (scene.inverse_mass[:, None] > 0)
+
+    def step(self, t, dt):
+        if numpy.linalg.norm(self.gravity) > self.raises:
+            raise ArithmeticError("too heavy")
+        self.v = self.v + dt * self.gravity
+        self.x = self.x + dt * self.v
+
+    def store(self): return self.x, self.v
+    raises = 1e300
+
+
 def still(**methods):
     return type("Made", (Still,), methods)
 
 
 class Solvers(module.Case):
+    def broken(self, **members):
+        taut.solver("falls")(type("Made", (Falls,), members))
+        rows = taut.verify("falls")
+        self.assertEqual(len({row["phenomenon"] for row in rows}), len({row["test"] for row in rows}))
+        self.assertIn("not applicable", {row["verdict"] for row in rows if row["phenomenon"] == "pendulum"})
+        return [row for row in rows if row["verdict"] == "broken"]
+
+    def test_the_conformance_suite_names_what_a_class_gets_wrong(self):
+        self.assertEqual(self.broken(), [])
+        self.assertEqual([row["phenomenon"] for row in self.broken(share=0.5)], ["free fall"] * 2)
+        one, = {(row["phenomenon"], row["why"].split("\n")[0]) for row in self.broken(raises=1) if row["phenomenon"] == "free fall"}
+        self.assertEqual(one, ("free fall", "ArithmeticError: too heavy"))
+        fall = [row for row in taut.verify("jakobsen") if row["test"] == "any-pendulum"][0]
+        self.assertAlmostEqual(fall["ratio"], fall["value"] / fall["closed_form"])
+        with self.assertRaisesRegex(taut.InputError, "nobody"):
+            taut.verify("nobody")
+
     def test_the_textbook_gives_what_ours_gives(self):
         scene = taut.scene(module.SMALL)
         ours = taut.simulate(scene, "jakobsen:substeps=1,order=mesh,projection=exact,precision=double,iterations=4")

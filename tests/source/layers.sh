@@ -21,7 +21,7 @@ experiments/metrics      | core/(model/(bending|membrane|crossings|declared_step
 experiments/answer       | (core/(model|io)/|experiments/((system|answer)/|metrics/metric.hpp))
 experiments/case         | (core/(model|io)|experiments/(system|metrics|case))/|core/reference/strain_at_rest\.hpp
 experiments/external     | ((core/(model|io)|experiments/(answer|system|case|external))/|taut_solver.hpp|core/reference/strain_at_rest\.hpp)
-experiments/python       | (core/(model|io)|experiments/(metrics|case|predict|python))/|experiments/system/data.hpp
+experiments/python       | (core/(model|io)|experiments/(metrics|case|predict|python))/|experiments/system/data.hpp|experiments/truths/suite.hpp
 experiments/results      | (core/(model|io)|experiments/(answer|system|metrics|case|results))/
 experiments/study        | (core/(model|io|reference)|experiments/(answer|system|metrics|case|results|study))/
 experiments/study/cluster | (core/(model|io)|experiments/(answer|system|case|study/cluster))/|experiments/(study|results)/[a-z_]+.hpp

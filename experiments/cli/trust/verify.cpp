@@ -193,7 +193,7 @@ TAUT_VERB(verify) = {
         "taut verify --section 4 --solver jakobsen\n"
         "  taut verify hanging-chain-sweeps --all\n"
         "  taut verify --assertions\n"
-        "  taut verify --suite --solver \"external:cmd='python3 mine.py'\" --json >mine.json\n"
+        "  taut verify --suite --solver \"external:cmd='python3 mine.py'\" --json\n"
         "  taut verify --beside mine.json jakobsen bullet\n"
         "Exit: 0 no truth is broken, no verdict of an assertion changed; 1 one is or "
         "did; 4 nothing was compared",

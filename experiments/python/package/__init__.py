@@ -4,6 +4,7 @@
     run = taut.simulate(scene, "jakobsen:iterations=8")      a Run: status, values, x, series
     taut.score(scene, positions, fps=24)                     the same for arrays of another program
     taut.predict(scene, "jakobsen", error=0.01)              strain at rest without a run: settings
+    taut.verify("jakobsen")                                  the conformance suite: numbers, closed forms
     taut.results("results/runs")                             a results file as a pandas.DataFrame
     taut.scenes(), taut.solvers(), taut.metrics()            what there is
 
@@ -27,10 +28,10 @@ except ModuleNotFoundError as missing:
 if (_data := pathlib.Path(__file__).parent / "data").is_dir():  # only an installed package has its own data
     _taut.set_data_folder(_data)
 
-from ._taut import Diagnostic, InputError, Run, Scene, metrics, predict, scene, scenes, score, simulate, solvers  # noqa: E402
+from ._taut import Diagnostic, InputError, Run, Scene, metrics, predict, scene, scenes, score, simulate, solvers, verify  # noqa: E402
 
 __all__ = ["Diagnostic", "InputError", "Run", "Scene", "metrics", "predict", "results", "scene", "scenes", "score", "simulate",
-           "solver", "solvers"]
+           "solver", "solvers", "verify"]
 for _class in (Diagnostic, Run, Scene):
     _class.__module__ = "taut"
 

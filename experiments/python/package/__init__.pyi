@@ -110,6 +110,7 @@ def predict(
     scene: _Source, solver: str = "jakobsen", *, dt: float | str | None = None, error: float | None = None, stiffness: float | None = None,
     budget: float | None = None, as_stiffness: bool = False
 ) -> list[dict[str, Any]]: ...
+def verify(solver: str) -> list[dict[str, Any]]: ...
 def score(
     scene: _Source, positions: npt.NDArray[np.floating[Any]] | str | os.PathLike[str], *, fps: float | None = None, scale: float = 1.0,
     up: str = "y", rest: npt.ArrayLike | None = None, every: int = 1, allow_nan: bool = False

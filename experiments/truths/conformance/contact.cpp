@@ -3,6 +3,8 @@
 #include <numbers>
 
 #include "core/model/angle.hpp"
+#include "core/model/text.hpp"
+#include "core/reference/closed_forms.hpp"
 #include "experiments/truths/bodies.hpp"
 #include "experiments/truths/conformance/conformance.hpp"
 
@@ -12,6 +14,7 @@ namespace {
 
 using conformance::for_each_solver;
 using conformance::kFine;
+using conformance::own_stiffness;
 using conformance::square;
 
 constexpr double kNear = 2e-3;  ///< m
@@ -279,6 +282,53 @@ TAUT_TRUTH(any_self_collision, 11, 24, "two vertices of radius r come no nearer 
       least = std::isnan(now) ? now : std::min(least, now);
     findings.equal(solver, "least distance of two that fly towards each other, over 2 r", "1",
                    least / (2 * radius), 1, 0.02);
+  });
+}
+
+TAUT_TRUTH(any_capstan, 11, 31,
+           "a rope over half a rough cylinder holds up to a ratio of loads near exp(mu pi)",
+           "Euler, Eytelwein; balance of every node", "capstan",
+           "links, gravity, capsules, friction") {
+  for_each_solver(findings, [&](const std::string& solver) {
+    const int links = 12, below = 2;
+    const double radius = 0.2, mu = 0.3, angle = std::numbers::pi / links,
+                 l = 2 * radius * std::sin(angle / 2);
+    const double ratio = reference::capstan_ratio(mu, std::numbers::pi, angle), load = 0.02;
+    constexpr const char* kSlides = "the heavy end falls by 0.02 m in 0.5 s at 1.3 of the ratio";
+    for (const double share : {0.85, 1.3}) {
+      std::vector<Vec3> x;
+      std::vector<Link> rods;
+      std::vector<double> mass;
+      for (int i = -below; i <= links + below; ++i) {
+        const double phi = std::clamp(i, 0, links) * angle, down = std::max({0, -i, i - links}) * l;
+        x.push_back(radius * Vec3(-std::cos(phi), std::sin(phi), 0) - Vec3(0, down, 0));
+        mass.push_back(i == -below ? load : i == links + below ? load * share * ratio : 1e-3);
+        if (i > -below) rods.push_back({i + below - 1, i + below, l});
+      }
+      Scene s = under_gravity(bare::scene(x, mass, rods));
+      s.colliders = {{Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), radius}, {}, mu}};
+      s.dt = kFine;
+      if (!can_run(findings, solver, s)) return;
+      if (solver_name(solver) == "bullet-deformable") {  // here k h^2/m = 15 (bullet_ref/README.md)
+        findings.not_applicable(solver, "contact of btDeformableBody blows up above k h^2/m = 1");
+        return;
+      }
+      const double longer = (links + 2 * below) * load * ratio * kG / own_stiffness(solver, s);
+      if (longer > 0.01) {
+        findings.not_applicable(solver, "its links are springs of its own, which the loads make " +
+                                            general(1000 * longer, 2) + " mm longer");
+        return;
+      }
+      const Simulation sim(s, solver, 128);
+      const double way = s.start.x.back().y() - sim.state().x.back().y();
+      if (share < 1)
+        findings.below(solver, "way of the heavy end in 0.5 s at 0.85 of the ratio", "m", way,
+                       0.02);
+      else if (solver_name(solver) == "bullet")
+        findings.deviates(solver, kSlides, "1", way > 0.02, 1, 0, 0, kBulletFriction);
+      else
+        findings.holds(solver, kSlides, way > 0.02);
+    }
   });
 }
 

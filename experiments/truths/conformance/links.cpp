@@ -5,6 +5,7 @@
 #include "core/model/angle.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/closed_forms.hpp"
+#include "core/reference/elastica.hpp"
 #include "experiments/metrics/metric.hpp"
 #include "experiments/truths/conformance/conformance.hpp"
 
@@ -39,6 +40,20 @@ Scene springs() {
   for (std::size_t j = 0; j < s.links.size(); ++j) s.links[j].family = static_cast<Family>(j % 3);
   std::ranges::stable_sort(s.links, {}, [](const Link& l) { return static_cast<int>(l.family); });
   s.dt = kFine;
+  return s;
+}
+
+/// A level strip of two columns along -y, clamped midway between its first rows, 1 m beyond that.
+Scene clamped_strip(int segments, double gamma) {
+  const double l = 1 / (segments - 0.5), density = 0.1;
+  Scene s = bare::sheet(2, segments + 1, {.structural = true, .shear = true}, Lumping::area, l,
+                        segments * l, density * segments * l * l);
+  s.pins = {0, 1, 2, 3};
+  s.gravity = {0, 0, -kG};
+  const double stiffness = density * kG / gamma;
+  s.bending = Bending{stiffness, stiffness};
+  s.damping = 4;
+  s.dt = 1.0 / 128;
   return s;
 }
 
@@ -222,6 +237,24 @@ TAUT_TRUTH(any_spring, 11, 16,
     findings.equal(solver, "quarter of the period of the slowest mode of 4 springs", "s",
                    first_passage(sim, 2, [&] { return -1 - sim.x(n).y(); }), expected,
                    0.03 * expected);
+  });
+}
+
+TAUT_TRUTH(any_bending, 11, 30,
+           "a strip clamped level hangs as B theta'' = -w (L - s) cos(theta): H/W of its end",
+           "heavy elastica", "elastica", "bending, links, gravity, damping") {
+  for_each_solver(findings, [&](const std::string& solver) {
+    const double gamma = 5;
+    const int segments = 6;
+    const Scene s = clamped_strip(segments, gamma);
+    if (!can_run(findings, solver, s)) return;
+    const Simulation sim(s, solver, 640);
+    const auto row = [&](int j) { return Vec3((sim.x(2 * j) + sim.x(2 * j + 1)) / 2); };
+    const Vec3 out = row(segments) - (row(0) + row(1)) / 2;
+    const reference::Elastica exact = reference::elastica(gamma);
+    const double expected = exact.drop / exact.reach;
+    findings.equal(solver, "drop over reach of the end of 6 segments, w L^3/B = 5", "1",
+                   out.z() / out.y(), expected, 0.05 * expected);
   });
 }
 
