@@ -332,4 +332,39 @@ TAUT_TRUTH(any_capstan, 11, 31,
   });
 }
 
+TAUT_TRUTH(any_pinch, 11, 32,
+           "a thread squeezed by two rough bodies stays with them; by smooth ones it is let fall",
+           "Coulomb", "pinch", "links, gravity, boxes, also moving ones, friction") {
+  for_each_solver(findings, [&](const std::string& solver) {
+    // The grip is 0.1 mm narrower than the cloth is thick: two equal forces that nothing else
+    // fixes. One of exactly that width presses nothing.
+    const double thickness = 0.002, squeeze = 1e-4, half = 0.5, t = 0.25;
+    const double fall = kG * t * t / 2;
+    const auto grip = [&](double mu, double speed, const char* what, double expected,
+                          double tolerance) {
+      Scene s = under_gravity(bare::chain(3, 0.15, 0.001));
+      s.pins.clear();
+      s.thickness = thickness;
+      s.dt = kFine;
+      for (const double side : {-1.0, 1.0})
+        s.colliders.push_back(
+            {Box{Vec3(side * (half + thickness - squeeze), 0, 0), Vec3(half, half, half)},
+             {.velocity = {0, speed, 0}},
+             mu});
+      if (!can_run(findings, solver, s)) return;
+      const Simulation sim(s, solver, 64);
+      const double height = sim.x(0).y() - speed * t;
+      if (solver_name(solver) == "bullet-deformable" && mu > 0)
+        findings.deviates(solver, what, "m", height, expected, -fall - speed * t, 0.01,
+                          "its contact acts on approach: a grip that does not close presses "
+                          "nothing");
+      else
+        findings.equal(solver, what, "m", height, expected, tolerance);
+    };
+    grip(0.5, 0, "height in a grip at rest after 0.25 s, mu = 0.5", 0, kNear);
+    grip(0, 0, "height in a grip at rest after 0.25 s, mu = 0", -fall, 0.03 * fall);
+    grip(0.5, 0.1, "height in a grip that rises at 0.1 m/s after 0.25 s, mu = 0.5", 0, kNear);
+  });
+}
+
 }  // namespace taut
