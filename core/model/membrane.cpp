@@ -167,11 +167,52 @@ MembraneModel make_membrane(const Scene& scene) {
   return model;
 }
 
+void MembraneModel::add_stiffness(std::vector<double>& at_vertex) const {
+  for (const MembraneElement& e : elements) {
+    double sum = 0;
+    for (const Eigen::Vector2d& g : e.gradient) sum += g.norm();
+    for (std::size_t a = 0; a < 3; ++a)
+      at_vertex[to_index(e.vertex[a])] += e.area * law.stiffest() * e.gradient[a].norm() * sum;
+  }
+}
+
 double MembraneModel::energy(const std::vector<Vec3>& x) const {
   double sum = 0;
   for (const MembraneElement& e : elements)
     sum += e.area * law.energy(e.deformation([&](std::size_t v) { return x[v]; }));
   return sum;
+}
+
+std::optional<Membrane> membrane_of_links(const Scene& scene,
+                                          const std::array<double, kFamilies.size()>& stiffness) {
+  const auto& grid = scene.mesh.grid;
+  if (!grid || grid->nu < 2 || grid->nv < 2) return {};
+  const Vec3 u = scene.mesh.rest[1] - scene.mesh.rest[0],
+             v = scene.mesh.rest[to_index(grid->nu)] - scene.mesh.rest[0];
+  const double a = u.norm(), b = v.norm(), square = a * a + b * b;
+  if (std::abs(u.dot(v)) > 1e-9 * a * b) return {};
+  std::array<std::size_t, kFamilies.size()> own{}, whole{};
+  std::array<double, kFamilies.size()> k{};
+  for (const Link& l : scene.links) ++own[static_cast<std::size_t>(l.family)];
+  for (const Link& l : grid_links(scene.mesh, {.structural = true, .shear = true, .bend = true}))
+    ++whole[static_cast<std::size_t>(l.family)];
+  for (std::size_t f = 0; f < k.size(); ++f) {
+    if (own[f] != 0 && own[f] != whole[f]) return {};
+    k[f] = own[f] == 0 ? 0 : stiffness[f];
+    if (std::isinf(k[f])) return {};
+  }
+  const auto [structural, shear, bend] = k;
+  const double along_u =
+      structural * a / b + 2 * shear * a * a * a / (b * square) + 4 * bend * a / b;
+  const double along_v =
+      structural * b / a + 2 * shear * b * b * b / (a * square) + 4 * bend * b / a;
+  const double both = 2 * shear * a * b / square;
+  if (both == 0) return {};
+  return Membrane{.warp = along_v - both * both / along_u,
+                  .weft = along_u - both * both / along_v,
+                  .poisson = both / along_u,
+                  .shear = both,
+                  .direction = v / b};
 }
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -96,6 +97,10 @@ struct MembraneModel {
   double energy(const std::vector<Vec3>& x) const;  ///< J
   std::size_t bytes() const { return elements.size() * sizeof elements[0]; }
 
+  /// Adds to each corner a bound on the sum of the norms of its row of the second derivative at
+  /// rest [N/m].
+  void add_stiffness(std::vector<double>& at_vertex) const;
+
   /// Calls add(vertex, force [N]) for the corners of an element at these positions.
   template <class At, class Add>
   void add_forces(const MembraneElement& e, const At& at, const Add& add) const {
@@ -117,6 +122,17 @@ struct MembraneModel {
 
 /// One element for each triangle of the mesh with a vertex that ever moves.
 MembraneModel make_membrane(const Scene&);
+
+/// The membrane that a rectangular grid of springs is for small strains, away from its edges.
+/// k: N/m by family; cells of a along u and b along v, d^2 = a^2 + b^2:
+///
+///     C_uu = k_s a/b + 2 k_d a^3/(b d^2) + 4 k_b a/b,    C_uv = G = 2 k_d a b/d^2
+///
+/// Its warp is v. A row of links along an edge is a whole one for half a row of cells, so a sheet
+/// of 8 cells is up to 12 % stiffer. Empty without a rectangular grid or with a rigid family,
+/// without shear links (the net has no G) or where links are missing.
+std::optional<Membrane> membrane_of_links(const Scene&,
+                                          const std::array<double, kFamilies.size()>& stiffness);
 
 /// Largest |poisson| that has an energy for these stiffnesses: sqrt(warp/weft), which is excluded.
 double most_poisson(const Membrane&);

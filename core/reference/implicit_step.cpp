@@ -32,7 +32,11 @@ constexpr double kTouching = 1e-13;  ///< m, gaps and slips that contact may lea
 }  // namespace
 
 ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, const Stiffness& k)
-    : thickness_(scene.thickness), inertia_(scene.mesh.mass), mass_(scene.mesh.mass), y_(from.x) {
+    : thickness_(scene.thickness),
+      membrane_(make_membrane(scene)),
+      inertia_(scene.mesh.mass),
+      mass_(scene.mesh.mass),
+      y_(from.x) {
   const double h = scene.dt, keep = std::exp(-scene.damping * h);
   for (double& m : inertia_) m /= h * h;
   for (const int pin : scene.pins) inertia_[to_index(pin)] = 0;
@@ -130,7 +134,8 @@ struct ImplicitStep::Newton final : Multiplied {
       for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t c = 0; c < (a == b ? r + 1 : 3); ++c)
           *panels.at(std::max(a, b), std::min(a, b), r, c) +=
-              m(static_cast<int>(r), static_cast<int>(c));
+              a < b ? m(static_cast<int>(c), static_cast<int>(r))
+                    : m(static_cast<int>(r), static_cast<int>(c));
     });
     return panels.factor();
   }
@@ -139,6 +144,12 @@ struct ImplicitStep::Newton final : Multiplied {
     for (const Member& l : step.links_)
       if (column[l.a] >= 0 && column[l.b] >= 0)
         pairs.push_back({static_cast<int>(column[l.a] / 3), static_cast<int>(column[l.b] / 3)});
+    for (const MembraneElement& e : step.membrane_.elements)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Index a = column[to_index(e.vertex[k])],
+                           b = column[to_index(e.vertex[(k + 1) % 3])];
+        if (a >= 0 && b >= 0) pairs.push_back({static_cast<int>(a / 3), static_cast<int>(b / 3)});
+      }
     rank.resize(static_cast<std::size_t>(size / 3));
     panels = PanelFactor(rank.size(), pairs, 3, widest());
     for (std::size_t k = 0; k < rank.size(); ++k) rank[to_index(panels.order()[k])] = k;
@@ -228,6 +239,9 @@ ImplicitStep::Minimum ImplicitStep::minimum(const Points& start) const {
   for (const double m : inertia_) heaviest = std::max(heaviest, m);
   for (const Member& l : links_)
     if (std::isfinite(l.stiffness)) stiffest = std::max(stiffest, l.stiffness);
+  std::vector<double> of_membrane(x.size(), 0.0);
+  membrane_.add_stiffness(of_membrane);
+  for (const double k : of_membrane) stiffest = std::max(stiffest, k);
   double hardness = kHardness * heaviest;
   const auto rounding = [&] { return kRounding * (hardness + 10 * stiffest); };  // N
   Newton problem(*this, hardness);

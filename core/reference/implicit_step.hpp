@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/model/declared_step.hpp"
+#include "core/model/membrane.hpp"
 #include "core/model/scene.hpp"
 #include "core/reference/rigid_relations.hpp"
 
@@ -12,7 +13,7 @@ namespace taut::reference {
 /// A step of implicit Euler from a state, written as a minimisation:
 ///
 ///     y = x_t + h exp(-damping h) v_t + h^2 (g + wind)
-///     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2
+///     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2 + membrane
 ///
 /// over the vertices that move, with C = |x_b - x_a| - rest. With rigid links: the positions with
 /// C = 0 that are nearest to y in the norm of G's first sum. Vertices stay at least the scene's
@@ -64,6 +65,7 @@ class ImplicitStep {
   std::vector<Obstacle> colliders_;
   double thickness_ = 0;  ///< m
   std::vector<Member> links_;
+  MembraneModel membrane_;
   std::vector<double> inertia_;  ///< m/h^2 [kg/s^2]; 0: a pin
   std::vector<double> mass_;
   std::vector<Vec3> y_;

@@ -10,6 +10,9 @@ ImplicitStep::Multiplied::Multiplied(const ImplicitStep& s, double rigid)
   touches.resize(s.inertia_.size() * s.colliders_.size());
   for (const double m : s.inertia_) hardness = std::max(hardness, kHardness * m);
   for (const double k : stiffness) hardness = std::max(hardness, 10 * k);
+  std::vector<double> of_membrane(s.inertia_.size(), 0.0);
+  s.membrane_.add_stiffness(of_membrane);
+  for (const double k : of_membrane) hardness = std::max(hardness, 10 * k);
   for (const double m : s.inertia_) column.push_back(m > 0 ? std::exchange(size, size + 3) : -1);
 }
 
@@ -20,7 +23,7 @@ void ImplicitStep::Multiplied::harden(double rigid) {
 }
 
 double ImplicitStep::Multiplied::energy(const Points& x) const {
-  double sum = 0;
+  double sum = step.membrane_.energy(x);
   for (std::size_t i = 0; i < x.size(); ++i)
     sum += step.inertia_[i] / 2 * (x[i] - step.y_[i]).squaredNorm();
   for (std::size_t j = 0; j < stiffness.size(); ++j) {
@@ -41,6 +44,12 @@ Eigen::VectorXd ImplicitStep::Multiplied::gradient(const Points& x) const {
     if (column[a] >= 0) g.segment<3>(column[a]) -= pull;
     if (column[b] >= 0) g.segment<3>(column[b]) += pull;
   }
+  for (const MembraneElement& e : step.membrane_.elements)
+    step.membrane_.add_forces(
+        e, [&](std::size_t v) { return x[v]; },
+        [&](std::size_t v, const Vec3& force) {
+          if (column[v] >= 0) g.segment<3>(column[v]) -= force;
+        });
   each_held(x, [&](std::size_t i, std::size_t, const Held& now) {
     g.segment<3>(column[i]) -= now.force;
   });

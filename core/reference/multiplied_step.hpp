@@ -101,8 +101,8 @@ struct ImplicitStep::Multiplied {
         visit(i, k, held(i, k, x[i]));
   }
   /// Calls add(row, column, block) for the Hessian's blocks of three rows and columns, in its lower
-  /// triangle; each block is symmetric. clamped: links that push add nothing across their
-  /// direction.
+  /// triangle; on the diagonal each is symmetric. clamped: links that push add nothing across their
+  /// direction, nor does the membrane.
   template <class Add>
   void each_block(const Points& x, bool clamped, const Add& add) const {
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -121,6 +121,17 @@ struct ImplicitStep::Multiplied {
       if (column[a] >= 0 && column[b] >= 0)
         add(std::max(column[a], column[b]), std::min(column[a], column[b]), -part);
     }
+    for (const MembraneElement& e : step.membrane_.elements)
+      step.membrane_.add_second(
+          e, [&](std::size_t v) { return x[v]; }, clamped,
+          [&](std::size_t a, std::size_t b, const Eigen::Matrix3d& block) {
+            const Eigen::Index row = column[a], col = column[b];
+            if (row < 0 || col < 0) return;
+            if (row >= col)
+              add(row, col, block);
+            else
+              add(col, row, Eigen::Matrix3d(block.transpose()));
+          });
     each_held(x, [&](std::size_t i, std::size_t, const Held& now) {
       if (now.push > 0) add(column[i], column[i], now.hessian);
     });

@@ -8,6 +8,7 @@
 
 #include "core/model/bending.hpp"
 #include "core/model/index.hpp"
+#include "core/model/membrane.hpp"
 #include "core/model/text.hpp"
 #include "core/model/wind.hpp"
 
@@ -28,7 +29,7 @@ double stiffness_of(const Scene& scene, const Link& l) {
 bool is_rigid(const Scene& scene, const Link& l) { return std::isinf(stiffness_of(scene, l)); }
 
 bool has_springs(const Scene& scene) {
-  return scene.bending ||
+  return scene.bending || scene.membrane ||
          std::ranges::any_of(scene.links, [&](const Link& l) { return !is_rigid(scene, l); });
 }
 
@@ -74,12 +75,18 @@ struct Shake::Impl {
   std::vector<double> w;
   std::vector<Link> links, springs;  ///< rigid and elastic, with an end that moves
   std::vector<BendingElement> bending;
+  MembraneModel membrane;
   std::vector<Vec3> x, previous, before_previous;
   Eigen::SimplicialLDLT<Matrix> ldlt;
   bool analysed = false;
 
   Impl(const Scene& s, double h)
-      : scene(s), dt(h), w(inverse_masses(s)), bending(make_bending(s)), x(s.start.x) {
+      : scene(s),
+        dt(h),
+        w(inverse_masses(s)),
+        bending(make_bending(s)),
+        membrane(make_membrane(s)),
+        x(s.start.x) {
     for (const Link& l : s.links)
       if (w[to_index(l.a)] + w[to_index(l.b)] > 0) (is_rigid(s, l) ? links : springs).push_back(l);
   }
@@ -165,6 +172,10 @@ struct Shake::Impl {
       const Vec3 push = e.stiffness * e.value([&](std::size_t i) { return x[i]; });
       for (std::size_t i = 0; i < e.size; ++i) f[to_index(e.vertex[i])] -= e.weight[i] * push;
     }
+    for (const MembraneElement& e : membrane.elements)
+      membrane.add_forces(
+          e, [&](std::size_t i) { return x[i]; },
+          [&](std::size_t i, const Vec3& force) { f[i] += force; });
     return f;
   }
 
@@ -236,6 +247,7 @@ double fastest_vibration(const Scene& scene) {
     for (std::size_t i = 0; i < e.size; ++i)
       row[to_index(e.vertex[i])] += e.stiffness * std::abs(e.weight[i]) * sum;
   }
+  make_membrane(scene).add_stiffness(row);
   double most = 0;
   const std::vector<double> w = inverse_masses(scene);
   for (std::size_t i = 0; i < row.size(); ++i) most = std::max(most, w[i] * row[i]);
@@ -340,7 +352,8 @@ Trajectory converged_motion(const Scene& scene, const std::vector<double>& times
   m.unique = true;
   m.derivation = "SHAKE at dt, dt/2 and dt/4, Richardson-extrapolated";
   if (rate > 0)
-    m.derivation += "; elastic links and bending as forces, dt = 1/" + shortest(1 / dt) + " s";
+    m.derivation +=
+        "; elastic links, bending and membrane as forces, dt = 1/" + shortest(1 / dt) + " s";
   for (std::size_t k = 0; k < times.size(); ++k) {
     const State coarse = extrapolate(runs[0][k], runs[1][k]);
     m.states.push_back(extrapolate(runs[1][k], runs[2][k]));

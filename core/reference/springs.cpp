@@ -6,6 +6,7 @@
 
 #include "core/model/bending.hpp"
 #include "core/model/index.hpp"
+#include "core/model/membrane.hpp"
 #include "core/reference/shake.hpp"
 
 namespace taut::reference {
@@ -36,6 +37,7 @@ struct Springs::Impl {
   std::vector<double> w;
   std::vector<Spring> springs;
   std::vector<BendingElement> bending;
+  MembraneModel membrane;
   std::vector<Vec3> x, v;  ///< v: half a step earlier
   std::vector<Vec3> force;
   /// Sum over all steps of the farthest that a vertex and a body came towards each other [m], and
@@ -48,6 +50,7 @@ struct Springs::Impl {
         dt(h),
         w(inverse_masses(of)),
         bending(make_bending(of)),
+        membrane(make_membrane(of)),
         x(of.start.x),
         v(of.start.v),
         force(x.size(), Vec3::Zero()),
@@ -78,6 +81,10 @@ struct Springs::Impl {
       const Vec3 push = e.stiffness * e.value([&](std::size_t i) { return x[i]; });
       for (std::size_t i = 0; i < e.size; ++i) force[to_index(e.vertex[i])] -= e.weight[i] * push;
     }
+    for (const MembraneElement& e : membrane.elements)
+      membrane.add_forces(
+          e, [&](std::size_t i) { return x[i]; },
+          [&](std::size_t i, const Vec3& pull) { force[i] += pull; });
   }
 
   void step() {

@@ -348,7 +348,9 @@ std::vector<std::string> refuse_rest(const Scene& scene) {
   refuse(std::ranges::any_of(scene.links, is_seam), "a seam: its length is 0");
   refuse(!scene.releases.empty(), "its pins let go");
   refuse(scene.pins.empty(), "without pins it falls for ever");
-  refuse(!scene.pins.empty() && !hangs_whole(scene), "a piece without a pin falls for ever");
+  refuse(scene.membrane.has_value(), "a membrane: a net of links rests here");
+  refuse(!scene.membrane && !scene.pins.empty() && !hangs_whole(scene),
+         "a piece without a pin falls for ever");
   return reasons;
 }
 

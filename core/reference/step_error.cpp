@@ -8,6 +8,7 @@
 #include "core/model/bending.hpp"
 #include "core/model/collider.hpp"
 #include "core/model/index.hpp"
+#include "core/model/membrane.hpp"
 #include "core/model/wind.hpp"
 #include "core/solver/panel_factor.hpp"
 
@@ -48,6 +49,7 @@ class StepError::Work {
       : scene_(scene),
         extent_(extent(scene)),
         bending_(make_bending(scene)),
+        membrane_(make_membrane(scene)),
         column_(scene.mesh.mass.size(), kPin) {
     std::vector<bool> pinned(column_.size());
     for (const int pin : scene.pins) pinned[to_index(pin)] = true;
@@ -141,6 +143,9 @@ class StepError::Work {
     for (const BendingElement& e : bending_)
       for (std::size_t i = 0; i < e.size; ++i)
         for (std::size_t j = 0; j < i; ++j) join(to_index(e.vertex[i]), to_index(e.vertex[j]));
+    for (const MembraneElement& e : membrane_.elements)
+      for (std::size_t i = 0; i < 3; ++i)
+        join(to_index(e.vertex[i]), to_index(e.vertex[(i + 1) % 3]));
     factor_ = PanelFactor(moving_.size(), pairs, 3, widest());
     rank_.resize(moving_.size());
     for (std::size_t k = 0; k < rank_.size(); ++k) rank_[to_index(factor_.order()[k])] = k;
@@ -190,6 +195,11 @@ class StepError::Work {
       for (const std::size_t v : {l.a, l.b})
         if (column_[v] >= 0) hardness_[to_index(column_[v])] += stiffness(l);
     }
+    if (!membrane_.empty()) {
+      std::vector<double> all(column_.size(), 0.0);
+      membrane_.add_stiffness(all);
+      for (std::size_t k = 0; k < moving_.size(); ++k) hardness_[k] += all[moving_[k]];
+    }
     for (double& k : hardness_) k *= kContactHardness;
     shapes_.clear();
     carried_.clear();
@@ -219,9 +229,15 @@ class StepError::Work {
     }
     lay_planes(x);
     way_.assign(moving_.size(), Vec3::Zero());
+    stretch_at(x, false);
     for (int round = 0; round < rounds; ++round) {
       fill();
-      if (!factor_.factor()) return false;
+      if (!factor_.factor()) {
+        if (membrane_.empty()) return false;
+        stretch_at(x, true);
+        fill();
+        if (!factor_.factor()) return false;
+      }
       for (int k = 0; k < (any_rigid() ? kMultiplierRounds : 1); ++k) {
         solve(x);
         for (Member& l : links_) {
@@ -234,6 +250,20 @@ class StepError::Work {
       settle_contacts();
     }
     return true;
+  }
+
+  /// Sets the membrane's blocks to those at x.
+  void stretch_at(const Points& x, bool positive) {
+    stretched_.clear();
+    for (const MembraneElement& e : membrane_.elements)
+      membrane_.add_second(
+          e, [&](std::size_t v) { return x[v]; }, positive,
+          [&](std::size_t a, std::size_t b, const Matrix3d& part) {
+            if (column_[a] < 0 || column_[b] < 0) return;
+            const std::size_t i = to_index(column_[a]), j = to_index(column_[b]);
+            stretched_.emplace_back(block(i, j),
+                                    rank_[i] >= rank_[j] ? part : Matrix3d(part.transpose()));
+          });
   }
 
   bool any_rigid() const {
@@ -306,6 +336,9 @@ class StepError::Work {
       add_diagonal(k, mass(moving_[k]) / (h_ * h_) * Matrix3d::Identity());
     for (const auto& [at, k] : bent_)
       for (int c = 0; c < 3; ++c) at(c, c) += k;
+    for (const auto& [at, part] : stretched_)
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) at(r, c) += part(r, c);
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const Member& l = links_[j];
       const Matrix3d along = l.u * l.u.transpose();
@@ -345,6 +378,9 @@ class StepError::Work {
       const Vec3 pull = e.stiffness * e.value([&](std::size_t v) { return x[v]; });
       for (std::size_t i = 0; i < e.size; ++i) push(to_index(e.vertex[i]), -e.weight[i] * pull);
     }
+    for (const MembraneElement& e : membrane_.elements)
+      membrane_.add_forces(
+          e, [&](std::size_t v) { return x[v]; }, push);
     for (std::size_t j = 0; j < touches_.size(); ++j) {
       const std::size_t k = j % moving_.size();
       const Touch& touch = touches_[j];
@@ -366,6 +402,7 @@ class StepError::Work {
   const Scene& scene_;
   double extent_;  ///< m
   std::vector<BendingElement> bending_;
+  MembraneModel membrane_;
   std::vector<int> column_;          ///< [n] index among the vertices that move
   std::vector<std::size_t> moving_;  ///< vertices that move
   std::vector<Member> links_;
@@ -373,6 +410,7 @@ class StepError::Work {
   std::vector<std::size_t> rank_;               ///< [moving] rank in the order of elimination
   std::vector<Block> diagonal_, beside_;        ///< [moving], [links]
   std::vector<std::pair<Block, double>> bent_;  ///< bending [N/m] in each block, times the identity
+  std::vector<std::pair<Block, Matrix3d>> stretched_;  ///< membrane [N/m] in each block
   std::vector<double> in_order_;
   double h_ = 0, rigid_ = 0;      ///< s, N/m
   std::vector<double> hardness_;  ///< [moving] N/m, stiffness of contact

@@ -12,7 +12,7 @@ namespace taut::reference {
 /// step: by how far Newton's method moves from the answer towards the minimum of
 ///
 ///     y = x_t + h exp(-damping h) v_t + h^2 (g + wind),
-///     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2 + bending
+///     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2 + bending + membrane
 ///
 /// It takes two steps, since the second one shows whether to believe the first, and up to four
 /// where the second is not small; steps that shrink by a factor are summed to their limit. A link's

@@ -141,7 +141,8 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
-  loop::refuse_membrane(scene, "its local steps are of links; take implicit, vbd or xpbd", reasons);
+  loop::refuse_membrane(scene, "its multipliers are of links; take pd, implicit, vbd or xpbd",
+                        reasons);
   return reasons;
 }
 

@@ -33,7 +33,8 @@ std::vector<int> unknown_of_vertices(std::span<const double> w) {
 }
 
 PanelFactor make_factor(std::span<const double> w, const std::vector<Spring>& springs,
-                        const std::vector<BendingElement>& bending, Simd simd) {
+                        const std::vector<BendingElement>& bending, const MembraneModel& membrane,
+                        Simd simd) {
   const std::vector<int> unknown = unknown_of_vertices(w);
   std::vector<PanelFactor::Pair> pairs;
   const auto add = [&](std::size_t a, std::size_t b) {
@@ -43,6 +44,8 @@ PanelFactor make_factor(std::span<const double> w, const std::vector<Spring>& sp
   for (const BendingElement& e : bending)
     for (std::size_t i = 0; i < e.size; ++i)
       for (std::size_t j = 0; j < i; ++j) add(to_index(e.vertex[i]), to_index(e.vertex[j]));
+  for (const MembraneElement& e : membrane.elements)
+    for (std::size_t i = 0; i < 3; ++i) add(to_index(e.vertex[i]), to_index(e.vertex[(i + 1) % 3]));
   const auto moving =
       static_cast<std::size_t>(std::ranges::count_if(w, [](double m) { return m > 0; }));
   return PanelFactor(moving, pairs, 1, simd);
@@ -238,8 +241,9 @@ template <class Real>
 GlobalSystem<Real>::GlobalSystem(const loop::Setup& s, std::vector<Spring> springs)
     : springs_(std::move(springs)),
       bending_(make_bending(s.scene)),
+      membrane_(make_membrane(s.scene)),
       ends_(ends_of(springs_, s.w.size())),
-      factor_(make_factor(s.w, springs_, bending_, s.simd)),
+      factor_(make_factor(s.w, springs_, bending_, membrane_, s.simd)),
       groups_(ends_, vertices_in_order(factor_, s.w), s.w),
       row_(s.w.size(), -1),
       pool_(s.pool) {
@@ -297,6 +301,11 @@ void GlobalSystem<Real>::factor(double h) {
       for (std::size_t j = 0; j < e.size; ++j)
         add(row_[to_index(e.vertex[i])], row_[to_index(e.vertex[j])],
             e.stiffness * e.weight[i] * e.weight[j]);
+  for (const MembraneElement& e : membrane_.elements)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        add(row_[to_index(e.vertex[i])], row_[to_index(e.vertex[j])],
+            e.area * membrane_.law.stiffest() * e.gradient[i].dot(e.gradient[j]));
   positive_ = factor_.factor();
   if (contact_) contact_->forget(mass_.size());
 }
@@ -311,14 +320,18 @@ void GlobalSystem<Real>::begin(const Particles<Real>& p, double t, double h) {
   contact_->coupled.begin();
 }
 
-/// Adds bending to rows_, which holds the forces of inertia and links.
+/// Adds bending and membrane to rows_, which holds the forces of inertia and links.
 template <class Real>
-void GlobalSystem<Real>::add_bending(const Particles<Real>& p) {
+void GlobalSystem<Real>::add_surface(const Particles<Real>& p) {
   for (const BendingElement& e : bending_) {
     const Vec3 pull =
         -e.stiffness * e.value([&](std::size_t v) { return p.x[v]; }).template cast<double>();
     for (std::size_t i = 0; i < e.size; ++i) rows_.add(to_index(e.vertex[i]), e.weight[i] * pull);
   }
+  for (const MembraneElement& e : membrane_.elements)
+    membrane_.add_forces(
+        e, [&](std::size_t v) { return p.x[v]; },
+        [&](std::size_t v, const Vec3& force) { rows_.add(v, force); });
 }
 
 template <class Real>
@@ -331,12 +344,12 @@ void GlobalSystem<Real>::solve_forces(std::span<double> forces) {
   factor_.solve_four(forces.data());
 }
 
-/// Moves p.x to the solution. rows_ holds the forces of inertia and links; adds bending and
-/// contact.
+/// Moves p.x to the solution. rows_ holds the forces of inertia and links; adds bending,
+/// membrane and contact.
 template <class Real>
 void GlobalSystem<Real>::solve_rows(Particles<Real>& p) {
   if (mass_.empty()) return;
-  add_bending(p);
+  add_surface(p);
   if (contact_) {
     contact_->find(p);
     contact_->held.setZero(static_cast<Eigen::Index>(mass_.size()), 3);
@@ -403,14 +416,20 @@ void GlobalSystem<Real>::resolve_contacts(Particles<Real>& p) {
 
 template <class Real>
 std::vector<PassCost> GlobalSystem<Real>::cost(std::string_view local, std::size_t bytes) const {
-  return {{.pass = std::string(local),
-           .items = springs_.size(),
-           .bytes = springs_.size() * sizeof(Spring) + bytes},
-          {.pass = "global system, entries of its factor",
-           .items = factor_.entries(),
-           .bytes = factor_.bytes() + groups_.bytes() + y_.bytes() + rows_.bytes() +
-                    inertia_.size() * sizeof(Real) + mass_.size() * sizeof(double) +
-                    row_.size() * sizeof(int) + bending_.size() * sizeof(BendingElement)}};
+  std::vector<PassCost> costs{
+      {.pass = std::string(local),
+       .items = springs_.size(),
+       .bytes = springs_.size() * sizeof(Spring) + bytes},
+      {.pass = "global system, entries of its factor",
+       .items = factor_.entries(),
+       .bytes = factor_.bytes() + groups_.bytes() + y_.bytes() + rows_.bytes() +
+                inertia_.size() * sizeof(Real) + mass_.size() * sizeof(double) +
+                row_.size() * sizeof(int) + bending_.size() * sizeof(BendingElement)}};
+  if (!membrane_.empty())
+    costs.push_back({.pass = "rotations of the membrane",
+                     .items = membrane_.elements.size(),
+                     .bytes = membrane_.bytes()});
+  return costs;
 }
 
 template class GlobalSystem<float>;

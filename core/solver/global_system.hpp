@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/model/bending.hpp"
+#include "core/model/membrane.hpp"
 #include "core/solver/contact/contacts.hpp"
 #include "core/solver/layout/particles.hpp"
 #include "core/solver/layout/vertex_groups.hpp"
@@ -17,20 +18,24 @@ namespace taut {
 /// The linear system of solvers that place all vertices at once, given a target vector q [m] and a
 /// weight k [N/m] for each link. x minimises
 ///
-///     sum m/(2 h^2) |x - y|^2 + sum k/2 |(x_b - x_a) - q|^2 + bending,     pins where they are.
+///     sum m/(2 h^2) |x - y|^2 + sum k/2 |(x_b - x_a) - q|^2 + bending + sum A Y/2 |F - R|^2,
+///
+/// with pins where they are and R the rotation nearest to F at the current x, in each triangle of a
+/// membrane with law = "arap".
 ///
 /// The unknown is the displacement from the current x, and the right-hand side is minus the
 /// gradient of this energy there. Rounding in stiff links is then a force between their ends, which
 /// moves no centre of mass, and it shrinks as x approaches the solution.
 ///
 /// The matrix, M/h^2 + sum k (e_b - e_a)(e_b - e_a)^T + sum k c c^T of the bending elements
-/// (core/model/bending.hpp) over the vertices that move, is the same for the three coordinates and
-/// from step to step. Its sparse factor is made with the system, and again only if h changes. Other
-/// pins, masses, links or weights need another system. The factor and the solution are in double
-/// whatever Real is: stiff links lose more digits than a float has.
+/// (core/model/bending.hpp) + sum A Y g_a . g_b of the membrane (core/model/membrane.hpp) over the
+/// vertices that move, is the same for the three coordinates and from step to step. Its sparse
+/// factor is made with the system, and again only if h changes. Other pins, masses, links or
+/// weights need another system. The factor and the solution are in double whatever Real is: stiff
+/// links lose more digits than a float has.
 ///
 /// Particles are stored in the order of elimination. Links are computed in lanes and divided among
-/// threads; bending, contact and the solution run on one thread.
+/// threads; bending, membrane, contact and the solution run on one thread.
 ///
 /// In contact, x is the minimum outside the colliders, with friction. The displacements per force
 /// at a vertex are a column of the inverse, which is solved for when the vertex first touches
@@ -44,6 +49,7 @@ class GlobalSystem {
 
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<BendingElement>& bending() const { return bending_; }
+  const MembraneModel& membrane() const { return membrane_; }
   const VertexGroups& groups() const { return groups_; }
   const Layout& layout() const { return groups_.layout(); }
   /// Like VertexGroups::make_slots, with rest length and stiffness of the springs filled in.
@@ -77,7 +83,7 @@ class GlobalSystem {
   template <class Forces>
   void find_forces(const Particles<Real>& p, const Forces& forces, std::span<double> out) {
     sweep(p, forces);
-    add_bending(p);
+    add_surface(p);
     std::copy_n(rows_.data(), out.size(), out.begin());
   }
   /// Replaces forces [N] by the displacements [m] that they cause; NaN if there is no factor.
@@ -98,7 +104,7 @@ class GlobalSystem {
         groups_.size(), [&](std::size_t begin, std::size_t end) { forces(sweep, begin, end); },
         groups_.size() * kLanes >= ThreadPool::kWorthSharing / 4);
   }
-  void add_bending(const Particles<Real>& p);
+  void add_surface(const Particles<Real>& p);
   void factor(double h);
   void solve_rows(Particles<Real>& p);
   void move(Particles<Real>& p);
@@ -106,6 +112,7 @@ class GlobalSystem {
   struct Contact;
   std::vector<Spring> springs_;
   std::vector<BendingElement> bending_;
+  MembraneModel membrane_;
   Adjacency ends_;
   PanelFactor factor_;
   VertexGroups groups_;

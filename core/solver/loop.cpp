@@ -394,9 +394,7 @@ void refuse_membrane(const Scene& scene, std::string_view why, std::vector<std::
 DeclaredStep implicit_euler(const Scene& scene, const Params& params) {
   DeclaredStep step{.stiffness = stiffness_of(scene, params),
                     .substeps = params.integer("substeps")};
-  if (scene.membrane)
-    step.none = "the exact step leaves out the membrane";
-  else if (scene.self_collision && !params.is("self", "off"))
+  if (scene.self_collision && !params.is("self", "off"))
     step.none = "the exact step leaves out self-collision";
   else if (!scene.colliders.empty() && !params.is("faces", "off"))
     step.none = "the exact step leaves out contact of faces";

@@ -5,8 +5,10 @@
 //
 //     (M/h^2 + sum K (e_b - e_a)(e_b - e_a)^T) x = M/h^2 y + sum K (e_b - e_a) q^T
 //
-// The unknown is the displacement from the last x. The right-hand side is then minus the gradient
-// of implicit Euler's energy there, in which K (d - q) is the force of a spring: no q is stored.
+// A triangle of a membrane with law = "arap" gets the rotation that is nearest to its F, with the
+// weight A Y. The unknown is the displacement from the last x. The right-hand side is then minus
+// the gradient of implicit Euler's energy there, in which K (d - q) is the force of a spring: no q
+// is stored.
 //
 // The fixed point is implicit Euler's step (implicit.cpp). Motion across stretched links of strain
 // e contracts by s lambda (1 - e)/(1 + s lambda) per iteration, with s = h^2 K/m. This tends to 1:
@@ -217,6 +219,10 @@ class ProjectivePass final : public Pass<Real> {
     for (const BendingElement& e : system_.bending())
       for (std::size_t i = 0; i < e.size; ++i)
         add(to_index(e.vertex[i]), e.stiffness * e.weight[i] * e.weight[i]);
+    for (const MembraneElement& e : system_.membrane().elements)
+      for (std::size_t a = 0; a < 3; ++a)
+        add(to_index(e.vertex[a]),
+            e.area * system_.membrane().law.stiffest() * e.gradient[a].squaredNorm());
   }
 
   const Layout& layout() const { return system_.layout(); }
@@ -325,7 +331,7 @@ class ProjectivePass final : public Pass<Real> {
 
   /// G [J] at x.
   double energy(const std::vector<Vec3>& x, double h, const Particles<Real>& p) const {
-    double sum = bending_energy(system_.bending(), x);
+    double sum = bending_energy(system_.bending(), x) + system_.membrane().energy(x);
     for (std::size_t i = 0; i < x.size(); ++i)
       if (p.w[i] > 0)
         sum += (x[i] - system_.target()[i].template cast<double>()).squaredNorm() /
@@ -355,7 +361,7 @@ class ProjectivePass final : public Pass<Real> {
   Anderson anderson_;
   Descent descent_;
   Vector diagonal_;                ///< [rows][4] N/m, diagonal of the matrix, for method=ncg
-  std::vector<double> stiffness_;  ///< [rows][4] N/m, links' and bending's part of that diagonal
+  std::vector<double> stiffness_;  ///< [rows][4] N/m, that diagonal's part without masses
   /// m; only with Anderson acceleration or a method other than plain.
   std::vector<Vec3> last_image_;
   double energy_ = 0;  ///< J, at the last iterate
@@ -369,6 +375,7 @@ loop::Links<Real> links(const loop::Setup& s) {
       .layout = std::move(layout),
       .pass = with_chebyshev<Real>(std::move(pass), s.params.real("chebyshev"), s.w.size(), s.pool),
       .bends = true,
+      .stretches = true,
       .contacts = true};
 }
 
@@ -378,7 +385,8 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = unsupported_of_springs(scene, params);
-  loop::refuse_membrane(scene, "its local steps are of links; take implicit, vbd or xpbd", reasons);
+  if (scene.membrane && scene.membrane->law != Membrane::Law::arap)
+    loop::refuse_membrane(scene, "its local step is the nearest rotation, law = \"arap\"", reasons);
   if (params.real("chebyshev") > 0 && params.integer("anderson") > 0)
     reasons.emplace_back("chebyshev and anderson are two ways to accelerate: take one");
   if (!params.is("method", "plain")) {

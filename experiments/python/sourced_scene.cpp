@@ -68,6 +68,7 @@ constexpr Effect kEffects[] = {
     {"pins that let go", [](const Scene& s) { return !s.releases.empty(); }},
     {"wind", [](const Scene& s) { return s.wind.has_value(); }},
     {"bending", [](const Scene& s) { return s.bending.has_value(); }},
+    {"membrane", [](const Scene& s) { return s.membrane.has_value(); }},
     {"self-collision", [](const Scene& s) { return s.self_collision.has_value(); }},
     {"damping", [](const Scene& s) { return s.damping > 0; }},
     {"elastic links", [](const Scene& s) { return s.stiffness != kRigid; }},

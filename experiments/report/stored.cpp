@@ -230,8 +230,8 @@ std::optional<double> theory_slope(const Scene& scene) {
   const bool bends = std::ranges::any_of(
       scene.links, [](const Link& link) { return link.family == Family::bend; });
   if (scene.pins.empty() || !scene.pin_motions.empty() || !scene.releases.empty() ||
-      !scene.colliders.empty() || scene.wind || scene.self_collision || scene.bending || bends ||
-      !elastic_links(scene).empty())
+      !scene.colliders.empty() || scene.wind || scene.self_collision || scene.bending ||
+      scene.membrane || bends || !elastic_links(scene).empty())
     return std::nullopt;
   return -1;
 }

@@ -127,6 +127,8 @@ class Maker:
             tables['wind'] = {'velocity': self.vector(self.log(0.1, 1e4)), 'strength': self.log(1e-3, 100), 'law': r.choice(['relative', 'literal'])}
         if self.maybe(0.2):
             tables['bending'] = {'stiffness': r.choice([self.log(1e-9, 1), {'warp': self.log(1e-9, 1), 'weft': self.log(1e-9, 1)}])}
+        if self.maybe(0.2) and 'links' not in tables:
+            tables['membrane'] = {'stiffness': self.log(1e-3, 1e5), **r.choice([{'law': 'arap'}, {'poisson': self.log(1e-3, 1)}])}
         if self.maybe(0.2):
             tables['self_collision'] = {'radius': self.log(1e-4, 0.1), 'overlap': True}
         lines = [f'summary = {toml(self.text())}']

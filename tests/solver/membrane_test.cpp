@@ -5,7 +5,12 @@
 
 #include <cmath>
 
+#include "core/reference/implicit_step.hpp"
 #include "core/reference/linear_stability.hpp"
+#include "core/reference/shake.hpp"
+#include "core/reference/springs.hpp"
+#include "core/reference/static_equilibrium.hpp"
+#include "core/reference/step_error.hpp"
 #include "tests/solver/elastic_step.hpp"
 #include "tests/support/cloths.hpp"
 
@@ -70,6 +75,12 @@ TEST(MembraneSolvers, EverySolverOfEnergiesTakesTheSameStep) {
       for (const char* solver : {"implicit:iterations=200,linear=cg", "vbd:iterations=1000",
                                  "vbd:iterations=1000,order=mesh", "implicit:start=inertia"})
         EXPECT_LT(largest_distance(exact.x, after_one_step(s, solver).x), 1e-9) << solver;
+      if (law == Membrane::Law::arap) {
+        for (const char* solver :
+             {"pd:iterations=3000", "pd:iterations=300,anderson=5",
+              "pd:iterations=300,method=lbfgs", "pd:iterations=1000,method=ncg"})
+          EXPECT_LT(largest_distance(exact.x, after_one_step(s, solver).x), 1e-8) << solver;
+      }
       EXPECT_LT(
           largest_distance(exact.x, after_one_step(s, "vbd:iterations=1000,precision=float").x),
           1e-5);
@@ -175,6 +186,49 @@ TEST(MembraneSolvers, TheLargestStableStepIsThatOfTheFastestMode) {
   };
   EXPECT_LT(speed_after(0.98 * most), 1e-4);
   EXPECT_FALSE(speed_after(1.02 * most) < 1);
+}
+
+TEST(MembraneSolvers, TheExactStepIsThatOfImplicitAndStepErrorMeasuresFromIt) {
+  for (const Membrane::Law law : kLaws) {
+    const Scene s = moving(law);
+    const State exact = after_one_step(s, "implicit:iterations=200");
+    const auto minimum = reference::ImplicitStep(s, s.start, 0, s.stiffness).minimum(s.start.x);
+    EXPECT_EQ(minimum.problem, "");
+    EXPECT_LT(largest_distance(minimum.x, exact.x), 1e-9);
+    reference::StepError error(s, s.stiffness);
+    EXPECT_LT(error.of(s.start, 0, s.dt, exact.x).distance, 1e-9);
+    Scene off = s;
+    off.start.x = exact.x;
+    for (const double amount : {1e-5, 1e-3}) {
+      const std::vector<Vec3> x = crumpled(off, amount).start.x;
+      double sum = 0;
+      for (std::size_t v = 0; v < x.size(); ++v) sum += (x[v] - exact.x[v]).squaredNorm();
+      const double rms = std::sqrt(sum / static_cast<double>(x.size() - s.pins.size()));
+      const auto estimate = error.of(s.start, 0, s.dt, x);
+      EXPECT_TRUE(estimate.believed);
+      EXPECT_NEAR(estimate.distance / rms, 1, 0.05) << amount;
+    }
+  }
+}
+
+TEST(MembraneSolvers, ReferencesOfMotionHaveIt) {
+  for (const Membrane::Law law : kLaws) {
+    Scene s = moving(law);
+    s.start.x = s.mesh.rest;
+    s.dt = 1.0 / 64;
+    const State fine = simulate(s, "mass-spring:substeps=1024", 8);
+    reference::Shake shake(s, 1.0 / 16384);
+    reference::Springs springs(s, 1e6, 1.0 / 16384);
+    ASSERT_LT(reference::fastest_vibration(s) / 16384, 1);
+    while (shake.time() < 8.0 / 64 - 1e-9) ASSERT_TRUE(shake.step());
+    while (springs.time() < 8.0 / 64 - 1e-9) springs.step();
+    EXPECT_LT(largest_distance(shake.state().x, fine.x), 2e-4);
+    EXPECT_LT(largest_distance(springs.state().x, fine.x), 2e-4);
+    EXPECT_GT(largest_distance(s.start.x, fine.x), 0.02);
+    EXPECT_TRUE(reference::refuse_dynamic(s).empty());
+    ASSERT_EQ(reference::refuse_static(s).size(), 1u);
+    EXPECT_NE(reference::refuse_static(s)[0].find("membrane"), std::string::npos);
+  }
 }
 
 TEST(MembraneSolvers, OthersRefuseItAndSayWhy) {

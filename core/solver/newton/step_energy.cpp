@@ -56,11 +56,7 @@ StepEnergy::StepEnergy(const loop::Setup& s, bool factored)
     for (std::size_t i = 0; i < e.size; ++i)
       for (std::size_t j = 0; j < e.size; ++j)
         stiffness[to_index(e.vertex[i])] += e.stiffness * std::abs(e.weight[i] * e.weight[j]);
-  for (const MembraneElement& e : membrane.elements)
-    for (std::size_t a = 0; a < 3; ++a)
-      for (const Eigen::Vector2d& g : e.gradient)
-        stiffness[to_index(e.vertex[a])] +=
-            e.area * membrane.law.stiffest() * e.gradient[a].norm() * g.norm();
+  membrane.add_stiffness(stiffness);
 }
 
 double StepEnergy::energy(const std::vector<Vec3>& x, double h) const {
