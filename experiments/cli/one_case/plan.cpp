@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/model/membrane.hpp"
+#include "core/model/text.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/system/clock.hpp"
 
@@ -31,6 +33,17 @@ SetUp set_up(const Case& one) {
   return made;
 }
 
+std::string rounded(double value) { return general(value, 6); }
+
+/// The membrane that the case's links are, in words; "": none is known.
+std::string membrane_of(const Case& one) {
+  const auto m = membrane_of_links(*one.scene, stiffness_of(*one.scene, one.choice.params));
+  if (!m) return "";
+  return rounded(m->warp) + " N/m along v, " + rounded(m->weft) +
+         " N/m along u, Poisson's number " + rounded(m->poisson) + ", shear " + rounded(m->shear) +
+         " N/m";
+}
+
 Answer answer_of(const Case& one, const SetUp& made) {
   Answer answer{"plan", one.id};
   Table table{"passes",
@@ -48,6 +61,8 @@ Answer answer_of(const Case& one, const SetUp& made) {
   answer.add({"projections", "projections per step"}, projections);
   answer.add({"set_up", "set-up, CPU time", kMilliseconds},
              Cell(made.seconds).with("again when pins, masses or links change"));
+  if (const std::string membrane = membrane_of(one); !membrane.empty())
+    answer.add({"membrane", "its links as a membrane"}, Cell(membrane));
   answer.add(std::move(table));
   return answer;
 }
@@ -93,7 +108,7 @@ TAUT_VERB(plan) = {
     .summary =
         "Shows the passes of a step, what they visit and hold in memory, and what set-up costs",
     .example = "taut plan ball jakobsen:iterations=1,substeps=15",
-    .answer = {{"facts", "key bytes projections set_up"},
+    .answer = {{"facts", "key bytes projections set_up membrane"},
                {"passes", "pass items repeats bytes projections"},
                {"unsupported", "why"}},
     .bind = taut::bind_verb<taut::verb::planning::add_options, taut::verb::planning::run>};
