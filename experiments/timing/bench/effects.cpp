@@ -38,6 +38,7 @@ std::optional<Scene> scene_of(const std::string& name, int side) {
 std::string effects_of(const Scene& scene) {
   std::vector<std::string> all;
   if (!scene.mesh.grid) all.emplace_back("any mesh");
+  if (scene.membrane) all.emplace_back("membrane");
   if (scene.bending) all.emplace_back("bending");
   if (scene.wind) all.emplace_back("wind");
   for (const Collider& c : scene.colliders) all.emplace_back(type_name(c.shape));
@@ -45,7 +46,15 @@ std::string effects_of(const Scene& scene) {
   return join(all, ", ");
 }
 
+/// The scene with structural and shear links of the warp's stiffness in place of its membrane.
+void put_links(Scene& scene) {
+  scene.links = grid_links(scene.mesh, {.structural = true, .shear = true});
+  scene.stiffness.fill(scene.membrane->warp);
+  scene.membrane.reset();
+}
+
 Scene without_effects(Scene scene) {
+  if (scene.membrane && scene.mesh.grid) put_links(scene);
   scene.bending.reset();
   scene.wind.reset();
   scene.colliders.clear();
