@@ -150,7 +150,10 @@ bool can_run(Findings& findings, std::string_view solver, const Scene& scene) {
   } catch (const InputError& error) {  // the program does not have this solver or precision
     reasons = {error.what()};
   }
-  if (!reasons.empty()) findings.not_applicable(solver, reasons.front());
+  if (!reasons.empty())
+    findings.not_applicable(solver, reasons.front());
+  else
+    findings.saw(scene);
   return reasons.empty();
 }
 

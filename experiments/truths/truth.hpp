@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -72,8 +73,15 @@ class Findings {
 
   const std::vector<Finding>& all() const { return findings_; }
 
+  /// Calls `watch` with each scene that can_run() lets run.
+  void watch(std::function<void(const Scene&)> watch) { watch_ = std::move(watch); }
+  void saw(const Scene& scene) const {
+    if (watch_) watch_(scene);
+  }
+
  private:
   void add(Finding);
+  std::function<void(const Scene&)> watch_;
   std::vector<std::string> only_;
   std::vector<Finding> findings_;
 };

@@ -69,6 +69,16 @@ class Suite(CommandLine):
         shown = self.taut("verify", "--beside", "before.json", "--markdown", expect=1).out
         self.assertIn("| friction | failed |", shown)
 
+    def test_the_scenes_of_the_tests_are_files(self):
+        answer = json.loads(self.taut("verify", "any-fall", "any-pinch", "any-release", "--scenes", "scenes", "--json").out)
+        files = [row["file"] for row in rows_of(answer, "scenes")]
+        self.assertEqual(files, ["any-fall-1.json", "any-release-1.json", "any-pinch-1.json", "any-pinch-2.json", "any-pinch-3.json"])
+        scenes = [json.loads((self.folder / "scenes" / file).read_text()) for file in files]
+        self.assertEqual(scenes[0]["gravity"], [2.25, -3, 9])
+        self.assertEqual([c["friction"] for scene in scenes[2:] for c in scene["colliders"]], [0.5, 0.5, 0, 0, 0.5, 0.5])
+        self.taut("external", "scene", "hang", "-o", "hang.json")
+        self.assertEqual(scenes[0].keys(), json.loads((self.folder / "hang.json").read_text()).keys())
+
     def test_bad_input_is_named(self):
         self.assertIn("nosuch.json", self.taut("verify", "--beside", "nosuch.json", expect=2).err)
         (self.folder / "other.json").write_text(self.taut("verify", "free-fall", "--json").out)

@@ -7,7 +7,9 @@
 #include "experiments/case/digest.hpp"
 #include "experiments/command_line/verb.hpp"
 #include "experiments/external/external.hpp"
+#include "experiments/external/protocol.hpp"
 #include "experiments/results/store.hpp"
+#include "experiments/system/files.hpp"
 #include "experiments/timing/timing.hpp"
 #include "experiments/truths/suite.hpp"
 
@@ -22,9 +24,9 @@ struct Options {
   bool suite = false;
   bool here = false;  ///< whether to check in this process
   Format format;
-  std::string baselines, out;
+  std::string baselines, out, scenes;
 
-  bool of_suite() const { return suite || !beside.empty(); }
+  bool of_suite() const { return suite || !beside.empty() || !scenes.empty(); }
   /// Whether every truth that an assertion rests on is checked for every solver.
   bool of_all_assertions() const {
     return names.empty() && solvers.empty() && section == 0 && !of_suite();
@@ -72,6 +74,28 @@ Answer list_of(const std::vector<const TruthEntry*>& chosen) {
   for (const TruthEntry* truth : chosen)
     table.rows.push_back({place_of(*truth), truth->name, truth->statement});
   return answer;
+}
+
+/// Writes the scenes of the suite, as programs get them: those that the solver runs.
+int write_scenes(const Options& options) {
+  const std::string solver = options.solvers.empty() ? "xpbd" : options.solvers.front();
+  parse_solver(solver);
+  std::filesystem::create_directories(options.scenes);
+  Answer answer{"verify", "scenes of conformance suite " + std::to_string(kSuiteVersion)};
+  Table table{"scenes", "", {{"phenomenon"}, {"test"}, {"file"}}};
+  for (const TruthEntry* truth : choose(options)) {
+    int count = 0;
+    Findings findings({solver});
+    findings.watch([&](const Scene& scene) {
+      const std::string name = std::string(truth->name) + "-" + std::to_string(++count) + ".json";
+      write_file(std::filesystem::path(options.scenes) / name, external::scene_file(scene));
+      table.rows.push_back({truth->phenomenon, truth->name, name});
+    });
+    truth->check(findings);
+  }
+  answer.add(std::move(table));
+  print(answer, options.format);
+  return kPass;
 }
 
 /// Whether the text names a file with an earlier result of the suite, and no solver.
@@ -127,6 +151,7 @@ int run(const Options& options) {
   // The suite finds what the quick probe finds, and names it.
   if (std::ranges::none_of(truths, &std::string_view::empty, &TruthEntry::phenomenon))
     external::run_unprobed();
+  if (!options.scenes.empty()) return write_scenes(options);
   if (options.of_suite()) return run_suite(options);
   const Verification found = taut::verify({.truths = truths,
                                            .solvers = options.solvers,
@@ -169,6 +194,9 @@ void add_options(Arguments& args, Options& options) {
                   "The suite for these solvers side by side; a file.json is what --suite --json "
                   "found before")
       .excludes("--assertions");
+  args.add_option("--scenes", options.scenes,
+                  "Write the scenes of the suite into this folder, for programs that read files")
+      .excludes("--assertions");
   add_record(args, options.record);
   add_results(args, options.out);
   args.add_flag("--assertions", options.assertions,
@@ -207,6 +235,7 @@ TAUT_VERB(verify) = {
          {"engines",
           "engine version passed deviates failed not_claimed first_failed solver suite machine"},
          {"phenomena", "*"},
+         {"scenes", "phenomenon test file"},
          {"numbers",
           "engine version solver phenomenon test needs verdict quantity unit value closed_form "
           "ratio tolerance why"}},
