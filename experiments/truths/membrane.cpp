@@ -385,7 +385,7 @@ TAUT_TRUTH(membrane_of_links, 6, 24,
   for (const auto& [name, strain] :
        {std::pair("along u", Vec3(1e-5, 0, 0)), std::pair("along v", Vec3(0, 1e-5, 0)),
         std::pair("both ways", Vec3(1e-5, 1e-5, 0)), std::pair("shear", Vec3(0, 0, 1e-5))}) {
-    const auto of_sheet = [&](int n, int l) { return energy_of_links(n, l, strain, k); };
+    const auto of_sheet = [&, &by = strain](int n, int l) { return energy_of_links(n, l, by, k); };
     // what one more cell adds, without the edges
     const double cell = of_sheet(5, 5) - of_sheet(4, 5) - of_sheet(5, 4) + of_sheet(4, 4);
     Deformation f;  // columns along the warp, -y, and across it

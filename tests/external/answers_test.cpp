@@ -99,7 +99,7 @@ TEST(Hello, RefusesWhatNoParameterCanBe) {
   for (const char* name : {"cmd", "timeout", "folder", "build", "a b", "1a", ""})
     EXPECT_NE(refused_param(integer(0, 0, 1), name), "") << name;
   Json other = hello_with("n", integer(0, 0, 1));
-  other["protocol"] = "taut-solver/5";
+  other["protocol"] = "taut-solver/6";
   EXPECT_NE(refusal([&] { read_hello(other); }), "");
 }
 

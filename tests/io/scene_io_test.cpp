@@ -581,6 +581,9 @@ TEST(SceneSchema, EveryDocumentedExampleIsAccepted) {
       if (key == "collider.frames" || key == "collider.fps") return shipped("skirt", settings);
       if (body) return shipped("mesh-box", settings);
       if (mesh) settings.emplace_back("cloth.start_inside=\"resolve\"");
+      if (key == "membrane.stiffness") settings.emplace(settings.begin(), "membrane.shear=350");
+      if (key.starts_with("membrane."))
+        settings.emplace(settings.begin(), "membrane.stiffness=1000");
       return mesh ? shipped("disc", settings) : parse_scene("bare", kBare, settings);
     };
     const std::string path = path_to(key, row[7]);
