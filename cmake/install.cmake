@@ -47,7 +47,10 @@ set(headers core/io/drawn_scene.hpp core/io/mesh_io.hpp core/io/positions/positi
             core/reference/resting_springs.hpp core/reference/strain_at_rest.hpp experiments/predict/prediction.hpp
             experiments/metrics/metric.hpp experiments/case/case.hpp experiments/case/computed_motion.hpp
             experiments/case/digest.hpp experiments/case/record.hpp experiments/case/record_io.hpp
-            experiments/case/run_case.hpp experiments/case/trajectory.hpp)
+            experiments/case/run_case.hpp experiments/case/trajectory.hpp
+            core/reference/fit.hpp experiments/answer/answer.hpp experiments/answer/number.hpp
+            experiments/truths/assertions/assertions.hpp experiments/truths/assertions/judged.hpp
+            experiments/truths/suite.hpp experiments/truths/truth.hpp experiments/truths/verification.hpp)
 file(GLOB model CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} core/model/*.hpp)
 install(CODE "
   file(REMOVE_RECURSE \"${PROJECT_BINARY_DIR}/include/taut\")  # may have files under old names
