@@ -159,7 +159,7 @@ TAUT_TRUTH(ridge, 7, 13,
 }
 
 TAUT_TRUTH(capstan_of_triangles, 7, 14,
-           "a light rope over a cylinder of 240 flat sides holds up to the ratio of its vertices, "
+           "a light rope over a cylinder of 960 flat sides holds up to the ratio of its vertices, "
            "with edges to that of its links, and slides beyond",
            "Euler, Eytelwein; balance of every node") {
   const PowerLaw order = fit_over({0.2, 0.1, 0.05}, [](double link) {
@@ -170,7 +170,7 @@ TAUT_TRUTH(capstan_of_triangles, 7, 14,
   // Middles of the sides are on the circle. With few sides, more is held: a vertex that slides
   // along one comes to where the rope pulls it back.
   std::vector<Vec3> polygon;
-  constexpr int kSides = 240;
+  constexpr int kSides = 960;
   for (int k = 0; k < kSides; ++k) {
     const double side = 2 * std::numbers::pi / kSides, at = (k + 0.5) * side;
     polygon.emplace_back(Capstan::kRadius / std::cos(side / 2) *
