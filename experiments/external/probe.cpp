@@ -43,8 +43,11 @@ std::string text(const Vec3& v) {
 /// The vertex farthest from its expected position. NaN counts as farthest.
 std::pair<std::size_t, double> farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   std::pair<std::size_t, double> worst{0, 0};
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (const double d = (a[i] - b[i]).norm(); !(d <= worst.second)) worst = {i, d};
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = (a[i] - b[i]).norm();
+    if (std::isnan(d)) return {i, d};
+    if (d > worst.second) worst = {i, d};
+  }
   return worst;
 }
 

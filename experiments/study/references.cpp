@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/model/index.hpp"
+#include "core/model/larger.hpp"
 #include "core/model/text.hpp"
 #include "core/reference/shake.hpp"
 #include "core/reference/springs.hpp"
@@ -145,7 +146,7 @@ double spread(const Scene& scene, const std::vector<Computed>& all, const Motion
     const MotionReference beside = cut(scene, other.path, motion.horizon);
     const double error =
         error_of(scene, motion, [&](int k) { return beside.states[to_index(k)].x; });
-    if (!(other.share * error <= most)) most = other.share * error;
+    most = larger(most, other.share * error);
   }
   return most;
 }

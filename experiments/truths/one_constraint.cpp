@@ -60,8 +60,7 @@ template <class F>
 double worst_over_strains(const F& error) {
   double worst = 0;
   for (const double e : kStrains) {
-    const double here = std::abs(error(e));
-    if (!(here <= worst)) worst = here;
+    worst = larger(worst, std::abs(error(e)));
   }
   return worst;
 }

@@ -62,8 +62,7 @@ double worst_extension(const Scene& s, const State& state, double stiffness) {
   for (std::size_t l = 0; l < s.links.size(); ++l) {
     const int nu = s.mesh.grid->nu, upper = s.links[l].a / nu, lower = s.links[l].b / nu;
     const double expected = (lower - upper) * (kLinks - upper) * kVertexMass * kG / stiffness;
-    const double off = std::abs(extension[l] - expected);
-    if (!(off <= most)) most = off;  // keeps NaN
+    most = larger(most, std::abs(extension[l] - expected));
   }
   return most / (kVertexMass * kG / stiffness);
 }

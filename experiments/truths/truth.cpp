@@ -236,10 +236,8 @@ std::vector<double> strains(const Scene& scene, const State& state) {
 double max_strain(const Scene& scene, const State& state) {
   const std::vector<double> e = strains(scene, state);
   double worst = 0;
-  for (std::size_t j = 0; j < e.size(); ++j) {
-    const double relative = std::abs(e[j]) / scene.links[j].rest;
-    if (!(relative <= worst)) worst = relative;  // keeps NaN
-  }
+  for (std::size_t j = 0; j < e.size(); ++j)
+    worst = larger(worst, std::abs(e[j]) / scene.links[j].rest);
   return worst;
 }
 
@@ -252,10 +250,7 @@ double rms_strain(const Scene& scene, const State& state) {
 
 double max_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double worst = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double d = (a[i] - b[i]).norm();
-    if (!(d <= worst)) worst = d;  // keeps NaN
-  }
+  for (std::size_t i = 0; i < a.size(); ++i) worst = larger(worst, (a[i] - b[i]).norm());
   return worst;
 }
 

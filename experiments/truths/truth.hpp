@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/model/index.hpp"
+#include "core/model/larger.hpp"
 #include "core/model/solver.hpp"
 #include "core/reference/fit.hpp"
 #include "experiments/answer/answer.hpp"
@@ -116,9 +117,6 @@ std::span<const TruthEntry* const> truths();
 
 /// Title of a section of the list.
 std::string_view section_title(int section);
-
-/// The larger of two errors; NaN if one of them is NaN, which std::max() may lose.
-inline double larger(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
 
 /// A solver on a scene, stepped by hand. Solvers with a link order use the mesh order, which the
 /// recurrences of the truths assume, unless the text chooses another.

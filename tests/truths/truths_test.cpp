@@ -37,6 +37,19 @@ TEST(Truths, TheProgramHasEverySolverThatTheyBind) {
     EXPECT_NO_THROW(find_solver(name));
 }
 
+TEST(Findings, OneVertexThatIsNanIsTheWorstWhereverItStands) {
+  const double nan = std::nan("");
+  const std::vector<Vec3> rest{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    std::vector<Vec3> x = rest;
+    x[i] = {nan, 0, 0};
+    EXPECT_TRUE(std::isnan(max_distance(x, rest))) << i;
+    Scene scene;
+    scene.links = {{0, 1, 1}, {1, 2, 1}};
+    EXPECT_TRUE(std::isnan(max_strain(scene, {x, {}}))) << i;
+  }
+}
+
 TEST(Findings, JudgesByTheToleranceAndNeverPassesNan) {
   Findings findings;
   findings.equal("a", "q", "m", 1.0, 1.1, 0.2);
