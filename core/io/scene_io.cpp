@@ -322,8 +322,10 @@ Membrane read_membrane(Section& section) {
                                   ", the root of warp over weft: beyond it a strain has a negative "
                                   "energy");
   } else if (!section.find("shear")) {
-    if (membrane.warp != membrane.weft) section.missing("shear");
-    membrane.shear = membrane.warp / (2 + 2 * membrane.poisson);
+    if (membrane.warp != membrane.weft)
+      section.missing("shear");
+    else
+      membrane.shear = membrane.warp / (2 + 2 * membrane.poisson);
   }
   section.finish();
   return membrane;
@@ -376,7 +378,7 @@ void complete(Part& part, const Mesh& mesh, bool alike) {
     part.direction = -Vec3::UnitY();
 }
 bool is_isotropic(const Membrane& m) {
-  return m.warp == m.weft && m.shear == m.warp / (2 + 2 * m.poisson);
+  return m.warp == m.weft && m.poisson > -1 && m.shear == m.warp / (2 + 2 * m.poisson);
 }
 
 Scene scene_of(const Document& document, const std::filesystem::path& path,
