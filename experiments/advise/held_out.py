@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Do the winners of the map win on scenes that the search never saw?
 
-    experiments/advise/held_out.py PROGRAM [--base BENCH.json] [--seeds 1-20] [--jobs N]
+    experiments/advise/held_out.py PROGRAM [--base BENCH.json] [--seeds 1-20]
 
 Each seed draws a scene of one of the trade's kinds: grid, step, tilt, bending, damping, body. PROGRAM (taut) makes its reference, and
 times the setting of every solver that is cheapest for an error on the kind's own scene: `taut bench trade --preset quick --json`, or the

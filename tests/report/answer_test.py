@@ -214,7 +214,7 @@ class Answer(unittest.TestCase):
             if c not in having:
                 last[c] = texts.pop() if len(texts) == 1 else "no value"
             elif not common:
-                last[c] = "no scene that all have"
+                last[c] = f"{sum(compared(row[c]) for row in cells.values())} of {len(cells)}"
             elif kind == "largest":
                 last[c] = max(row[c] for row in common)
             elif kind == "sum" or len(common) == 1:
@@ -224,6 +224,8 @@ class Answer(unittest.TestCase):
                 mine = [max(row[c], nothing) if nothing else row[c] for row in common]
                 positive = all(v > 0 for column in raised for v in column)
                 last[c] = math.exp(statistics.fmean(map(math.log, mine))) if positive else statistics.fmean(mine)
+        if not common:
+            return last, "no scene has all: scenes with a value"
         return last, f"{kind} of {len(common)} scene{'' if len(common) == 1 else 's'}"
 
     def values_at_equal_work(self, report, metric):

@@ -64,6 +64,7 @@ Common common_of(const Table& table, double floor) {
 
 Cell Common::label(const Table& table, const std::string& what) const {
   if (rows.size() == 1 && table.rows.size() == 1) return table.rows[0][0];
+  if (rows.empty()) return Cell("no scene has all: scenes with a value");
   std::string without;
   for (std::size_t r = 0; r < table.rows.size(); ++r)
     if (std::ranges::find(rows, r) == rows.end())
@@ -84,6 +85,12 @@ Cell why_empty(const Table& table, std::size_t column) {
   return Cell::lacking(states.size() == 1 ? *states.begin() : Cell::State::none, *words.begin());
 }
 
+std::string with_value(const Table& table, std::size_t column) {
+  const auto count =
+      std::ranges::count_if(table.rows, [&](const auto& row) { return is_compared(row[column]); });
+  return std::to_string(count) + " of " + std::to_string(table.rows.size());
+}
+
 std::vector<Cell> last_row(const Table& table, const Common& common, const std::string& what,
                            const std::function<Cell(std::size_t column)>& sum) {
   std::vector<Cell> last{common.label(table, what)};
@@ -91,7 +98,7 @@ std::vector<Cell> last_row(const Table& table, const Common& common, const std::
     if (std::ranges::find(common.columns, c) == common.columns.end())
       last.push_back(why_empty(table, c));
     else if (common.rows.empty())
-      last.push_back(Cell::lacking(Cell::State::none, "no scene that all have"));
+      last.push_back(Cell::lacking(Cell::State::none, with_value(table, c)));
     else
       last.push_back(common.rows.size() == 1 ? table.rows[common.rows[0]][c] : sum(c));
     last.back().best = false;
