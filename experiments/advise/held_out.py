@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Do the winners of the map win on scenes that the search never saw?
 
-    experiments/advise/held_out.py PROGRAM [--base BENCH.json] [--seeds 1-20]
+    experiments/advise/held_out.py PROGRAM [--base BENCH.json] [--seeds 1-20] [--references FOLDER [--only-references]]
 
 Each seed draws a scene of one of the trade's kinds: grid, step, tilt, bending, damping, body. PROGRAM (taut) makes its reference, and
 times the setting of every solver that is cheapest for an error on the kind's own scene: `taut bench trade --preset quick --json`, or the
-file given by --base. Prints Markdown. Scenes and settings are those of the seeds and of the searched study; both are fixed by the commit.
+file given by --base. References take most of the time and no quiet machine: --only-references makes them alone, in FOLDER, where a later run
+finds them. Prints Markdown. Scenes and settings are those of the seeds and of the searched study; both are fixed by the commit.
 """
 import argparse
 import collections
@@ -44,14 +45,24 @@ def drawn(seed):
 class Taut:
     """The program, with a folder of references of its own"""
 
-    def __init__(self, program, folder):
+    def __init__(self, program, folder, references):
         self.program, self.folder = program, folder
         (folder / "experiments").symlink_to(ROOT / "experiments")
+        (folder / "results").mkdir()
+        (references or folder).mkdir(parents=True, exist_ok=True)
+        self.references = folder / "results" / "references"
+        self.references.symlink_to(references.resolve() if references else folder)
         self.environment = os.environ | {"TAUT_DATA": str(folder / "experiments")}
 
     def run(self, *arguments):
         done = subprocess.run([self.program, *map(str, arguments)], cwd=self.folder, env=self.environment, text=True, capture_output=True)
         return done.stdout, done.stderr
+
+    def make_reference(self, seed, kind, sets):
+        made = self.references / f"seed-{seed}.txt"
+        if not made.exists():
+            out, err = self.run("reference", kind, *sets, "-o", self.references)
+            made.write_text(out + err)
 
     def recommended(self, *arguments):
         """[target] {solver: (setting, CPU seconds a simulated second)} of each scene of a bench, the cheapest first"""
@@ -79,19 +90,23 @@ def main():
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("--base", type=pathlib.Path)
     parser.add_argument("--seeds", default="1-20")
+    parser.add_argument("--references", type=pathlib.Path)
+    parser.add_argument("--only-references", action="store_true")
     options = parser.parse_args()
     first, last = map(int, options.seeds.split("-"))
     program = options.program.resolve()
     with tempfile.TemporaryDirectory() as folder:
-        taut = Taut(program, pathlib.Path(folder))
-        base = recommended_in(json.loads(options.base.read_text())) if options.base else taut.recommended("trade", "--preset", "quick")
+        taut = Taut(program, pathlib.Path(folder), options.references)
+        base = {} if options.only_references else recommended_in(json.loads(options.base.read_text())) if options.base else taut.recommended("trade", "--preset", "quick")
         judged, unjudged, losses = [], [], []
         for seed in range(first, last + 1):
             kind, settings = drawn(seed)
             sets = [word for one in settings for word in ("--set", one)]
             print(f"seed {seed}: {kind}", file=sys.stderr, flush=True)
-            taut.run("reference", kind, *sets, "-o", taut.folder / "results" / "references")
-            of_kind = {target: some for (scene, target), some in base.items() if scene.startswith(KINDS[kind])}
+            taut.make_reference(seed, kind, sets)
+            if options.only_references:
+                continue
+            of_kind = {target: some for (scene, target), some in base.items() if scene.split(":")[0] == kind}
             solvers = sorted({setting for some in of_kind.values() for setting, _ in some.values()})
             study = taut.folder / f"seed-{seed}.toml"
             study.write_text(f'question = "Who is cheapest on a scene that no search saw?"\nscenes = ["{kind}"]\n'
@@ -107,7 +122,8 @@ def main():
                 if winner != best:
                     losses.append((seed, kind, target, winner, f"{some[winner][1] / least:.2f} times" if winner in some else "misses the error", best,
                                    " ".join(settings)))
-    tell(judged, unjudged, losses)
+    if not options.only_references:
+        tell(judged, unjudged, losses)
 
 
 def tell(judged, unjudged, losses):
