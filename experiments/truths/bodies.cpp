@@ -6,6 +6,7 @@
 
 #include "core/model/text.hpp"
 #include "experiments/truths/capstan.hpp"
+#include "experiments/truths/quoted.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -153,8 +154,7 @@ TAUT_TRUTH(ridge, 7, 13,
         findings.equal(solver, "depth of the chord, vertices alone", "m", depth, chord,
                        0.01 * chord);
       else
-        findings.below(solver, "depth of the chord, faces=edges", "m", std::max(0.0, depth),
-                       0.02 * chord);
+        findings.below(solver, quoted::kDepthWithEdges, "m", std::max(0.0, depth), 0.02 * chord);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "core/reference/shake.hpp"
 #include "core/reference/static_equilibrium.hpp"
 #include "core/reference/textbook.hpp"
+#include "experiments/truths/quoted.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -308,7 +309,7 @@ TAUT_TRUTH(hanging_chain_slopes, 4, 11,
     const PowerLaw slope =
         fit_over({1.0 / 32, 1.0 / 64, 1.0 / 128, 1.0 / 256, 1.0 / 512},
                  [&](double dt) { return largest(settled_strains(solver, 16, 4, dt, 1e-3)); });
-    findings.slope(solver, "slope in dt", slope, 2, 5e-4);
+    findings.slope(solver, quoted::kSlopeInTimeStep, slope, 2, 5e-4);
   }
   // All lie on one curve in k/dt^2: the large-N sum, within O(1/N).
   for (const int n : {64, 128}) {

@@ -7,6 +7,7 @@
 #include "core/reference/closed_forms.hpp"
 #include "core/reference/fit.hpp"
 #include "experiments/truths/bodies.hpp"
+#include "experiments/truths/quoted.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -56,12 +57,12 @@ TAUT_TRUTH(plane_rest, 7, 1,
     sim.step(254);
     const double hover = sim.x(0).y();
     if (solver_name(solver) == "bullet") {
-      findings.deviates(solver, "height at rest", "m", hover, 0, kG * s.dt * s.dt, 1e-5,
+      findings.deviates(solver, quoted::kHeightAtRest, "m", hover, 0, kG * s.dt * s.dt, 1e-5,
                         "a contact is only seen at the predicted place, so it rests at + g dt^2");
       continue;
     }
-    findings.below(solver, "speed two steps after the impact", "m/s", speed, 1e-12);
-    findings.below(solver, "height at rest", "m", std::abs(hover), 1e-15);
+    findings.below(solver, quoted::kSpeedAfterImpact, "m/s", speed, 1e-12);
+    findings.below(solver, quoted::kHeightAtRest, "m", std::abs(hover), 1e-15);
   }
 }
 
@@ -137,8 +138,7 @@ TAUT_TRUTH(tunnelling, 7, 3, "tests at step boundaries miss max(0, 1 - D/s) of t
                    missed(solver, capsule, travel), 1 - thickness / travel, 0.006);
     findings.equal(solver, "share that misses a plate of 12 triangles of 0.4 s", "1",
                    missed(solver, body, travel), 1 - thickness / travel, 0.006);
-    findings.below(solver, "share that misses a plate thicker than the travel", "1",
-                   missed(solver, thick, travel), 0);
+    findings.below(solver, quoted::kMissesThickPlate, "1", missed(solver, thick, travel), 0);
   }
   const std::string continuous = jakobsen(1, "exact", "contact=continuous");
   if (!can_run(findings, continuous, s)) return;

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/reference/closed_forms.hpp"
+#include "experiments/truths/quoted.hpp"
 #include "experiments/truths/truth.hpp"
 
 namespace taut {
@@ -250,7 +251,7 @@ TAUT_TRUTH(free_spin, 3, 10,
     findings.below(solver, "change of momentum in 64 steps, of 4.6 kg m/s", "kg m/s",
                    (sim.v(0) + sim.v(1) - 2 * throws).norm(), 1e-12);
     const Vec3 arm = (sim.x(1) - sim.x(0)) / 2, turns = (sim.v(1) - sim.v(0)) / 2;
-    findings.equal(solver, "angular momentum after 64 steps of 1/64 s over that at 6 rad/s", "1",
+    findings.equal(solver, quoted::kAngularMomentumLeft, "1",
                    2 * arm.cross(turns).dot(axis) / (2 * 0.25 * spin), angular, tolerance);
   };
   const double dt = 1.0 / 64;

@@ -22,5 +22,13 @@ inline constexpr const char* kErrorOfMidpointRule =
 inline constexpr const char* kMidpointRuleFliesApart = "RMS strain after 4 s is above 1";
 inline constexpr const char* kDampingOfBdf2 = "damping ratio over (w h)^3/4, w h = 0.1";
 inline constexpr const char* kPopOfHaltedCloth = "largest acceleration at rest, 1/256 s: it pops";
+inline constexpr const char* kSpeedAfterImpact = "speed two steps after the impact";
+inline constexpr const char* kHeightAtRest = "height at rest";
+inline constexpr const char* kMissesThickPlate =
+    "share that misses a plate thicker than the travel";
+inline constexpr const char* kDepthWithEdges = "depth of the chord, faces=edges";
+inline constexpr const char* kSlopeInTimeStep = "slope in dt";
+inline constexpr const char* kAngularMomentumLeft =
+    "angular momentum after 64 steps of 1/64 s over that at 6 rad/s";
 
 }  // namespace taut::quoted

@@ -32,6 +32,8 @@ struct Assertion {
   std::string_view truth;
   /// Quantity of the truth to quote, a constant of experiments/truths/quoted.hpp; "": the first.
   std::string_view figure = "";
+  /// The solver whose number is quoted, where a truth measures the same of several; "": the first.
+  std::string_view solver = "";
 };
 
 /// All assertions, source by source.

@@ -15,12 +15,13 @@ std::string figure_text(const Finding& f) {
 }
 
 /// The finding to quote for an assertion: one that breaks it, otherwise the first measured one, of
-/// this quantity if it has a name.
-const Finding* quoted(const std::vector<Finding>& findings, std::string_view quantity) {
+/// its quantity and its solver if it names them.
+const Finding* quoted(const std::vector<Finding>& findings, const Assertion& assertion) {
   const Finding* told = nullptr;
   for (const Finding& f : findings) {
     if (f.verdict == TruthVerdict::broken) return &f;
-    const bool asked = quantity.empty() || f.quantity == quantity;
+    const bool asked = (assertion.figure.empty() || f.quantity == assertion.figure) &&
+                       (assertion.solver.empty() || solver_name(f.subject) == assertion.solver);
     if (!told && asked && f.verdict != TruthVerdict::not_applicable) told = &f;
   }
   return told;
@@ -36,7 +37,7 @@ std::vector<JudgedAssertion> judge_assertions(const FindingsOf& findings_of) {
     if (!assertion.truth.empty()) {
       const std::vector<Finding>* findings = findings_of(assertion.truth);
       if (!findings) continue;
-      const Finding* told = quoted(*findings, assertion.figure);
+      const Finding* told = quoted(*findings, assertion);
       if (!told || told->verdict == TruthVerdict::broken)
         judged.verdict = AssertionVerdict::overturned;
       if (told) judged.figure = figure_text(*told);
