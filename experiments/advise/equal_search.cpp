@@ -35,11 +35,38 @@ bool is_plain(const std::string& setting, const std::string& solver) {
   });
 }
 
+/// The solver's text with what a setting has besides substeps, sweeps and stiffness: the values of
+/// its alternatives.
+std::string with_alternatives_of(const std::string& setting, const std::string& solver) {
+  const SolverChoice one = parse_solver(setting), base = parse_solver(solver);
+  std::string text = solver;
+  for (const auto& [names, values] : one.entry->accuracy.alternatives)
+    for (const std::string_view name : names)
+      if (!base.params.given(name))
+        text = with(text, std::string(name).append("=").append(one.params.value(name)));
+  return text;
+}
+
+/// Whether a setting has all that the solver's text fixes.
+bool belongs(const std::string& setting, const std::string& solver) {
+  const SolverChoice one = parse_solver(setting), base = parse_solver(solver);
+  return one.entry == base.entry &&
+         std::ranges::all_of(base.entry->params, [&](const ParamSpec& spec) {
+           return !base.params.given(spec.name) ||
+                  one.params.value(spec.name) == base.params.value(spec.name);
+         });
+}
+
 class SolverSearch {
  public:
   SolverSearch(const std::string& scene, const SceneSettings& settings, const std::string& solver,
-               const std::string& metric, Store& store)
-      : scene_(scene), settings_(settings), solver_(solver), metric_(metric), store_(store) {
+               const std::string& metric, Store& store, std::vector<SearchedSetting> known)
+      : scene_(scene),
+        settings_(settings),
+        solver_(solver),
+        metric_(metric),
+        store_(store),
+        known_(std::move(known)) {
     const SceneSettings own = parse_study_scene(scene).settings;
     settings_.insert(settings_.end(), own.begin(), own.end());
     const Case one = make(solver);
@@ -56,7 +83,9 @@ class SolverSearch {
     if (unsupported_.empty()) {
       evaluate(cheapest_setting(solver_), seconds);
       const double plain = kShareWithoutAccelerators * seconds;
+      try_known(&SearchedSetting::plain, plain);
       search(without_accelerators(solver_), errors, plain);
+      try_known(&SearchedSetting::best, seconds);
       search(solver_, errors, seconds);
     }
     return found(errors);
@@ -68,9 +97,19 @@ class SolverSearch {
         {parse_study_scene(scene_).name, settings_, parse_solver(solver).canonical()});
   }
 
-  /// Searches each error, with an equal share of the time that the errors before it left.
+  /// Tries what an earlier search found best.
+  void try_known(std::vector<double> SearchedSetting::*errors, double end) {
+    for (const SearchedSetting& one : known_)
+      if (one.scene == scene_ && !(one.*errors).empty() && belongs(one.solver, solver_))
+        evaluate(one.solver, end);
+  }
+
+  /// Searches each error, with an equal share of the time that the errors before it left. The
+  /// alternatives of what is best so far come first, and those of the error before: a solver whose
+  /// runs are dear would else not get to its alternatives.
   void search(const std::string& solver, std::span<const double> errors, double seconds) {
     auto left = static_cast<double>(errors.size());
+    double before = errors.front();
     for (const double error : errors) {
       cut_off_ = false;
       const double end = cpu_ + (seconds - cpu_) / left--;
@@ -80,12 +119,17 @@ class SolverSearch {
       // Cheap settings come first, since one column of expensive ones could use up all the time.
       // All columns come before any alternative: as long as nothing reaches the error, each
       // alternative walks all columns again.
+      const auto search_from = [&](const std::string& text, SearchDepth depth) {
+        for (double dearest = most / 256; dearest <= most && !cut_off_; dearest *= 4)
+          if (best_for(target, search_settings(text, target, run, {}, depth, dearest))) return;
+      };
+      for (const double near : {error, before})
+        if (const auto at = best_for({near, {}}, tried_))
+          search_from(with_alternatives_of(tried_[*at].setting, solver), SearchDepth::refined);
       for (const SearchDepth depth : {SearchDepth::columns, SearchDepth::repeated})
-        for (double dearest = most / 256; dearest <= most && !cut_off_; dearest *= 4) {
-          const auto tried = search_settings(solver, target, run, {}, depth, dearest);
-          if (best_for(target, tried)) break;
-        }
+        search_from(solver, depth);
       cut_[error] = cut_off_;
+      before = error;
     }
   }
 
@@ -144,6 +188,7 @@ class SolverSearch {
   SceneSettings settings_;
   std::string solver_, metric_, unsupported_;
   Store& store_;
+  std::vector<SearchedSetting> known_;  ///< rows of an earlier search
   CaseMaker maker_;
   std::vector<Limit> limits_;
   std::vector<Candidate> tried_;
@@ -160,10 +205,13 @@ std::vector<EqualSearch> search_equally(const Study& study, Store& store, const 
                                         const std::function<void(const EqualSearch&)>& after_each) {
   if (!study.axes.empty())
     throw InputError(study.file.string() + ": settings are searched only for a study without axes");
+  std::vector<SearchedSetting> known;
+  if (!study.searched.empty() && std::filesystem::exists(study.searched))
+    known = read_searched(study.searched);
   std::vector<EqualSearch> all;
   for (const std::string& scene : study.scenes)
     for (const std::string& solver : study.solvers) {
-      all.push_back(SolverSearch(scene, study.settings, solver, metric, store).run(seconds));
+      all.push_back(SolverSearch(scene, study.settings, solver, metric, store, known).run(seconds));
       after_each(all.back());
     }
   return all;

@@ -16,7 +16,8 @@ std::string heading(const Study& study, const std::string& metric, double cpu) {
          (study.preset.empty() ? "" : " --preset " + study.preset) + " --cpu " + number_text(cpu) +
          "`: every solver's levers, searched scene by scene with " + number_text(cpu) +
          " s of CPU\n# time for each solver: half of it without accelerators that others lack, the "
-         "rest with all. All that was tried, with its error (" +
+         "rest with all. It began with what the file named best before. All that was tried, with "
+         "its error (" +
          (metric.empty() ? std::string(kVerdict) : metric) +
          ")\n# and its cost by a few steps [CPU s per simulated s]. `plain` and `best`: errors for "
          "which it is the cheapest of its solver,\n# without accelerators and with them. "

@@ -513,6 +513,12 @@ searched = "mine-searched.toml"
         chosen = [row["solver"] for row in found["tried"] if row.get("cheapest") or row.get("plain") or row.get("best")]
         cases = facts_of(self.answer("run", "./mine.toml"))["cases"]
         self.assertTrue(len(chosen) <= cases <= len(chosen) + 3, "the chosen settings and each solver as it comes")
+        file = self.folder / "mine-searched.toml"
+        sent = "mass-spring:structural=777,substeps=37"
+        file.write_text(file.read_text().replace("tried = [", f'tried = [\n  {{ scene = "./small.toml", solver = "{sent}", error = 0.01, best = [0.001] }},', 1))
+        self.answer("advise", "--study", "./mine.toml", "--cpu", 0.5)
+        again = [row["solver"] for row in tomllib.loads(file.read_text())["tried"]]
+        self.assertEqual(set(chosen + [sent]) - set(again), set(), "a search begins with what was best, and with a setting that an author sent")
 
     def test_advice_is_clear_only_when_it_was_confirmed_and_the_search_has_ended(self):
         for patience in [3, 120]:
