@@ -6,6 +6,7 @@
 #include "core/model/text.hpp"
 #include "core/reference/contact_residual.hpp"
 #include "core/reference/implicit_step.hpp"
+#include "experiments/case/run_case.hpp"
 #include "experiments/truths/bodies.hpp"
 #include "experiments/truths/capstan.hpp"
 #include "experiments/truths/truth.hpp"
@@ -37,6 +38,10 @@ std::vector<Vec3> rest_near(Scene s, const std::vector<Vec3>& x) {
   const State state{x, std::vector<Vec3>(x.size(), Vec3::Zero())};
   return reference::ImplicitStep(s, state, 0, s.stiffness).minimum(x).x;
 }
+
+constexpr const char* kSweepsSlide =
+    "friction is bounded by what contact corrects in one sweep, and a rope of light links pulls "
+    "against it in the next";
 
 /// Elastic solvers, with `sweeps` for those whose iterations are expensive.
 std::vector<std::string> elastic_solvers(int sweeps) {
@@ -134,9 +139,7 @@ TAUT_TRUTH(capstan_holds, 7, 8,
     };
     const std::string held = "speed of the heavy end after 2 s at 0.9 of the ratio";
     if (solver_name(solver) == "xpbd" && parse_solver(solver).params.is("method", "sweeps"))
-      findings.deviates(solver, held, "m/s", speed(0.9), 0, 0.7, 0.1,
-                        "friction is bounded by what contact corrects in one sweep, and a rope of "
-                        "light links pulls against it in the next");
+      findings.deviates(solver, held, "m/s", speed(0.9), 0, 0.7, 0.1, kSweepsSlide);
     else
       findings.below(solver, held, "m/s", speed(0.9), 2e-3);
     findings.holds(solver, "the heavy end slides at 1.1 of the ratio", speed(1.1) > 0.05);
@@ -250,6 +253,77 @@ TAUT_TRUTH(every_step_in_contact, 7, 18,
                         "once");
     findings.holds(solver, "two vertices touch in a step on average",
                    touching > 2 * kSteps * judged);
+  }
+}
+
+namespace {
+
+/// A sheet of springs at rest on a slope, with 3 s to run.
+Scene sheet_on_slope(double slope, double friction) {
+  const Vec3 normal(std::sin(slope), std::cos(slope), 0), uphill(-normal.y(), normal.x(), 0);
+  Scene s = under_gravity(
+      bare::sheet(9, 9, {.structural = true, .shear = true}, Lumping::area, 0.5, 0.5, 0.1));
+  for (Vec3& x : s.start.x) x = x.x() * Vec3::UnitZ() + x.y() * uphill;
+  s.colliders = {{Plane{normal, 0}, {}, friction}};
+  s.steps = 3 * 64;
+  return s;
+}
+
+double creep(const Scene& s, const std::string& solver) {
+  return run_case(s, parse_solver(solver)).record.value("contact.creep");
+}
+
+}  // namespace
+
+TAUT_TRUTH(creep, 7, 19,
+           "where friction holds cloth, on a slope, on one that moves, or on a cylinder by its "
+           "tension, no vertex creeps",
+           "Coulomb; from the ends of steps alone") {
+  constexpr double kHeld = 1e-9;  // m/s
+  const double mu = 1.05 * std::tan(30 * kDegree);
+  const Scene slope = sheet_on_slope(20 * kDegree, 0.6), steep = sheet_on_slope(30 * kDegree, mu);
+  Scene moves = slope;
+  moves.colliders[0].motion.velocity = {0.2, 0.1, 0.3};
+  moves.start.v.assign(moves.start.x.size(), moves.colliders[0].motion.velocity);
+  for (const std::string solver :
+       {"jakobsen:precision=double", "xpbd:precision=double",
+        "xpbd:method=global,primal=on,substeps=1,precision=double,iterations=50", "mass-spring",
+        "implicit", "pd", "admm", "vbd:precision=double", "avbd:precision=double",
+        "bullet:precision=double", "bullet-deformable:precision=double"}) {
+    if (!can_run(findings, solver, slope)) continue;
+    findings.below(solver, "creep on a slope of 20 degrees, mu = 0.6", "m/s", creep(slope, solver),
+                   kHeld);
+    findings.below(solver, "creep on it while it moves at 0.37 m/s", "m/s", creep(moves, solver),
+                   kHeld);
+    const std::string on_steep = "creep on a slope of 30 degrees, mu = 1.05 tan(30 degrees)";
+    if (solver_name(solver) == "bullet")
+      findings.deviates(solver, on_steep, "m/s", creep(steep, solver), 0,
+                        kG * steep.dt * std::sin(30 * kDegree) * (1 - mu) / mu, 1e-6,
+                        "btSoftBody holds a vertex from mu = tan(slope)/(1 - hardness) on; below, "
+                        "each substep leaves the share 1 - mu of the way and adds gravity's");
+    else
+      findings.below(solver, on_steep, "m/s", creep(steep, solver), kHeld);
+  }
+  const Capstan rope;
+  const Shape cylinder = Capsule{-Vec3::UnitZ(), Vec3::UnitZ(), Capstan::kRadius};
+  Scene taut_rope = rope.scene(cylinder, 0.5 * rope.ratio());
+  taut_rope.steps = 3 * 128;
+  for (const std::string solver :
+       {"implicit", "pd:iterations=400", "admm:iterations=400", "vbd:iterations=1000,start=inertia",
+        "avbd:iterations=100,k-min=1e4", "mass-spring:substeps=64",
+        "xpbd:method=global,primal=on,substeps=1,precision=double,iterations=50",
+        "xpbd:substeps=16,iterations=64,precision=double",
+        "jakobsen:iterations=1000,precision=double"}) {
+    Scene s = taut_rope;
+    const SolverChoice choice = parse_solver(solver);
+    if (!choice.entry->unsupported(s, choice.params).empty()) s.stiffness = kRigid;
+    if (!can_run(findings, solver, s)) continue;
+    const std::string on_cylinder = "creep of a rope on a cylinder at half of the capstan's ratio";
+    if (solver_name(solver) == "xpbd" && choice.params.is("method", "sweeps"))
+      findings.deviates(solver, on_cylinder, "m/s", creep(s, solver), 0, 0.072, 0.015,
+                        kSweepsSlide);
+    else
+      findings.below(solver, on_cylinder, "m/s", creep(s, solver), 10 * kHeld);
   }
 }
 

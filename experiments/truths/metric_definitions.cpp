@@ -362,4 +362,31 @@ TAUT_TRUTH(metric_mode, 10, 14,
   }
 }
 
+TAUT_TRUTH(metric_creep, 10, 15,
+           "creep is the speed along a body that moves and turns, of vertices that touch it for a "
+           "whole second",
+           "a prescribed path on a turning box") {
+  Scene s = under_gravity(bare::scene({Vec3(0.1, 0, 0), Vec3(0, 0, 0.2)}, {1, 1}, {}));
+  const Motion motion{.velocity = {0.5, 0.1, 0}, .spin = {0.3, -1, 0.2}, .pivot = {0.2, 0, 0.1}};
+  const auto slides = [&](double speed, double friction, double height) {
+    Scene rough = s;
+    rough.colliders = {{Box{Vec3(0, -0.1, 0), Vec3(1, 0.1, 1)}, motion, friction}};
+    std::vector<State> states(129, s.start);
+    for (std::size_t n = 0; n < states.size(); ++n) {
+      const double t = static_cast<double>(n) * s.dt;
+      for (Vec3& x : states[n].x) x = motion.moved(x + Vec3(0, height * t, 0), t);
+      states[n].x[0] = motion.moved(s.start.x[0] + Vec3(0, height, speed) * t, t);
+    }
+    return measured("contact.creep", rough, states);
+  };
+  findings.equal("metric:contact_creep", "contact.creep of a vertex at 3 mm/s on a turning box",
+                 "m/s", slides(3e-3, 0.2, 0), 3e-3, 1e-13);
+  findings.below("metric:contact_creep", "of vertices that it carries along", "m/s",
+                 slides(0, 0.2, 0), 1e-13);
+  findings.holds("metric:contact_creep", "no value without friction",
+                 std::isnan(slides(3e-3, 0, 0)));
+  findings.holds("metric:contact_creep", "no value of vertices that leave the box at 0.1 m/s",
+                 std::isnan(slides(3e-3, 0.2, 0.1)));
+}
+
 }  // namespace taut

@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <numbers>
 
+#include "core/model/body_frames.hpp"
 #include "experiments/case/run_case.hpp"
 #include "tests/metrics/measured.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace taut::contact_metrics_test {
 namespace {
@@ -288,6 +292,120 @@ TEST(Slip, OfAnyMotionIsTheDifferenceFromTheBlock) {
   EXPECT_NEAR(v.at("slip.error"), mean, 1e-9);
   EXPECT_NEAR(v.at("slip.error.peak"), peak, 1e-9);
   EXPECT_NEAR(v.at("slip.distance"), apart.norm(), 1e-9);
+}
+
+/// contact.creep alone of the motion x(step); infinite: the scene has no such value.
+template <class Motion>
+double creep_of(const Scene& scene, const Motion& motion) {
+  const auto metric = find_value("contact.creep").first->make(scene);
+  if (!metric) return Summary::kInfinity;
+  for (int step = 0; step <= scene.steps; ++step) {
+    const State state = motion(step);
+    metric->observe({step, step * scene.dt, state});
+  }
+  return metric->finish()[0];
+}
+
+/// Of a sheet of 3 x 3 whose vertices lie on the body and move along with it, beside which vertex i
+/// goes by `slips(i, step)`.
+template <class Slips>
+double creep(const Collider& body, const std::vector<Vec3>& on_it, const Slips& slips) {
+  Scene scene = sheet(3);
+  scene.colliders = {body};
+  scene.start.x = on_it;
+  return creep_of(scene, [&](int step) {
+    State state = scene.start;
+    for (std::size_t i = 0; i < on_it.size(); ++i)
+      state.x[i] = body.motion.moved(on_it[i] + slips(i, step), step * scene.dt);
+    return state;
+  });
+}
+
+std::vector<Vec3> nine(const std::function<Vec3(double, double)>& place) {
+  std::vector<Vec3> all;
+  for (int i = 0; i < 9; ++i) all.push_back(place(0.1 * (i % 3) - 0.1, 0.1 * (i / 3) - 0.1));
+  return all;
+}
+
+TEST(ContactCreep, IsTheSpeedAlongABodyThatMovesAndTurns) {
+  const Motion motion{.velocity = {0.3, 0.7, -0.2},
+                      .spin = {0.4, -0.9, 0.6},
+                      .pivot = {0.1, 0.2, -0.3},
+                      .path = {{0, {0, 0, 0}}, {2.3, {1, 0, 0}}, {2.6, {1, -2, 0}}}};
+  const std::vector<Vec3> level = nine([](double u, double w) { return Vec3(u, 0, w); });
+  const std::vector<Vec3> round =
+      nine([](double u, double w) { return Vec3(0.5 * Vec3(u, 1, w).normalized()); });
+  const Collider box{Box{{0, -0.2, 0}, {1, 0.2, 1}}, motion, 0.3},
+      ball{Ball{Vec3::Zero(), 0.5}, motion, 0.3};
+  const auto holds = [](std::size_t, int) { return Vec3(0, 0, 0); };
+  EXPECT_NEAR(creep(box, level, holds), 0, 1e-12);
+  EXPECT_NEAR(creep(ball, round, holds), 0, 1e-12);
+  const auto one_slides = [](std::size_t i, int step) {
+    return i == 4 ? Vec3(-0.03 * step / 64, 0, 0.04 * step / 64) : Vec3(0.01 * step / 64, 0, 0);
+  };
+  EXPECT_NEAR(creep(box, level, one_slides), 0.05, 1e-12);
+  EXPECT_NEAR(creep({Plane{}, {.velocity = {0, 0.2, 0.3}}, 0.3}, level, one_slides), 0.05, 1e-12);
+  EXPECT_EQ(creep({Box{{0, -0.2, 0}, {1, 0.2, 1}}, motion, 0}, level, one_slides),
+            Summary::kInfinity)
+      << "no value without friction";
+  const auto turns = [&](std::size_t i, int step) {  // about y
+    return Vec3(Eigen::AngleAxisd(1e-4 * step / 64, Vec3::UnitY()) * round[i] - round[i]);
+  };
+  EXPECT_NEAR(creep(ball, round, turns), 1e-4 * 0.5 * std::sqrt(0.02 / 1.02), 1e-10);
+}
+
+TEST(ContactCreep, IsNoTremblingAndNeedsTouchThroughoutTheLastSecond) {
+  const Collider plane{Plane{}, {}, 0.3};
+  const std::vector<Vec3> level = nine([](double u, double w) { return Vec3(u, 0, w); });
+  const double hover = 9.81 / 64 / 64;
+  const auto trembles = [&](std::size_t, int step) {
+    return step % 2 ? Vec3(0.002, 1.9 * hover, 0) : Vec3(0, -0.001, 0);
+  };
+  EXPECT_NEAR(creep(plane, level, trembles), 0, 1e-12);
+  const auto sinks = [&](std::size_t, int step) { return Vec3(0, -0.01 * step / 64, 0); };
+  EXPECT_NEAR(creep(plane, level, sinks), 0, 1e-12);
+  for (const int off : {127, 128, 160, 192}) {  // step at which a vertex that slides lifts off
+    const auto lifts = [&](std::size_t i, int step) {
+      const double up = i == 2 && step == off ? 2.5 * hover : 0;
+      return Vec3((i == 2 ? 0.4 : 0.1) * step / 64, up, 0);
+    };
+    EXPECT_NEAR(creep(plane, level, lifts), off == 127 ? 0.4 : 0.1, 1e-12) << off;
+  }
+  const auto all_lift = [&](std::size_t, int step) { return Vec3(0, step == 190 ? 0.1 : 0, 0); };
+  EXPECT_TRUE(std::isnan(creep(plane, level, all_lift)));
+}
+
+TEST(ContactCreep, FollowsTheBodyThatHoldsAVertexAndSurfacesThatDeform) {
+  Scene scene = sheet(3);
+  scene.start.x = nine([](double u, double w) { return Vec3(u, 0, w); });
+  const Collider belt{Plane{}, {.velocity = {0.5, 0, 0}}, 0.1},
+      lid{Plane{.normal = {0, -1, 0}}, {}, 0.9}, ceiling{Plane{.normal = {0, -1, 0}}, {}, 0};
+  const auto at = [&](std::vector<Collider> colliders, double speed) {
+    scene.colliders = std::move(colliders);
+    return creep_of(scene, [&](int step) {
+      State state = scene.start;
+      for (Vec3& x : state.x) x.x() += speed * step * scene.dt;
+      return state;
+    });
+  };
+  EXPECT_NEAR(at({belt, lid}, 0), 0, 1e-12);
+  EXPECT_NEAR(at({belt, lid}, 0.5), 0, 1e-12);
+  EXPECT_NEAR(at({belt, lid}, 0.4), 0.1, 1e-12);
+  EXPECT_NEAR(at({belt, ceiling}, 0), 0.5, 1e-12) << "a smooth body holds nothing";
+  scene.steps = 64;
+  const Triangles block = box_of_triangles({1, 0.2, 1});
+  auto frames = std::make_shared<BodyFrames>();
+  frames->fps = 1 / scene.dt;
+  for (int k = 0; k <= scene.steps; ++k) {
+    frames->places.push_back(block.vertices);
+    for (Vec3& x : frames->places.back()) x.x() *= 1 + 0.3 * k * scene.dt;
+  }
+  const Collider deforms{
+      .shape = MeshBody{block.mesh(), {0, -0.2, 0}}, .friction = 0.5, .frames = std::move(frames)};
+  // those at x = -0.1 and 0.1 m stay behind a top that has grown to 1.3 times its width
+  EXPECT_NEAR(at({deforms}, 0), 0.1 * 0.3, 1e-12);
+  scene.pins = {0, 2, 3, 5, 6, 8};
+  EXPECT_NEAR(at({deforms}, 0), 0, 1e-9) << "those in the middle are on its axis";
 }
 
 TEST(Tunnelling, CountsPassagesWithinOneStepAndForgetsReturns) {

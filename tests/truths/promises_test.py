@@ -28,7 +28,8 @@ ZERO = ("strain of 1 % after ten passes", "speed two steps after the impact", "h
         "way in 1 s of a chain of springs that starts at rest, over its sag", "height over its place at rest, from 0.05 s after the impact on",
         "way at mu = 1.05 tan(30 degrees)", "way at mu = 1.05 tan(30 degrees), above a smooth plane", "share that passes a box of 0.4 ways",
         "distance of a run that goes on from its state after 0.25 s", "the same of runs with a moving pin, after 0.25 s",
-        "height in a grip at rest after 0.25 s, mu = 0.5", "height in a grip that rises at 0.1 m/s after 0.25 s, mu = 0.5")
+        "height in a grip at rest after 0.25 s, mu = 0.5", "height in a grip that rises at 0.1 m/s after 0.25 s, mu = 0.5",
+        "creep on a slope of 20 degrees, mu = 0.6", "creep on a slope of 30 degrees, mu = 1.05 tan(30 degrees)")
 
 
 def verify():
