@@ -375,6 +375,7 @@ class Planted {
     if (has("friction-halved")) mu /= 2;
     if (has("friction-doubled")) mu *= 2;
     if (has("friction-sticks")) mu = 1e9;
+    if (has("friction-of-upper-sides-alone") && dot(n, gravity_) > 0) mu = 0;
     V carried = body.motion.moved(body.motion.back(before_[i], t), t + h) - before_[i];
     if (has("friction-against-the-world")) carried = {};
     V slip = x_[i] - before_[i] - carried;

@@ -93,6 +93,7 @@ inline constexpr std::array kPlantedErrors = std::to_array<PlantedError>({
     {"by-chance", "determinism"},
     {"velocity-kept-from-before", "determinism"},
     {"own-clock", "determinism"},
+    {"friction-of-upper-sides-alone", "S-wrap"},
 });
 
 }  // namespace taut
