@@ -219,6 +219,9 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = bullet_ref::unsupported(scene, params);
   if (!stiffness(scene, params))
     reasons.push_back("links of different stiffness: btDeformableMassSpringForce has one for all");
+  if (scene.link_damping > 0)
+    reasons.push_back(
+        "damping of links in proportion to their stiffness: spring-damping is a number of N s/m");
   if (scene.self_collision)
     reasons.push_back(
         "self-collision: Bullet shuffles its contacts by a generator that the whole process "

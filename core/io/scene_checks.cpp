@@ -193,6 +193,11 @@ void check_whole(Section& root, const Scene& scene) {
                        "'warp' in [bending] is missing: where warp and weft differ, a mesh needs "
                        "the direction of its warp");
   if (scene.membrane) judge_membrane(root, scene);
+  if (scene.link_damping > 0 && elastic_links(scene).empty())
+    diagnostics.report(root.table("links")->find("damping")->place,
+                       "'damping' in [links] is in proportion to the stiffness of links, and these "
+                       "are rigid: give them one in [links] stiffness, or take 'damping' in "
+                       "[forces], which brakes a fall, too");
   if (scene.wind && scene.mesh.triangles.empty())
     diagnostics.report(root.place("wind"), "[wind] acts on faces, and this cloth has none");
 }

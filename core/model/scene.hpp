@@ -88,6 +88,7 @@ struct Scene {
   std::vector<Link> links;             ///< Gauss-Seidel order, families contiguous
   /// Stiffness of the links of each family [N/m], > 0; infinite: rigid.
   std::array<double, kFamilies.size()> stiffness = kRigid;
+  double link_damping = 0;  ///< s, of links that are not rigid (core/model/link_damping.hpp)
   std::optional<Bending> bending;
   std::optional<Membrane> membrane;
   std::vector<Collider> colliders;

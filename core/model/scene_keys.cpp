@@ -126,6 +126,13 @@ const SceneKey kKeys[] = {
     other("links.stiffness", "table", "N/m", Range::positive(1e12), "{}", "{ structural = 5000 }",
           "by family; one that is not named is rigid. `jakobsen` and `bullet`, whose links are "
           "rigid, refuse such a scene unless told otherwise: `--set 'links.stiffness={}'`"),
+    number(kLinkDamping, &Scene::link_damping, "s", Range::non_negative(1e3), "1e-3",
+           "b, damping in proportion to stiffness: a link of stiffness K resists a change of its "
+           "length n by b K dn/dt. A fall keeps its speed, and a mode w that stretches links has "
+           "the damping ratio b w/2; rigid links have none")
+        .limited("above 0 only with a `stiffness`")
+        .came_later(6)
+        .left_out_as("damping of links"),
 
     other("bending.stiffness", "number or table", "N m", Range{1e-12, 1e6}, "needed",
           "{ warp = 1.2e-5, weft = 8e-6 }",

@@ -7,6 +7,7 @@
 
 #include "core/model/collider.hpp"
 #include "core/model/index.hpp"
+#include "core/model/link_damping.hpp"
 #include "core/model/wind.hpp"
 #include "core/reference/multiplied_step.hpp"
 #include "core/reference/rigid_relations.hpp"
@@ -38,13 +39,18 @@ ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, cons
       mass_(scene.mesh.mass),
       y_(from.x) {
   const double h = scene.dt, keep = std::exp(-scene.damping * h);
+  const LinkDamping damping(scene, h);
   for (double& m : inertia_) m /= h * h;
   for (const int pin : scene.pins) inertia_[to_index(pin)] = 0;
   for (const Link& l : scene.links) {
     const double stiffness = k[static_cast<std::size_t>(l.family)];
     const std::size_t a = to_index(l.a), b = to_index(l.b);
     if (stiffness == 0 || (inertia_[a] == 0 && inertia_[b] == 0)) continue;
-    links_.push_back({a, b, l.rest, stiffness});
+    if (damping.on() && !std::isinf(stiffness))
+      links_.push_back({a, b, damping.rest(l.rest, (from.x[b] - from.x[a]).norm()),
+                        damping.stiffer() * stiffness});
+    else
+      links_.push_back({a, b, l.rest, stiffness});
     rigid_ = rigid_ || std::isinf(stiffness);
   }
   Points acceleration(y_.size(), scene.gravity);

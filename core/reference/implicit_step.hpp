@@ -15,7 +15,8 @@ namespace taut::reference {
 ///     y = x_t + h exp(-damping h) v_t + h^2 (g + wind)
 ///     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2 + membrane
 ///
-/// over the vertices that move, with C = |x_b - x_a| - rest. With rigid links: the positions with
+/// over the vertices that move, with C = |x_b - x_a| - rest. Damped links have the K and the rest
+/// lengths of this step (core/model/link_damping.hpp). With rigid links: the positions with
 /// C = 0 that are nearest to y in the norm of G's first sum. Vertices stay at least the scene's
 /// thickness away from the colliders at the end of the step. Contact pushes along the normal where
 /// there is no gap. Coulomb friction acts across the normal with at most mu times that push, and

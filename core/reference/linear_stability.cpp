@@ -143,17 +143,20 @@ std::optional<LinearStability> stability(const Scene& scene, const LinearSprings
   const std::vector<double> w = inverse_masses(scene);
   const double h = scene.dt / model.substeps, drag = model.drag;
   const double q = std::exp(-scene.damping * h);
-  const Elastic all{bars(scene, w, model.stiffness), make_bending(scene), membrane_blocks(scene)};
+  // Lagged damping of links takes 2 b/h times their stiffness from the limit 2 (1 + q).
+  Stiffness stiffness = model.stiffness;
+  for (double& k : stiffness) k *= 1 + 2 * scene.link_damping / h;
+  const Elastic all{bars(scene, w, stiffness), make_bending(scene), membrane_blocks(scene)};
   if (all.springs.empty() && all.bending.empty() && all.membrane.empty()) return {};
   if (model.explicit_euler) {
-    if (scene.damping > 0) return {};
+    if (scene.damping > 0 || scene.link_damping > 0) return {};
     if (drag > 0) return dragged_explicit_euler(w, all, h, drag);
     const double growth = std::sqrt(1 + spring_eigenvalue(all, w, h * h, 0));
     return LinearStability{growth, growth, "explicit Euler grows by sqrt(1 + w^2 dt^2) at any dt"};
   }
   const double damped = model.central_drag ? -(1 - q) * h * drag : 2 * h * drag;
   const double margin = spring_eigenvalue(all, w, h * h, damped) / (2 * (1 + q));
-  const bool shrunk = drag > 0 && !model.central_drag;
+  const bool shrunk = (drag > 0 && !model.central_drag) || scene.link_damping > 0;
   return LinearStability{
       margin, 0,
       shrunk ? "substep < (2/w)(sqrt(1 + zeta^2) - zeta), w the fastest mode of the springs"

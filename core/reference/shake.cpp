@@ -216,6 +216,7 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
   refuse(scene.self_collision.has_value(), "self-collision: impacts have no unique limit");
   refuse(std::ranges::any_of(scene.links, is_seam), "a seam: its length is 0");
   refuse(!scene.releases.empty(), "its pins let go");
+  refuse(scene.link_damping > 0, "damping of links");
   refuse(std::any_of(
              scene.links.begin(), scene.links.end(),
              [&](const Link& l) { return l.family != Family::structural && is_rigid(scene, l); }),

@@ -8,6 +8,7 @@
 #include "core/model/bending.hpp"
 #include "core/model/collider.hpp"
 #include "core/model/index.hpp"
+#include "core/model/link_damping.hpp"
 #include "core/model/membrane.hpp"
 #include "core/model/wind.hpp"
 #include "core/solver/panel_factor.hpp"
@@ -61,7 +62,11 @@ class StepError::Work {
     for (const Link& l : scene.links)
       if (const double k = stiffness[static_cast<std::size_t>(l.family)];
           k > 0 && (column_[to_index(l.a)] >= 0 || column_[to_index(l.b)] >= 0))
-        links_.push_back({.a = to_index(l.a), .b = to_index(l.b), .rest = l.rest, .stiffness = k});
+        links_.push_back({.a = to_index(l.a),
+                          .b = to_index(l.b),
+                          .undamped = {l.rest, k},
+                          .rest = l.rest,
+                          .stiffness = k});
     analyse();
   }
 
@@ -108,7 +113,10 @@ class StepError::Work {
 
   struct Member {
     std::size_t a = 0, b = 0;
-    double rest = 0, stiffness = 0;  ///< m, N/m; infinite: rigid
+    struct {
+      double rest = 0, stiffness = 0;
+    } undamped;
+    double rest = 0, stiffness = 0;  ///< m, N/m, in this step; infinite: rigid
     double tension = 0;              ///< N, from the last linear system
     double excess = 0, length = 0;   ///< m, at x
     Vec3 u = Vec3::Zero();           ///< unit vector at x
@@ -190,8 +198,13 @@ class StepError::Work {
     rigid_ = kRigidHardness * heaviest / (h * h);
     hardness_.assign(moving_.size(), 0);
     for (std::size_t k = 0; k < moving_.size(); ++k) hardness_[k] = mass(moving_[k]) / (h * h);
+    const LinkDamping damping(scene_, h);
     for (Member& l : links_) {
       l.tension = 0;
+      if (damping.on() && !is_rigid(l)) {
+        l.rest = damping.rest(l.undamped.rest, (from.x[l.b] - from.x[l.a]).norm());
+        l.stiffness = damping.stiffer() * l.undamped.stiffness;
+      }
       for (const std::size_t v : {l.a, l.b})
         if (column_[v] >= 0) hardness_[to_index(column_[v])] += stiffness(l);
     }

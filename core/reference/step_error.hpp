@@ -14,6 +14,7 @@ namespace taut::reference {
 ///     y = x_t + h exp(-damping h) v_t + h^2 (g + wind),
 ///     G(x) = sum m/(2 h^2) |x - y|^2 + sum K/2 C^2 + bending + membrane
 ///
+/// with the K and rest lengths that damped links have in that step (core/model/link_damping.hpp).
 /// It takes two steps, since the second one shows whether to believe the first, and up to four
 /// where the second is not small; steps that shrink by a factor are summed to their limit. A link's
 /// tension in the Hessian is not that of the answer, which is K times its error, but the one that

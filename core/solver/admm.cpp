@@ -8,9 +8,11 @@
 // The matrix is therefore that of Projective Dynamics (pd.cpp) with k in place of K. k is a
 // parameter of the method alone: it decides how fast the iterations converge, not where to.
 // Families that the scene leaves rigid stay rigid beside springs.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/solver/damped_links.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/kept_slots.hpp"
 #include "core/solver/loop.hpp"
@@ -53,7 +55,8 @@ class AdmmPass final : public Pass<Real> {
         slots_(system_.template make_slots<MultiplierSlot<Real>>(
             [&](MultiplierSlot<Real>& slot, std::size_t lane, std::size_t link) {
               slot.share[lane] = static_cast<Real>(1 / (1 + ratios_[link]));
-            })) {
+            })),
+        damped_(link_damping(s), slots_) {
     forget();
   }
 
@@ -84,6 +87,7 @@ class AdmmPass final : public Pass<Real> {
   TouchingPieces* touching_pieces() override { return system_.touching_pieces(); }
 
   void begin(Particles<Real>& p, double t, double h) override {
+    damped_.begin(system_.groups(), slots_, p.previous);
     system_.begin(p, t, h);
     if (!keep_) forget();
   }
@@ -95,8 +99,8 @@ class AdmmPass final : public Pass<Real> {
   }
 
   std::vector<PassCost> cost() const override {
-    return system_.cost("links",
-                        slots_.size() * sizeof slots_[0] + ratios_.size() * sizeof(double));
+    return system_.cost("links", slots_.size() * sizeof slots_[0] + damped_.bytes() +
+                                     ratios_.size() * sizeof(double));
   }
 
  private:
@@ -109,9 +113,10 @@ class AdmmPass final : public Pass<Real> {
   static std::vector<Spring> weights(const loop::Setup& s, std::vector<double>& ratios) {
     constexpr double kHard = std::numeric_limits<double>::infinity();
     std::vector<Spring> springs =
-        make_springs(s.scene, s.w,
-                     is_rigid(s.scene, s.params) ? std::array{kHard, kHard, kHard}
-                                                 : stiffnesses(s.scene, s.params));
+        stiffened(make_springs(s.scene, s.w,
+                               is_rigid(s.scene, s.params) ? std::array{kHard, kHard, kHard}
+                                                           : stiffnesses(s.scene, s.params)),
+                  link_damping(s));
     for (Spring& spring : springs) {
       const bool rigid = std::isinf(spring.stiffness);
       ratios.push_back(rigid ? 0 : s.params.real("penalty-ratio"));
@@ -126,6 +131,7 @@ class AdmmPass final : public Pass<Real> {
   std::vector<double> ratios_;
   GlobalSystem<Real> system_;
   std::vector<MultiplierSlot<Real>> slots_;
+  DampedSlots<Real> damped_;
 };
 
 template <class Real>
@@ -143,6 +149,11 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
   loop::refuse_membrane(scene, "its multipliers are of links; take pd, implicit, vbd or xpbd",
                         reasons);
+  const Stiffness k = stiffness_of(scene, params);
+  if (std::ranges::any_of(scene.links, [&](const Link& l) {
+        return std::isinf(k[static_cast<std::size_t>(l.family)]);
+      }))
+    refuse_link_damping(scene, "it has none where links are rigid", reasons);
   return reasons;
 }
 

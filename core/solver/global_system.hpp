@@ -48,6 +48,8 @@ class GlobalSystem {
   ~GlobalSystem();
 
   const std::vector<Spring>& springs() const { return springs_; }
+  /// Rest lengths may change from substep to substep.
+  std::vector<Spring>& springs() { return springs_; }
   const std::vector<BendingElement>& bending() const { return bending_; }
   const MembraneModel& membrane() const { return membrane_; }
   const VertexGroups& groups() const { return groups_; }

@@ -9,10 +9,11 @@
 //
 // where c is clamped to at least 0, which keeps H positive definite (Choi, Ko: Stable but
 // Responsive Cloth, SIGGRAPH 2002); that of the membrane (core/model/membrane.hpp) is clamped
-// alike. Once full steps no longer reduce the gradient fast, the unclamped Hessian is used if it is
-// positive definite. The step is halved until G falls (Armijo). One iteration from x_t without line
-// search is the linearised step of Baraff, Witkin: Large Steps in Cloth Simulation (SIGGRAPH 1998).
-// start=inertia starts at y instead, unless something touches.
+// alike. Damped links are other springs in each step (core/model/link_damping.hpp). Once full steps
+// no longer reduce the gradient fast, the unclamped Hessian is used if it is positive definite. The
+// step is halved until G falls (Armijo). One iteration from x_t without line search is the
+// linearised step of Baraff, Witkin: Large Steps in Cloth Simulation (SIGGRAPH 1998). start=inertia
+// starts at y instead, unless something touches.
 //
 // With multipliers=keep (core/solver/newton/kept_tensions.hpp), each link's tension is kept from
 // step to step as its resistance to sideways motion, and iterations start at y. A step is
@@ -111,6 +112,7 @@ class NewtonPass final : public Pass<double> {
     step_.y = p.x;
     integrator_.predict(p, step_.y, step);
     const double h = integrator_.own_step(step);
+    step_.damped.begin(step_.springs, p.previous);
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
     step_.contacts.begin(t, h);
@@ -169,7 +171,7 @@ class NewtonPass final : public Pass<double> {
 
   std::vector<PassCost> cost() const override {
     const std::size_t bytes = step_.y.bytes() + step_.springs.size() * sizeof(Spring) +
-                              step_.bending.size() * sizeof(BendingElement);
+                              step_.damped.bytes() + step_.bending.size() * sizeof(BendingElement);
     std::vector<PassCost> costs{
         {.pass = "spring Hessians", .items = step_.springs.size(), .bytes = bytes}};
     if (!step_.membrane.empty())
@@ -341,7 +343,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
     reasons.push_back(own + " knows no contact: it would act at another time than the links");
   if (scene.wind) reasons.push_back(own + " knows no wind");
-  if (scene.damping > 0) reasons.push_back(own + " knows no damping but its own");
+  if (scene.damping > 0 || scene.link_damping > 0)
+    reasons.push_back(own + " knows no damping but its own");
   return reasons;
 }
 

@@ -433,6 +433,9 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
   if (scene.damping > 0)
     lines.emplace_back("damping",
                        "velocity x " + shortest(std::exp(-scene.damping * h)) + " per substep");
+  if (scene.link_damping > 0)
+    lines.emplace_back("damping of links",
+                       shortest(scene.link_damping) + " s times their stiffness");
   if (!scene.colliders.empty()) {
     lines.emplace_back("contact response", std::string(params.choice("contact")));
     const bool every_sweep = params.is("contact", "continuous") || params.is("contact", "discrete");

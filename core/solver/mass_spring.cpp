@@ -7,12 +7,16 @@
 //
 // The last two give the same motion. Without drag they are stable while dt < 2/w, where w^2 is the
 // largest eigenvalue of K/M; explicit Euler is never stable. Drag at the lagged velocity shrinks
-// that limit to (2/w)(sqrt(1 + zeta^2) - zeta); Verlet's `drag-at=central` restores it.
+// that limit to (2/w)(sqrt(1 + zeta^2) - zeta); Verlet's `drag-at=central` restores it. Damping of
+// links sees the lagged velocity, too, and shrinks it likewise, with zeta = b w/2: K (n - r) +
+// b K (n - n')/h for the length n' of a step ago is the force of another spring
+// (core/model/link_damping.hpp).
 #include <cmath>
 
 #include "core/model/bending.hpp"
 #include "core/model/membrane.hpp"
 #include "core/model/text.hpp"
+#include "core/solver/damped_links.hpp"
 #include "core/solver/layout/order.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
@@ -59,7 +63,8 @@ class Springs final : public Pass<Real> {
         moved_(central_ || explicit_ ? setup.w.size() : 0),
         pool_(setup.pool) {
     const auto k = stiffnesses(setup.scene, setup.params);
-    const std::vector<Spring> springs = make_springs(setup.scene, setup.w, k);
+    const LinkDamping damping = link_damping(setup);
+    const std::vector<Spring> springs = stiffened(make_springs(setup.scene, setup.w, k), damping);
     for (const Link& l : setup.scene.links)
       if (const auto family = static_cast<std::size_t>(l.family); k[family] > 0)
         if (moves(l, setup.w)) ++count_[family];
@@ -69,6 +74,7 @@ class Springs final : public Pass<Real> {
       if (setup.w[i] > 0) moving.push_back(static_cast<int>(i));
     groups_ = VertexGroups(ends, moving, setup.w);
     slots_ = slots_of_springs<SpringSlot<Real>>(groups_, ends, springs, kNothingElse);
+    damped_ = DampedSlots<Real>(damping, slots_);
     w_.assign(groups_.size() * kLanes, Real(0));
     for (std::size_t i = 0; i < moving.size(); ++i)
       w_[i] = static_cast<Real>(setup.w[to_index(moving[i])]);
@@ -78,6 +84,7 @@ class Springs final : public Pass<Real> {
 
   /// Adds F/m to the accelerations, with F = -k x of every spring and F = -c v of every particle.
   void accelerate(Particles<Real>& p, double, double h) override {
+    damped_.begin(groups_, slots_, p.previous);
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = p.x[i] - p.previous[i];
     const AccelerationSweep<Real> sweep{.groups = groups_.data(),
                                         .x = p.x.data(),
@@ -136,7 +143,7 @@ class Springs final : public Pass<Real> {
                        .items = membrane_.elements.size(),
                        .bytes = membrane_.bytes()});
     if (!costs.empty())
-      costs.front().bytes += slots_.size() * sizeof slots_[0] + groups_.bytes() +
+      costs.front().bytes += slots_.size() * sizeof slots_[0] + groups_.bytes() + damped_.bytes() +
                              w_.size() * sizeof w_[0] + moved_.size() * sizeof moved_[0];
     return costs;
   }
@@ -151,6 +158,7 @@ class Springs final : public Pass<Real> {
   std::array<std::size_t, kFamilies.size()> count_{};  ///< number of springs by family
   VertexGroups groups_;
   std::vector<SpringSlot<Real>> slots_;
+  DampedSlots<Real> damped_;
   std::vector<Real> w_;   ///< [groups][kLanes] 1/kg
   std::vector<V> moved_;  ///< m, h v before the step; empty if not needed
   ThreadPool& pool_;

@@ -8,7 +8,7 @@
 // A triangle of a membrane with law = "arap" gets the rotation that is nearest to its F, with the
 // weight A Y. The unknown is the displacement from the last x. The right-hand side is then minus
 // the gradient of implicit Euler's energy there, in which K (d - q) is the force of a spring: no q
-// is stored.
+// is stored. Damped links are other springs in each step (core/model/link_damping.hpp).
 //
 // The fixed point is implicit Euler's step (implicit.cpp). Motion across stretched links of strain
 // e contracts by s lambda (1 - e)/(1 + s lambda) per iteration, with s = h^2 K/m. This tends to 1:
@@ -27,6 +27,7 @@
 #include <utility>
 
 #include "core/solver/chebyshev.hpp"
+#include "core/solver/damped_links.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/loop.hpp"
 
@@ -201,8 +202,11 @@ class ProjectivePass final : public Pass<Real> {
  public:
   explicit ProjectivePass(const loop::Setup& s)
       : forces_(kernels<Real>(s.simd).spring_forces),
-        system_(s, make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
+        system_(s, stiffened(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)),
+                             link_damping(s))),
         slots_(system_.template make_slots<SpringSlot<Real>>(kNothingElse)),
+        damped_(link_damping(s), system_.springs()),
+        damped_slots_(link_damping(s), slots_),
         anderson_(to_index(s.params.integer("anderson")), s.w.size()),
         descent_(s.params),
         diagonal_(descent_.on() ? 4 * system_.rows() : 0) {
@@ -235,6 +239,8 @@ class ProjectivePass final : public Pass<Real> {
   TouchingPieces* touching_pieces() override { return system_.touching_pieces(); }
 
   void begin(Particles<Real>& p, double t, double h) override {
+    damped_.begin(system_.springs(), p.previous);
+    damped_slots_.begin(system_.groups(), slots_, p.previous);
     anderson_.begin();
     if (descent_.on()) {
       descent_.begin();
@@ -261,7 +267,8 @@ class ProjectivePass final : public Pass<Real> {
   }
 
   std::vector<PassCost> cost() const override {
-    return system_.cost("forces of links", slots_.size() * sizeof slots_[0] + anderson_.bytes() +
+    return system_.cost("forces of links", slots_.size() * sizeof slots_[0] + damped_.bytes() +
+                                               damped_slots_.bytes() + anderson_.bytes() +
                                                descent_.bytes(system_.rows()));
   }
 
@@ -358,6 +365,8 @@ class ProjectivePass final : public Pass<Real> {
   void (*forces_)(const ForceSweep<Real>&, SpringSlot<Real>*, std::size_t, std::size_t);
   GlobalSystem<Real> system_;
   std::vector<SpringSlot<Real>> slots_;
+  DampedSprings damped_;
+  DampedSlots<Real> damped_slots_;
   Anderson anderson_;
   Descent descent_;
   Vector diagonal_;                ///< [rows][4] N/m, diagonal of the matrix, for method=ncg

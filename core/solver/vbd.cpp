@@ -5,8 +5,10 @@
 //     f = -m/h^2 (x - y) + sum K C u              u from the vertex towards the link's other end
 //     H = m/h^2 I + sum K [ u u^T + max(0, 1 - r/n) (I - u u^T) ],      x += H^-1 f
 //
-// With damping k_d, H gains k_d/h times the springs' part, and f loses that times x - x_t.
+// With damping k_d, H gains k_d/h times the springs' part, and f loses that times x - x_t. A
+// scene's own damping of links makes them other springs in each step (core/model/link_damping.hpp).
 #include "core/solver/chebyshev.hpp"
+#include "core/solver/damped_links.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/springs.hpp"
 #include "core/solver/vertex_blocks.hpp"
@@ -28,8 +30,8 @@ constexpr ParamSpec kOwn[] = {
     kAdaptiveStart,
     kVertexPrecision,
     ParamSpec::real("damping", "s", "0", 0, 1e3,
-                    "k_d, a factor of the springs' Hessian; as published it slows the motion of "
-                    "each vertex, rigid motion, too"),
+                    "k_d, a factor of the springs' Hessian; as published it brakes the motion of "
+                    "each vertex: a fall, too, which `links.damping` of a scene does not"),
     kChebyshev,
 };
 constexpr auto kParams = loop::with_common(kOwn);
@@ -38,8 +40,10 @@ template <class Real>
 class DescentPass final : public Pass<Real> {
  public:
   explicit DescentPass(const loop::Setup& s)
-      : springs_(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
+      : springs_(
+            stiffened(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), link_damping(s))),
         blocks_(s, springs_, kernels<Real>(s.simd).sweep_springs),
+        damped_(link_damping(s), blocks_.slots()),
         damping_(s.params.real("damping")) {}
 
   const Layout& layout() const { return blocks_.groups().layout(); }
@@ -49,7 +53,10 @@ class DescentPass final : public Pass<Real> {
   void take_over(const Pass<Real>& before) override {
     blocks_.take_over(static_cast<const DescentPass&>(before).blocks_);
   }
-  void begin(Particles<Real>& p, double t, double h) override { blocks_.begin(p, t, h); }
+  void begin(Particles<Real>& p, double t, double h) override {
+    damped_.begin(blocks_.groups(), blocks_.slots(), p.previous);
+    blocks_.begin(p, t, h);
+  }
   void apply(Particles<Real>& p, double, double h) override { blocks_.sweep(p, damping_, h); }
 
   std::vector<PassCost> cost() const override {
@@ -57,7 +64,7 @@ class DescentPass final : public Pass<Real> {
         {.pass = "vertices", .items = blocks_.groups().vertices(), .bytes = 0},
         {.pass = "links, each from both ends",
          .items = 2 * springs_.size(),
-         .bytes = blocks_.bytes()}};
+         .bytes = blocks_.bytes() + damped_.bytes()}};
     if (const std::size_t triangles = blocks_.membrane().elements.size(); triangles > 0)
       costs.push_back({.pass = "membrane, each triangle from its corners", .items = 3 * triangles});
     return costs;
@@ -66,6 +73,7 @@ class DescentPass final : public Pass<Real> {
  private:
   std::vector<Spring> springs_;
   VertexBlocks<Real, SpringSlot<Real>> blocks_;
+  DampedSlots<Real> damped_;
   double damping_;  ///< s, k_d
 };
 
@@ -98,6 +106,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   loop::refuse_faces(scene, params, "vbd", reasons);
   if (scene.membrane && params.real("damping") > 0)
     reasons.emplace_back("damping is of links: the membrane has none");
+  if (params.real("damping") > 0)
+    refuse_link_damping(scene, "vbd:damping brakes them, too: take one", reasons);
   return reasons;
 }
 

@@ -9,11 +9,15 @@
 // alpha [m/N] is the inverse of a spring constant. The arithmetic is in compliant_excess
 // (core/solver/simd/distance.hpp), the step in core/solver/loop.cpp. With alpha = 0 every bit
 // equals that of jakobsen:projection=exact. method=global solves all links at once instead
-// (core/solver/xpbd_global.hpp).
+// (core/solver/xpbd_global.hpp). Damped links have another alpha, and another rest length in each
+// substep (core/model/link_damping.hpp): equation 26 with gamma = b/h, and the change of length in
+// place of its linearisation grad C (x - x_t).
 #include <algorithm>
+#include <cmath>
 
 #include "core/model/text.hpp"
 #include "core/solver/constraints/relaxation.hpp"
+#include "core/solver/damped_links.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/xpbd_global.hpp"
 
@@ -66,7 +70,9 @@ loop::Links<Real> make_links(const loop::Setup& setup) {
                                    params.is("primal", "on"));
   const double h = setup.scene.dt / params.integer("substeps");
   Compliances links{.over_h2 = compliances(setup.scene, params)};
-  for (double& compliance : links.over_h2) compliance /= h * h;
+  const LinkDamping damping = link_damping(setup);
+  for (double& compliance : links.over_h2) compliance /= h * h * damping.stiffer();
+  links.damped = damping.share();
   // In a single sweep every multiplier starts at 0, so none is needed.
   links.multipliers = params.is("multipliers", "keep") && params.integer("iterations") > 1 &&
                       std::ranges::any_of(links.over_h2, [](double a) { return a > 0; });
@@ -86,9 +92,15 @@ std::unique_ptr<Solver> make(const Scene& scene, const Params& params) {
 
 std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = loop::unsupported(scene, params);
+  const Stiffness k = stiffness_of(scene, params);
+  if (std::ranges::all_of(k, [](double one) { return std::isinf(one); }))
+    refuse_link_damping(scene, "its links are rigid", reasons);
   const bool primal = params.is("primal", "on");
   if (params.is("method", "sweeps")) {
     if (primal) reasons.emplace_back("primal=on needs method=global");
+    if (params.is("layout", "interleaved"))
+      refuse_link_damping(
+          scene, "layout=interleaved has one rest length for all links of a direction", reasons);
     return reasons;
   }
   if (params.is("multipliers", "reset"))

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/solver/contact/augmented_contacts.hpp"
+#include "core/solver/damped_links.hpp"
 #include "core/solver/global_system.hpp"
 #include "core/solver/panel_factor.hpp"
 #include "core/solver/springs.hpp"
@@ -35,7 +36,8 @@ template <class Real>
 class GlobalLinks final : public Pass<Real> {
  public:
   GlobalLinks(const loop::Setup& s, std::vector<Spring> springs, bool primal)
-      : springs_(std::move(springs)),
+      : springs_(stiffened(std::move(springs), link_damping(s))),
+        damped_(link_damping(s), springs_),
         w_(s.w.begin(), s.w.end()),
         mobility_(w_),
         primal_(primal),
@@ -58,6 +60,7 @@ class GlobalLinks final : public Pass<Real> {
 
   void begin(Particles<Real>& p, double t, double h) override {
     y_ = p.x;
+    damped_.begin(springs_, p.previous);
     for (std::size_t j = 0; j < links_.size(); ++j) {
       const double k = springs_[j].stiffness;
       links_[j].softness = std::isinf(k) ? kSoftnessOfRigid * mean_diagonal_ : 1 / (k * h * h);
@@ -99,7 +102,7 @@ class GlobalLinks final : public Pass<Real> {
     return {{.pass = "links, all at once",
              .items = springs_.size(),
              .bytes = springs_.size() * (sizeof(Spring) + sizeof(Linked) + sizeof(double)) +
-                      y_.bytes() + 2 * w_.size() * sizeof(double)},
+                      damped_.bytes() + y_.bytes() + 2 * w_.size() * sizeof(double)},
             {.pass = "LDLT of the links, entries of its factor",
              .items = factor_.entries(),
              .bytes = factor_.bytes() + beside_.size() * sizeof beside_[0] +
@@ -366,6 +369,7 @@ class GlobalLinks final : public Pass<Real> {
   }
 
   std::vector<Spring> springs_;
+  DampedSprings damped_;
   std::vector<double> w_;         ///< [n] 1/kg
   std::vector<double> mobility_;  ///< [n] 1/kg, in the matrix: V with primal=on, otherwise W
   bool primal_;

@@ -37,9 +37,15 @@ requires std::is_enum_v<Enumeration> Json json_of(Enumeration value, const Scene
   return parts_of(key.choices)[static_cast<std::size_t>(value)];
 }
 
+/// Name of a key in the file. Those of a scene's sections lie side by side there, and two of them
+/// are a `damping`.
+std::string name_in_file(const SceneKey& key) {
+  return (key.section() == "links" ? "link_" : "") + std::string(key.name());
+}
+
 template <class Value>
 void add_key(Json& all, const SceneKey& key, const Value& value, const Value& initial) {
-  if (key.counts(value, initial)) all[std::string(key.name())] = json_of(value, key);
+  if (key.counts(value, initial)) all[name_in_file(key)] = json_of(value, key);
 }
 
 /// Values of the keys that are members of `part`.
@@ -226,6 +232,7 @@ std::vector<Later> later_parts(const Scene& scene) {
   for (const LaterKey& key : later_keys(scene)) {
     const std::string words = key.path == kFramesKey     ? "a body that deforms"
                               : key.path == kMembraneKey ? "a membrane"
+                              : key.path == kLinkDamping ? "damping of links"
                                                          : key.path;
     if (std::ranges::find(all, words, &Later::words) == all.end())
       all.push_back({key.since, words});

@@ -71,6 +71,7 @@ constexpr Effect kEffects[] = {
     {"membrane", [](const Scene& s) { return s.membrane.has_value(); }},
     {"self-collision", [](const Scene& s) { return s.self_collision.has_value(); }},
     {"damping", [](const Scene& s) { return s.damping > 0; }},
+    {"damping of links", [](const Scene& s) { return s.link_damping > 0; }},
     {"elastic links", [](const Scene& s) { return s.stiffness != kRigid; }},
 };
 

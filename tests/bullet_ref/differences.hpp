@@ -125,13 +125,14 @@ inline void compare_wind(SceneComparison& c, const std::optional<Wind>& asked,
 /// Differences between the simulation that `asked` describes and `held`, a sentence each; empty if
 /// they are the same. Numbers agree if they differ by at most `tolerance` relative to the larger of
 /// 1 and their size. Not compared, as Bullet does not store them: the labels, the mesh's grid, the
-/// masses of pinned vertices, and the stiffness of links, of bending and of the membrane.
+/// masses of pinned vertices, and the stiffness of links, of bending and of the membrane,
+/// and the damping of links.
 inline std::vector<std::string> differences(const Scene& asked, const Scene& held,
                                             double tolerance) {
   // Names every member, so that a new one does not compile until it is handled.
-  const auto& [name, summary, mesh, start, pins, pin_motions, releases, links, stiffness, bending,
-               membrane, colliders, wind, self_collision, gravity, damping, thickness, dt, steps] =
-      asked;
+  const auto& [name, summary, mesh, start, pins, pin_motions, releases, links, stiffness,
+               link_damping, bending, membrane, colliders, wind, self_collision, gravity, damping,
+               thickness, dt, steps] = asked;
   SceneComparison c(tolerance);
   compare_mesh(c, mesh, held.mesh, pins);
   c.vectors("start.x", start.x, held.start.x);

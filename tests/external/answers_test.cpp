@@ -99,7 +99,7 @@ TEST(Hello, RefusesWhatNoParameterCanBe) {
   for (const char* name : {"cmd", "timeout", "folder", "build", "a b", "1a", ""})
     EXPECT_NE(refused_param(integer(0, 0, 1), name), "") << name;
   Json other = hello_with("n", integer(0, 0, 1));
-  other["protocol"] = "taut-solver/6";
+  other["protocol"] = "taut-solver/7";
   EXPECT_NE(refusal([&] { read_hello(other); }), "");
 }
 
@@ -239,6 +239,16 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   EXPECT_EQ(file["stiffness"],
             (Json{{"structural", nullptr}, {"shear", 500.0}, {"bend", nullptr}}));
   EXPECT_EQ(beyond(1, scene), std::vector<std::string>{"links of 500 N/m"});
+  EXPECT_FALSE(file.contains("link_damping"));
+  const auto at_rest = file["damping"];
+  scene.link_damping = 0.25;
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/6");
+  EXPECT_EQ(file["link_damping"], 0.25);
+  EXPECT_EQ(file["damping"], at_rest) << "another key of that name";
+  EXPECT_EQ(beyond(5, scene), std::vector<std::string>{"damping of links"});
+  EXPECT_TRUE(beyond(6, scene).empty());
+  scene.link_damping = 0;
   scene.stiffness = kRigid;
   scene.bending = Bending{2, 0.5, Vec3(0, 0.6, 0.8)};
   EXPECT_EQ(beyond(1, scene), std::vector<std::string>{"bending stiffness"});

@@ -235,6 +235,10 @@ TEST(SceneFiles, EachKindOfBadInputIsNamed) {
       {"cloth.weld=1", "belongs to a mesh, not to a grid"},
       {"cloth.lumping=\"aera\"", "did you mean 'area'?"},
       {"cloth.velocity=[inf, 0, 0]", "must be finite"},
+      {"links.damping=-1", "'damping' in [links] must be at least 0"},
+      {"links.damping=inf", "'damping' in [links] must be finite"},
+      {"links.damping=1e-3", "'damping' in [links] is in proportion to the stiffness of links"},
+      {"links={ damping = 1e-3, bend = false, stiffness = { bend = 10 } }", "these are rigid"},
       {"forces.damping=-1", "'damping' in [forces] must be at least 0"},
       {"forces.gravity=[0, 1]", "an array of 3 numbers"},
       {"wind.strength=-1", "'strength' in [wind]"},
@@ -582,6 +586,8 @@ TEST(SceneSchema, EveryDocumentedExampleIsAccepted) {
       if (body) return shipped("mesh-box", settings);
       if (mesh) settings.emplace_back("cloth.start_inside=\"resolve\"");
       if (key == "membrane.stiffness") settings.emplace(settings.begin(), "membrane.shear=350");
+      if (key == "links.damping")
+        settings.emplace(settings.begin(), "links.stiffness={ structural = 1000 }");
       if (key.starts_with("membrane."))
         settings.emplace(settings.begin(), "membrane.stiffness=1000");
       return mesh ? shipped("disc", settings) : parse_scene("bare", kBare, settings);

@@ -74,6 +74,7 @@ Scene scene_of_all() {
 template <class Visit>
 void each_part(Scene& scene, const Visit& visit) {
   visit("forces", scene);
+  visit("links", scene);
   visit("cloth", scene);
   visit("wind", *scene.wind);
   visit("bending", *scene.bending);

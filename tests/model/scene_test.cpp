@@ -245,6 +245,7 @@ TEST(Content, DiffersWithEveryMemberButTheLabels) {
       [](Scene& s) { s.self_collision.reset(); },
       [](Scene& s) { s.self_collision->radius = 1; },
       [](Scene& s) { s.stiffness[0] = 1; },
+      [](Scene& s) { s.link_damping = 1; },
       [](Scene& s) { s.bending.reset(); },
       [](Scene& s) { s.bending->warp = 1; },
       [](Scene& s) { s.bending->weft = 2; },

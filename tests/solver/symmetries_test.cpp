@@ -132,6 +132,7 @@ Scene changed(Scene s, const Change& c) {
   if (s.self_collision) s.self_collision->radius *= c.metre;
   vector(s.gravity, factor(c, "m/s^2"));
   s.damping /= c.second;
+  s.link_damping *= c.second;
   s.thickness *= c.metre;
   s.dt *= c.second;
   return s;

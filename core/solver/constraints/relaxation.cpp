@@ -38,9 +38,15 @@ std::vector<PassCost> family_costs(std::span<const Link> links, std::span<const 
 template <class Real, Projection kind>
 class GaussSeidelPass final : public Pass<Real> {
  public:
-  GaussSeidelPass(std::vector<DistanceConstraint<Real>> constraints, std::vector<PassCost> costs)
-      : constraints_(std::move(constraints)), costs_(std::move(costs)) {}
+  GaussSeidelPass(std::vector<DistanceConstraint<Real>> constraints, DampedConstraints<Real> damped,
+                  std::vector<PassCost> costs)
+      : constraints_(std::move(constraints)),
+        damped_(std::move(damped)),
+        costs_(std::move(costs)) {}
 
+  void begin(Particles<Real>& p, double, double) override {
+    damped_.begin(constraints_, p.previous.data());
+  }
   void apply(Particles<Real>& p, double, double) override {
     Real* const x = p.x.data();
     for (const DistanceConstraint<Real>& c : constraints_) {
@@ -58,6 +64,7 @@ class GaussSeidelPass final : public Pass<Real> {
 
  private:
   std::vector<DistanceConstraint<Real>> constraints_;
+  DampedConstraints<Real> damped_;
   std::vector<PassCost> costs_;
 };
 
@@ -66,12 +73,14 @@ template <class Real>
 class CompliantGaussSeidelPass final : public Pass<Real> {
  public:
   CompliantGaussSeidelPass(std::vector<CompliantConstraint<Real>> constraints,
-                           std::vector<PassCost> costs)
+                           DampedConstraints<Real> damped, std::vector<PassCost> costs)
       : constraints_(std::move(constraints)),
+        damped_(std::move(damped)),
         multipliers_(constraints_.size()),
         costs_(std::move(costs)) {}
 
-  void begin(Particles<Real>&, double, double) override {
+  void begin(Particles<Real>& p, double, double) override {
+    damped_.begin(constraints_, p.previous.data());
     std::ranges::fill(multipliers_, Real(0));
   }
   void apply(Particles<Real>& p, double, double) override {
@@ -94,6 +103,7 @@ class CompliantGaussSeidelPass final : public Pass<Real> {
 
  private:
   std::vector<CompliantConstraint<Real>> constraints_;
+  DampedConstraints<Real> damped_;
   std::vector<Real> multipliers_;  ///< m; compliance / h^2 times XPBD's lambda
   std::vector<PassCost> costs_;
 };
@@ -160,7 +170,10 @@ class ColouredPass final : public Pass<Real> {
         pool_(pool) {}
 
   void restart() override { links_.clear_multipliers(); }
-  void begin(Particles<Real>&, double, double) override { keep_ = Real(0); }
+  void begin(Particles<Real>& p, double, double) override {
+    keep_ = Real(0);
+    if constexpr (std::is_same_v<Links<Real>, ColourBatches<Real>>) links_.damp(p.previous.data());
+  }
   void apply(Particles<Real>& p, double, double) override {
     sweep(links_, p);
     keep_ = Real(1);
@@ -236,19 +249,23 @@ template <class Real, Projection kind>
 std::unique_ptr<Pass<Real>> make_sequential(const Scene& scene, std::span<const double> w,
                                             const RelaxationSettings& settings) {
   const std::vector<Link> links = ordered(scene, settings.order, settings.seed);
+  DampedConstraints<Real> damped(links, w, settings.compliances);
   if (settings.compliances.multipliers) {
     auto compliant =
         make_compliant_constraints<Real>(links, w, settings.omega, settings.compliances);
-    auto costs = family_costs(links, w, compliant.size() * (sizeof compliant[0] + sizeof(Real)));
-    return std::make_unique<CompliantGaussSeidelPass<Real>>(std::move(compliant), std::move(costs));
+    auto costs = family_costs(
+        links, w, compliant.size() * (sizeof compliant[0] + sizeof(Real)) + damped.bytes());
+    return std::make_unique<CompliantGaussSeidelPass<Real>>(std::move(compliant), std::move(damped),
+                                                            std::move(costs));
   }
   auto constraints =
       make_distance_constraints<Real>(links, w, settings.omega, settings.compliances);
-  auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0]);
+  auto costs = family_costs(links, w, constraints.size() * sizeof constraints[0] + damped.bytes());
   if (settings.jacobi)
     return std::make_unique<JacobiPass<Real, kind>>(*settings.jacobi, std::move(constraints),
                                                     std::move(costs), scene.start.x.size());
-  return std::make_unique<GaussSeidelPass<Real, kind>>(std::move(constraints), std::move(costs));
+  return std::make_unique<GaussSeidelPass<Real, kind>>(std::move(constraints), std::move(damped),
+                                                       std::move(costs));
 }
 
 /// The pass that visits the links one after another, or null if no link can move.
@@ -281,7 +298,9 @@ Relaxation<Real> make_relaxation(const Scene& scene, std::span<const double> w,
                             std::make_unique<ColouredPass<Real, Links>>(
                                 std::move(sweep), std::move(costs), settings, pool)};
   };
-  if (const auto links = regular(scene, settings.layout))
+  // A sheet has one rest length for all links of a direction, and damped ones have each their own.
+  const bool damped = settings.compliances.damped > 0;
+  if (const auto links = damped ? std::nullopt : regular(scene, settings.layout))
     return coloured(interleaved_layout(links->grid),
                     InterleavedSheet<Real>(*links, w, settings.omega, settings.compliances));
   Layout layout = Layout::packed(n, tile_ranks(scene.mesh));

@@ -22,7 +22,8 @@ std::size_t place(const Layout& layout, int v) { return layout.slot(to_index(v))
 template <class Real>
 ColourBatches<Real>::ColourBatches(const std::vector<Phase>& phases, std::span<const double> w,
                                    double omega, const Layout& layout,
-                                   const Compliances& compliances) {
+                                   const Compliances& compliances)
+    : damped_share_(static_cast<Real>(compliances.damped)) {
   phase_.push_back(0);
   tile_.push_back(0);
   for (const Phase& phase : phases) {
@@ -64,13 +65,16 @@ void ColourBatches<Real>::add_tile(const Tile& tile, std::span<const double> w, 
       extent = {std::min(extent.first, at), std::max(extent.last, at)};
     }
   extents_.push_back(extent);
-  for (const Colour& colour : tile)
-    add_colour(make_compliant_constraints<Real>(colour, w, omega, compliances),
+  for (const Colour& colour : tile) {  // of one family
+    const bool damped = compliances.damped > 0 && !colour.empty() &&
+                        compliances.over_h2[static_cast<std::size_t>(colour.front().family)] > 0;
+    add_colour(make_compliant_constraints<Real>(colour, w, omega, compliances), damped,
                extent.first - std::min(extent.first, kBefore), layout);
+  }
 }
 
 template <class Real>
-void ColourBatches<Real>::add_colour(Constraints constraints, std::size_t first,
+void ColourBatches<Real>::add_colour(Constraints constraints, bool damped, std::size_t first,
                                      const Layout& layout) {
   // Votes for the most common equal share, with the share of its multiplier.
   std::map<std::pair<Real, Real>, int> votes;
@@ -90,15 +94,15 @@ void ColourBatches<Real>::add_colour(Constraints constraints, std::size_t first,
            std::pair(c.share_a, c.share) == most->first;
   });
   const auto equal_end = whole(begin, unequal), near_end = whole(equal_end, far);
-  add_run({begin, equal_end}, true, first, layout, near_);
-  add_run({equal_end, near_end}, false, first, layout, near_);
-  add_run({near_end, end}, false, 0, layout, far_);
+  add_run({begin, equal_end}, damped, true, first, layout, near_);
+  add_run({equal_end, near_end}, damped, false, first, layout, near_);
+  add_run({near_end, end}, damped, false, 0, layout, far_);
 }
 
 template <class Real>
 template <class Number>
 void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> constraints,
-                                  bool equal, std::size_t first, const Layout& layout,
+                                  bool damped, bool equal, std::size_t first, const Layout& layout,
                                   std::vector<Batch<Real, Number>>& to) {
   if (constraints.empty()) return;
   BatchRun<Real> run{};
@@ -119,6 +123,9 @@ void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> con
       batch.a[l] = static_cast<Number>((real ? place(layout, c.a) : layout.size()) - first);
       batch.b[l] = static_cast<Number>((real ? place(layout, c.b) : layout.size() + 1) - first);
       batch.rest[l] = real ? c.rest : static_cast<Real>(kTinyLength);
+      if (damped && real)
+        damped_.push_back({std::is_same_v<Number, std::uint16_t>, to.size() - 1, l,
+                           layout.slot(to_index(c.a)), layout.slot(to_index(c.b)), c.rest});
       if (!equal) {
         shares_[base + l] = c.share_a;
         shares_[base + kLanes + l] = c.share_b;
@@ -134,6 +141,13 @@ void ColourBatches<Real>::add_run(std::span<const CompliantConstraint<Real>> con
   run.shares = equal ? nullptr : shares_.data();
   run.multipliers = compliant ? multipliers_.data() : nullptr;
   runs_.push_back(run);
+}
+
+template <class Real>
+void ColourBatches<Real>::damp(const Real* x) {
+  for (const auto& [near, batch, lane, a, b, rest] : damped_)
+    (near ? near_[batch].rest : far_[batch].rest)[lane] =
+        damped_rest(rest, x + a, x + b, damped_share_);
 }
 
 /// Makes the runs of each tile prefetch the particles of the next tile, some with each batch.
@@ -174,7 +188,7 @@ std::vector<DistanceConstraint<Real>> ColourBatches<Real>::order(const Layout& l
 template <class Real>
 std::size_t ColourBatches<Real>::bytes() const {
   return sizeof *this + near_.size() * sizeof near_[0] + far_.size() * sizeof far_[0] +
-         extents_.size() * sizeof extents_[0] +
+         extents_.size() * sizeof extents_[0] + damped_.size() * sizeof damped_[0] +
          (shares_.size() + multipliers_.size()) * sizeof(Real) + runs_.size() * sizeof runs_[0] +
          (tile_.size() + phase_.size()) * sizeof tile_[0];
 }

@@ -34,6 +34,8 @@ class ColourBatches {
 
   /// The links in the order in which the sweep visits them.
   std::vector<DistanceConstraint<Real>> order(const Layout&) const;
+  /// Sets the rest lengths of damped links by their lengths at x_t, x y z 0 of each particle.
+  void damp(const Real* x);
   /// Sets all multipliers to 0.
   void clear_multipliers() { std::ranges::fill(multipliers_, Real(0)); }
   std::size_t bytes() const;
@@ -46,15 +48,24 @@ class ColourBatches {
   };
   void add_tile(const Tile&, std::span<const double> w, double omega, const Layout&,
                 const Compliances&);
-  void add_colour(Constraints, std::size_t first, const Layout&);
+  void add_colour(Constraints, bool damped, std::size_t first, const Layout&);
   template <class Number>
-  void add_run(std::span<const CompliantConstraint<Real>>, bool equal, std::size_t first,
-               const Layout&, std::vector<Batch<Real, Number>>& to);
+  void add_run(std::span<const CompliantConstraint<Real>>, bool damped, bool equal,
+               std::size_t first, const Layout&, std::vector<Batch<Real, Number>>& to);
   void look_ahead();
+  /// A damped link, in a lane of a batch.
+  struct Damped {
+    bool near;
+    std::size_t batch, lane;
+    std::size_t a, b;  ///< places of its ends in x
+    Real rest;         ///< m, without damping
+  };
 
   std::vector<NearBatch<Real>> near_;
   std::vector<FarBatch<Real>> far_;
   std::vector<Extent> extents_;  ///< [tiles]
+  std::vector<Damped> damped_;   ///< empty: no damping
+  Real damped_share_ = 0;        ///< Compliances::damped
   std::vector<Real> shares_, multipliers_;
   std::vector<BatchRun<Real>> runs_;
   /// First run of each tile, first tile of each phase, and the ends.

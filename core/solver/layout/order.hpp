@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,7 +32,16 @@ struct Compliances {
   /// compliance/h^2 of a substep [1/kg] by family; 0: rigid.
   std::array<double, kFamilies.size()> over_h2{};
   bool multipliers = false;  ///< XPBD's, kept from sweep to sweep
+  /// LinkDamping::share() of links that comply, whose compliance is that of LinkDamping::stiffer().
+  double damped = 0;
 };
+
+/// The rest length of a damped link, from that without damping and the ends x_t: x y z each.
+template <class Real>
+Real damped_rest(Real rest, const Real* a, const Real* b, Real share) {
+  const Real way[]{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  return rest + share * (std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) - rest);
+}
 
 /// Whether the link has two ends and at least one of them can move. w: inverse masses [1/kg].
 inline bool moves(const Link& link, std::span<const double> w) {
@@ -66,6 +76,41 @@ std::vector<DistanceConstraint<Real>> make_distance_constraints(
   const auto all = make_compliant_constraints<Real>(links, w, omega, compliances);
   return {all.begin(), all.end()};
 }
+
+/// Rest lengths of the damped ones of such constraints (core/model/link_damping.hpp).
+template <class Real>
+class DampedConstraints {
+ public:
+  DampedConstraints(std::span<const Link> links, std::span<const double> w,
+                    const Compliances& compliances)
+      : share_(static_cast<Real>(compliances.damped)) {
+    if (compliances.damped == 0) return;
+    std::size_t next = 0;
+    for (const Link& link : links) {
+      if (!moves(link, w)) continue;
+      if (compliances.over_h2[static_cast<std::size_t>(link.family)] > 0)
+        all_.push_back({next, static_cast<Real>(std::max(link.rest, kTinyLength))});
+      ++next;
+    }
+  }
+  /// Sets the rest lengths by the lengths at x_t, x y z 0 of each vertex.
+  template <class Constraint>
+  void begin(std::vector<Constraint>& constraints, const Real* x) const {
+    for (const auto& [at, rest] : all_) {
+      Constraint& c = constraints[at];
+      c.rest = damped_rest(rest, x + 4 * c.a, x + 4 * c.b, share_);
+    }
+  }
+  std::size_t bytes() const { return all_.size() * sizeof(Damped); }
+
+ private:
+  struct Damped {
+    std::size_t at;  ///< index of the constraint
+    Real rest;       ///< m, without damping
+  };
+  Real share_;
+  std::vector<Damped> all_;  ///< empty: no damping
+};
 
 /// Whether no two vertices can be farther apart than in the flat sheet: true of a regular sheet
 /// with shear links. Without shear links a sheet is a net: pulled along its diagonals it grows

@@ -42,7 +42,9 @@ std::vector<std::pair<int, int>> sides_of_faces(const loop::Setup& s) {
 }  // namespace
 
 StepEnergy::StepEnergy(const loop::Setup& s, bool factored)
-    : springs(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params))),
+    : springs(
+          stiffened(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), link_damping(s))),
+      damped(link_damping(s), springs),
       bending(make_bending(s.scene)),
       membrane(make_membrane(s.scene)),
       hessian(springs, bending, s.w, factored, s.simd, sides_of_faces(s)),

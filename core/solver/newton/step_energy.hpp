@@ -5,6 +5,7 @@
 #include "core/model/bending.hpp"
 #include "core/model/membrane.hpp"
 #include "core/solver/contact/augmented_contacts.hpp"
+#include "core/solver/damped_links.hpp"
 #include "core/solver/loop.hpp"
 #include "core/solver/newton/hessian.hpp"
 #include "core/solver/springs.hpp"
@@ -34,6 +35,7 @@ struct StepEnergy {
   std::vector<Vec3> moved(std::vector<Vec3> x, const Vector& direction, double step) const;
 
   std::vector<Spring> springs;
+  DampedSprings damped;  ///< of springs
   std::vector<BendingElement> bending;
   MembraneModel membrane;
   Hessian hessian;
