@@ -304,6 +304,8 @@ void judge_arap(Section& section, const Membrane& membrane) {
                               std::string(key[0] == 'p' ? "0" : "half the stiffness"));
   if (membrane.warp != membrane.weft)
     section.report("stiffness", "must be one number with law = \"arap\"");
+  if (membrane.damping > 0)
+    section.report("damping", "is of Green's strain, which law = \"arap\" does not have");
 }
 
 /// Reads the membrane: its stiffness [N/m] and, unless given, the shear of a material that is the

@@ -66,12 +66,13 @@ WarpAxes warp_axes(const std::array<Vec3, 3>& corners, const Vec3& warp) {
 
 double most_poisson(const Membrane& m) { return std::sqrt(m.warp / m.weft); }
 
-MembraneLaw::MembraneLaw(const Membrane& m)
-    : law_(m.law), young_(m.warp), stiffness_(Matrix3d::Zero()) {
+MembraneLaw::MembraneLaw(const Membrane& m, double stiffer)
+    : law_(m.law), young_(stiffer * m.warp), stiffness_(Matrix3d::Zero()) {
   const double nu21 = m.poisson * m.weft / m.warp, rest = 1 - m.poisson * nu21;
   stiffness_.topLeftCorner<2, 2>() << m.warp / rest, nu21 * m.warp / rest, nu21 * m.warp / rest,
       m.weft / rest;
   stiffness_(2, 2) = m.shear;
+  stiffness_ *= stiffer;
   if (law_ == Membrane::Law::arap) stiffness_ = young_ * Matrix3d::Identity();
 }
 
@@ -94,21 +95,22 @@ MembraneLaw::Strain MembraneLaw::strain(const Deformation& f) const {
   return s;
 }
 
-double MembraneLaw::energy(const Deformation& f) const {
+double MembraneLaw::energy(const Deformation& f, const Vec3& rest) const {
   if (law_ == Membrane::Law::arap) return young_ / 2 * (f - polar(f).rotation).squaredNorm();
-  const Vec3 e = green(f);
+  const Vec3 e = green(f) - rest;
   return e.dot(stiffness_ * e) / 2;
 }
 
-Deformation MembraneLaw::stress(const Deformation& f) const {
+Deformation MembraneLaw::stress(const Deformation& f, const Vec3& rest) const {
   if (law_ == Membrane::Law::arap) return young_ * (f - polar(f).rotation);
-  const Vec3 s = stiffness_ * green(f);
+  const Vec3 s = stiffness_ * (green(f) - rest);
   Deformation p;
   p << s[0] * f.col(0) + s[2] * f.col(1), s[2] * f.col(0) + s[1] * f.col(1);
   return p;
 }
 
-MembraneLaw::Second MembraneLaw::second(const Deformation& f, bool positive) const {
+MembraneLaw::Second MembraneLaw::second(const Deformation& f, bool positive,
+                                        const Vec3& rest) const {
   const Vec3 f1 = f.col(0), f2 = f.col(1);
   const Matrix3d one = Matrix3d::Identity();
   if (law_ == Membrane::Law::arap) {
@@ -125,7 +127,7 @@ MembraneLaw::Second MembraneLaw::second(const Deformation& f, bool positive) con
             young_ * (one - out - turn * r1 * r1.transpose() + across(1, 1) * out)};
   }
   const Matrix3d& c = stiffness_;
-  const Vec3 s = c * green(f);
+  const Vec3 s = c * (green(f) - rest);
   Matrix2d stress;
   stress << s[0], s[2], s[2], s[1];
   if (positive) stress = positive_part(stress);
@@ -167,6 +169,16 @@ MembraneModel make_membrane(const Scene& scene) {
   return model;
 }
 
+MembraneModel make_membrane(const Scene& scene, double h) {
+  MembraneModel model = make_membrane(scene);
+  if (!scene.membrane || scene.membrane->damping == 0) return model;
+  const double q = scene.membrane->damping / h;
+  model.law = MembraneLaw(*scene.membrane, 1 + q);
+  model.share = q / (1 + q);
+  model.rests.assign(model.elements.size(), Vec3::Zero());
+  return model;
+}
+
 void MembraneModel::add_stiffness(std::vector<double>& at_vertex) const {
   for (const MembraneElement& e : elements) {
     double sum = 0;
@@ -179,7 +191,7 @@ void MembraneModel::add_stiffness(std::vector<double>& at_vertex) const {
 double MembraneModel::energy(const std::vector<Vec3>& x) const {
   double sum = 0;
   for (const MembraneElement& e : elements)
-    sum += e.area * law.energy(e.deformation([&](std::size_t v) { return x[v]; }));
+    sum += e.area * law.energy(e.deformation([&](std::size_t v) { return x[v]; }), rest(e));
   return sum;
 }
 

@@ -47,11 +47,20 @@ struct MembraneElement {
 ///            nu21 = nu12 Y2/Y1 (plane stress; valid while nu12^2 < Y1/Y2)
 ///     arap   psi = Y/2 |F - R|^2,   R the rotation nearest to F: nu = 0 and G = Y/2 for small
 ///            strains (Sorkine, Alexa, As-Rigid-As-Possible Surface Modeling, SGP 2007)
+///
+/// Damping in proportion to stiffness (b [s], stvk) by backward Euler over a step of h, with e_t
+/// the strain at its start, is another C and another strain at rest e', as of links
+/// (link_damping.hpp):
+///
+///     e.C e/2 + b (e - e_t).C (e - e_t)/(2 h) = (1 + q) (e - e').C (e - e')/2 + what e does not
+///     change,   q = b/h,   e' = q/(1 + q) e_t
 class MembraneLaw {
  public:
-  explicit MembraneLaw(const Membrane&);
+  /// stiffer: by what C is multiplied.
+  explicit MembraneLaw(const Membrane&, double stiffer = 1);
 
-  double energy(const Deformation&) const;  ///< J/m^2
+  // `rest` is e' of stvk.
+  double energy(const Deformation&, const Vec3& rest = Vec3::Zero()) const;  ///< J/m^2
   /// The strain c with psi = c.C c/2 and its derivatives, of which row k is d c_k/d f_i. It is e
   /// for stvk, and (T11 - 1, T22 - 1, sqrt 2 T12) with F = R T for arap, where C = Y I.
   struct Strain {
@@ -64,7 +73,7 @@ class MembraneLaw {
   };
   Strain strain(const Deformation&) const;
   /// The energy's derivative P [N/m].
-  Deformation stress(const Deformation&) const;
+  Deformation stress(const Deformation&, const Vec3& rest = Vec3::Zero()) const;
   /// The second derivative: `of(i, j)` is d P_i/d f_j [N/m], with (2, 1) the transpose of (1, 2).
   struct Second {
     Eigen::Matrix3d of11, of12, of22;
@@ -76,7 +85,7 @@ class MembraneLaw {
   };
   /// positive: without what makes it indefinite. That is, for stvk, the negative part of the stress
   /// where it resists turning, and for arap the negative eigenvalues.
-  Second second(const Deformation&, bool positive) const;
+  Second second(const Deformation&, bool positive, const Vec3& rest = Vec3::Zero()) const;
 
   const Eigen::Matrix3d& stiffness() const { return stiffness_; }  ///< C of `strain` [N/m]
   /// Largest resistance to a strain [N/m]: the largest eigenvalue of `second` at rest.
@@ -92,10 +101,26 @@ class MembraneLaw {
 struct MembraneModel {
   MembraneLaw law;
   std::vector<MembraneElement> elements;
+  double share = 0;              ///< q/(1 + q)
+  std::vector<Vec3> rests = {};  ///< e' of each element in this step; empty: no damping
 
   bool empty() const { return elements.empty(); }
   double energy(const std::vector<Vec3>& x) const;  ///< J
-  std::size_t bytes() const { return elements.size() * sizeof elements[0]; }
+  std::size_t bytes() const {
+    return elements.size() * sizeof elements[0] + rests.size() * sizeof(Vec3);
+  }
+
+  /// e' of an element of this membrane.
+  Vec3 rest(const MembraneElement& e) const {
+    if (rests.empty()) return Vec3::Zero();
+    return rests[static_cast<std::size_t>(&e - elements.data())];
+  }
+  /// Sets e' for a step from these positions.
+  template <class At>
+  void begin(const At& at) {
+    for (std::size_t k = 0; k < rests.size(); ++k)
+      rests[k] = share * law.strain(elements[k].deformation(at)).value;
+  }
 
   /// Adds to each corner a bound on the sum of the norms of its row of the second derivative at
   /// rest [N/m].
@@ -104,7 +129,7 @@ struct MembraneModel {
   /// Calls add(vertex, force [N]) for the corners of an element at these positions.
   template <class At, class Add>
   void add_forces(const MembraneElement& e, const At& at, const Add& add) const {
-    const Deformation stress = law.stress(e.deformation(at));
+    const Deformation stress = law.stress(e.deformation(at), rest(e));
     for (std::size_t a = 0; a < 3; ++a)
       add(to_index(e.vertex[a]), Vec3(-e.area * (stress * e.gradient[a])));
   }
@@ -112,7 +137,7 @@ struct MembraneModel {
   /// is visited: the energy's second derivative by their positions.
   template <class At, class Add>
   void add_second(const MembraneElement& e, const At& at, bool positive, const Add& add) const {
-    const MembraneLaw::Second second = law.second(e.deformation(at), positive);
+    const MembraneLaw::Second second = law.second(e.deformation(at), positive, rest(e));
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b <= a; ++b)
         add(to_index(e.vertex[a]), to_index(e.vertex[b]),
@@ -122,6 +147,8 @@ struct MembraneModel {
 
 /// One element for each triangle of the mesh with a vertex that ever moves.
 MembraneModel make_membrane(const Scene&);
+/// The same with its damping, in steps of h [s]: begin() starts each.
+MembraneModel make_membrane(const Scene&, double h);
 
 /// The membrane that a rectangular grid of springs is for small strains, away from its edges.
 /// k: N/m by family; cells of a along u and b along v, d^2 = a^2 + b^2:

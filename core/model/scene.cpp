@@ -209,6 +209,9 @@ Bytes bytes_of(const Scene& s, std::span<const SceneKey> keys) {
   if (!s.releases.empty()) bytes.add(s.releases);
   if (s.membrane)
     bytes.add_later(*find_scene_key(kMembraneKey), [&](Bytes& b) { b.add(*s.membrane); });
+  if (s.membrane && s.membrane->damping != 0)
+    bytes.add_later(*find_scene_key(kMembraneDamping),
+                    [&](Bytes& b) { b.add(s.membrane->damping); });
   return bytes;
 }
 

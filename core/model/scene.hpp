@@ -55,6 +55,7 @@ struct Membrane {
   double poisson = 0;               ///< nu12: what a strip along the warp narrows by its strain
   double shear = 0;                 ///< N/m, > 0: G, shear force per width and angle
   Vec3 direction = -Vec3::UnitY();  ///< unit vector along the warp of the rest shape
+  double damping = 0;               ///< s, in proportion to stiffness; stvk alone has it
 };
 
 /// Pins that follow one prescribed motion.

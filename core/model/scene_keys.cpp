@@ -165,6 +165,12 @@ const SceneKey kKeys[] = {
               "given; needed for a mesh whose stiffnesses differ")
         .otherwise("that of bending; a grid's v")
         .came_later(5),
+    number(kMembraneDamping, &Membrane::damping, "s", Range::non_negative(1e3), "1e-3",
+           "b, damping in proportion to stiffness, as `links.damping`: strain rates resist with b "
+           "times what strains do")
+        .limited("not with \"arap\"")
+        .came_later(6)
+        .left_out_as("damping of the membrane"),
 
     vector("forces.gravity", &Scene::gravity, "m/s^2", Range::within(1e6), "[0, 0, -1.62]",
            "of every vertex"),

@@ -29,8 +29,9 @@ inline constexpr std::string_view kFramesKey = "collider.frames";
 /// Key of a membrane's stiffness, by which content() includes the whole membrane.
 inline constexpr std::string_view kMembraneKey = "membrane.stiffness";
 
-/// Key of the damping of links.
-inline constexpr std::string_view kLinkDamping = "links.damping";
+/// Keys of damping in proportion to stiffness.
+inline constexpr std::string_view kLinkDamping = "links.damping",
+                                  kMembraneDamping = "membrane.damping";
 
 /// Allowed range of a number. Non-finite numbers are never allowed.
 struct Range {

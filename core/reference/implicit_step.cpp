@@ -34,12 +34,13 @@ constexpr double kTouching = 1e-13;  ///< m, gaps and slips that contact may lea
 
 ImplicitStep::ImplicitStep(const Scene& scene, const State& from, double t, const Stiffness& k)
     : thickness_(scene.thickness),
-      membrane_(make_membrane(scene)),
+      membrane_(make_membrane(scene, scene.dt)),
       inertia_(scene.mesh.mass),
       mass_(scene.mesh.mass),
       y_(from.x) {
   const double h = scene.dt, keep = std::exp(-scene.damping * h);
   const LinkDamping damping(scene, h);
+  membrane_.begin([&](std::size_t v) { return from.x[v]; });
   for (double& m : inertia_) m /= h * h;
   for (const int pin : scene.pins) inertia_[to_index(pin)] = 0;
   for (const Link& l : scene.links) {

@@ -67,14 +67,15 @@ struct PairBlock {
   Eigen::Matrix3d block;  ///< N/m
 };
 
-std::vector<PairBlock> membrane_blocks(const Scene& scene) {
+/// stiffer: by what all of it is multiplied.
+std::vector<PairBlock> membrane_blocks(const Scene& scene, double stiffer) {
   std::vector<PairBlock> blocks;
   const MembraneModel membrane = make_membrane(scene);
   for (const MembraneElement& e : membrane.elements)
     membrane.add_second(
         e, [&](std::size_t v) { return scene.start.x[v]; }, true,
         [&](std::size_t a, std::size_t b, const Eigen::Matrix3d& block) {
-          blocks.push_back({static_cast<int>(a), static_cast<int>(b), block});
+          blocks.push_back({static_cast<int>(a), static_cast<int>(b), stiffer * block});
         });
   return blocks;
 }
@@ -143,20 +144,23 @@ std::optional<LinearStability> stability(const Scene& scene, const LinearSprings
   const std::vector<double> w = inverse_masses(scene);
   const double h = scene.dt / model.substeps, drag = model.drag;
   const double q = std::exp(-scene.damping * h);
-  // Lagged damping of links takes 2 b/h times their stiffness from the limit 2 (1 + q).
+  // Lagged damping takes 2 b/h times the stiffness from the limit 2 (1 + q).
   Stiffness stiffness = model.stiffness;
   for (double& k : stiffness) k *= 1 + 2 * scene.link_damping / h;
-  const Elastic all{bars(scene, w, stiffness), make_bending(scene), membrane_blocks(scene)};
+  const double of_membrane = scene.membrane ? scene.membrane->damping : 0;
+  const Elastic all{bars(scene, w, stiffness), make_bending(scene),
+                    membrane_blocks(scene, 1 + 2 * of_membrane / h)};
   if (all.springs.empty() && all.bending.empty() && all.membrane.empty()) return {};
   if (model.explicit_euler) {
-    if (scene.damping > 0 || scene.link_damping > 0) return {};
+    if (scene.damping > 0 || scene.link_damping > 0 || of_membrane > 0) return {};
     if (drag > 0) return dragged_explicit_euler(w, all, h, drag);
     const double growth = std::sqrt(1 + spring_eigenvalue(all, w, h * h, 0));
     return LinearStability{growth, growth, "explicit Euler grows by sqrt(1 + w^2 dt^2) at any dt"};
   }
   const double damped = model.central_drag ? -(1 - q) * h * drag : 2 * h * drag;
   const double margin = spring_eigenvalue(all, w, h * h, damped) / (2 * (1 + q));
-  const bool shrunk = (drag > 0 && !model.central_drag) || scene.link_damping > 0;
+  const bool shrunk =
+      (drag > 0 && !model.central_drag) || scene.link_damping > 0 || of_membrane > 0;
   return LinearStability{
       margin, 0,
       shrunk ? "substep < (2/w)(sqrt(1 + zeta^2) - zeta), w the fastest mode of the springs"

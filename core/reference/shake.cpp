@@ -217,6 +217,7 @@ std::vector<std::string> refuse_dynamic(const Scene& scene) {
   refuse(std::ranges::any_of(scene.links, is_seam), "a seam: its length is 0");
   refuse(!scene.releases.empty(), "its pins let go");
   refuse(scene.link_damping > 0, "damping of links");
+  refuse(scene.membrane && scene.membrane->damping > 0, "damping of the membrane");
   refuse(std::any_of(
              scene.links.begin(), scene.links.end(),
              [&](const Link& l) { return l.family != Family::structural && is_rigid(scene, l); }),

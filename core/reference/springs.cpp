@@ -172,6 +172,7 @@ std::vector<std::string> refuse_springs(const Scene& scene) {
   refuse(std::ranges::any_of(scene.links, is_seam), "a seam: its length is 0");
   refuse(!scene.releases.empty(), "its pins let go");
   refuse(scene.link_damping > 0, "damping of links");
+  refuse(scene.membrane && scene.membrane->damping > 0, "damping of the membrane");
   refuse(scene.wind.has_value(), "wind");
   for (const Collider& body : scene.colliders) {
     refuse(std::holds_alternative<MeshBody>(body.shape), "a body of triangles");

@@ -50,7 +50,7 @@ class StepError::Work {
       : scene_(scene),
         extent_(extent(scene)),
         bending_(make_bending(scene)),
-        membrane_(make_membrane(scene)),
+        membrane_(make_membrane(scene, scene.dt)),
         column_(scene.mesh.mass.size(), kPin) {
     std::vector<bool> pinned(column_.size());
     for (const int pin : scene.pins) pinned[to_index(pin)] = true;
@@ -207,6 +207,10 @@ class StepError::Work {
       }
       for (const std::size_t v : {l.a, l.b})
         if (column_[v] >= 0) hardness_[to_index(column_[v])] += stiffness(l);
+    }
+    if (!membrane_.rests.empty()) {
+      membrane_ = make_membrane(scene_, h);
+      membrane_.begin([&](std::size_t v) { return from.x[v]; });
     }
     if (!membrane_.empty()) {
       std::vector<double> all(column_.size(), 0.0);

@@ -113,6 +113,7 @@ class NewtonPass final : public Pass<double> {
     integrator_.predict(p, step_.y, step);
     const double h = integrator_.own_step(step);
     step_.damped.begin(step_.springs, p.previous);
+    step_.membrane.begin([&](std::size_t v) { return p.previous[v]; });
     for (std::size_t i = 0; i < p.size(); ++i)
       if (p.w[i] > 0) p.x.set(i, p.previous[i]);
     step_.contacts.begin(t, h);
@@ -343,7 +344,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   if (!scene.colliders.empty() || (scene.self_collision && !params.is("self", "off")))
     reasons.push_back(own + " knows no contact: it would act at another time than the links");
   if (scene.wind) reasons.push_back(own + " knows no wind");
-  if (scene.damping > 0 || scene.link_damping > 0)
+  if (scene.damping > 0 || scene.link_damping > 0 ||
+      (scene.membrane && scene.membrane->damping > 0))
     reasons.push_back(own + " knows no damping but its own");
   return reasons;
 }

@@ -124,7 +124,7 @@ class Loop final : public Solver {
     Pass<Real>* const solving = links.contacts ? links.pass.get() : nullptr;
     if (links.pass) constraints_.push_back(std::move(links.pass));
     if (scene.membrane && !links.stretches)
-      constraints_.push_back(make_membrane_pass<Real>(scene, w));
+      constraints_.push_back(make_membrane_pass<Real>(scene, w, h_));
     if (scene.bending && !links.bends) constraints_.push_back(make_bending_pass<Real>(scene, w));
     pins_ = Pins(scene, *p_.layout);
     contact_ = make_contact<Real>(scene, *p_.layout, contact_settings(params), solving, pool_);
@@ -421,11 +421,13 @@ ResolvedSettings resolved_settings(const Scene& scene, const Params& params,
                                       shortest(scene.bending->weft) + " N m along the weft, " +
                                       std::string(bending));
   if (scene.membrane) {
-    const auto& [law, warp, weft, poisson, shear, direction] = *scene.membrane;
-    lines.emplace_back("membrane", std::string(law == Membrane::Law::arap ? "arap" : "stvk") +
-                                       ": " + shortest(warp) + " N/m along the warp, " +
-                                       shortest(weft) + " N/m along the weft, Poisson's number " +
-                                       shortest(poisson) + ", shear " + shortest(shear) + " N/m");
+    const auto& [law, warp, weft, poisson, shear, direction, damping] = *scene.membrane;
+    lines.emplace_back(
+        "membrane", std::string(law == Membrane::Law::arap ? "arap" : "stvk") + ": " +
+                        shortest(warp) + " N/m along the warp, " + shortest(weft) +
+                        " N/m along the weft, Poisson's number " + shortest(poisson) + ", shear " +
+                        shortest(shear) + " N/m" +
+                        (damping > 0 ? ", damping " + shortest(damping) + " s" : ""));
   }
   lines.emplace_back("gravity", "the scene's");
   lines.emplace_back("precision", precision_of(scene, params),

@@ -10,7 +10,7 @@
 // that limit to (2/w)(sqrt(1 + zeta^2) - zeta); Verlet's `drag-at=central` restores it. Damping of
 // links sees the lagged velocity, too, and shrinks it likewise, with zeta = b w/2: K (n - r) +
 // b K (n - n')/h for the length n' of a step ago is the force of another spring
-// (core/model/link_damping.hpp).
+// (core/model/link_damping.hpp). That of the membrane is alike.
 #include <cmath>
 
 #include "core/model/bending.hpp"
@@ -59,7 +59,7 @@ class Springs final : public Pass<Real> {
         explicit_(setup.params.is("integrator", "explicit-euler")),
         damping_(setup.scene.damping),
         bending_(make_bending(setup.scene)),
-        membrane_(make_membrane(setup.scene)),
+        membrane_(make_membrane(setup.scene, setup.scene.dt / setup.params.integer("substeps"))),
         moved_(central_ || explicit_ ? setup.w.size() : 0),
         pool_(setup.pool) {
     const auto k = stiffnesses(setup.scene, setup.params);
@@ -85,6 +85,7 @@ class Springs final : public Pass<Real> {
   /// Adds F/m to the accelerations, with F = -k x of every spring and F = -c v of every particle.
   void accelerate(Particles<Real>& p, double, double h) override {
     damped_.begin(groups_, slots_, p.previous);
+    membrane_.begin([&](std::size_t v) { return p.previous[v]; });
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = p.x[i] - p.previous[i];
     const AccelerationSweep<Real> sweep{.groups = groups_.data(),
                                         .x = p.x.data(),

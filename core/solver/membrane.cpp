@@ -31,13 +31,14 @@ template <class Real>
 class MembranePass final : public Pass<Real> {
  public:
   using V = typename Points<Real>::Point;
-  MembranePass(const Scene& scene, std::span<const double> w)
-      : membrane_(coloured(make_membrane(scene), w.size())),
+  MembranePass(const Scene& scene, std::span<const double> w, double h)
+      : membrane_(coloured(make_membrane(scene, h), w.size())),
         compliance_(membrane_.law.stiffness().inverse()),
         w_(w.begin(), w.end()),
         lambda_(membrane_.elements.size()) {}
 
-  void begin(Particles<Real>&, double, double) override {
+  void begin(Particles<Real>& p, double, double) override {
+    membrane_.begin([&](std::size_t v) { return p.previous[v]; });
     std::ranges::fill(lambda_, Vec3(Vec3::Zero()));
   }
 
@@ -53,7 +54,8 @@ class MembranePass final : public Pass<Real> {
         by_corner[a] = strain.by_corner(e.gradient[a]);
         system += w_[to_index(e.vertex[a])] * by_corner[a] * by_corner[a].transpose();
       }
-      const Vec3 change = system.llt().solve(-strain.value - softness * lambda_[k]);
+      const Vec3 change =
+          system.llt().solve(membrane_.rest(e) - strain.value - softness * lambda_[k]);
       lambda_[k] += change;
       for (std::size_t a = 0; a < 3; ++a) {
         const std::size_t v = to_index(e.vertex[a]);
@@ -80,10 +82,13 @@ class MembranePass final : public Pass<Real> {
 }  // namespace
 
 template <class Real>
-std::unique_ptr<Pass<Real>> make_membrane_pass(const Scene& scene, std::span<const double> w) {
-  return std::make_unique<MembranePass<Real>>(scene, w);
+std::unique_ptr<Pass<Real>> make_membrane_pass(const Scene& scene, std::span<const double> w,
+                                               double h) {
+  return std::make_unique<MembranePass<Real>>(scene, w, h);
 }
-template std::unique_ptr<Pass<float>> make_membrane_pass(const Scene&, std::span<const double>);
-template std::unique_ptr<Pass<double>> make_membrane_pass(const Scene&, std::span<const double>);
+template std::unique_ptr<Pass<float>> make_membrane_pass(const Scene&, std::span<const double>,
+                                                         double);
+template std::unique_ptr<Pass<double>> make_membrane_pass(const Scene&, std::span<const double>,
+                                                          double);
 
 }  // namespace taut

@@ -19,8 +19,9 @@ namespace taut {
 /// implicit Euler's step up to O(h^2) of the change of J. Three scalar constraints with a diagonal
 /// compliance have no Poisson's effect at all, and one C = sqrt(2 energy) has another material.
 /// Computed in double on the differences of positions.
-/// w: inverse masses [1/kg].
+/// Damping is another C and another strain at rest in each substep (MembraneLaw).
+/// w: inverse masses [1/kg]; h: length of the substeps [s].
 template <class Real>
-std::unique_ptr<Pass<Real>> make_membrane_pass(const Scene&, std::span<const double> w);
+std::unique_ptr<Pass<Real>> make_membrane_pass(const Scene&, std::span<const double> w, double h);
 
 }  // namespace taut

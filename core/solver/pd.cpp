@@ -396,6 +396,8 @@ std::vector<std::string> unsupported(const Scene& scene, const Params& params) {
   std::vector<std::string> reasons = unsupported_of_springs(scene, params);
   if (scene.membrane && scene.membrane->law != Membrane::Law::arap)
     loop::refuse_membrane(scene, "its local step is the nearest rotation, law = \"arap\"", reasons);
+  if (scene.membrane && scene.membrane->damping > 0)
+    loop::refuse_membrane(scene, "its damping is of Green's strain, which arap lacks", reasons);
   if (params.real("chebyshev") > 0 && params.integer("anderson") > 0)
     reasons.emplace_back("chebyshev and anderson are two ways to accelerate: take one");
   if (!params.is("method", "plain")) {

@@ -88,6 +88,7 @@ class VertexBlocks {
   /// would leave them (Contacts::predict): sweeps would get them there slowly, against stiff links.
   void begin(Particles<Real>& p, double t, double h) {
     start_.begin(p, y_, h);
+    membrane_.begin([&](std::size_t v) { return p.previous[v]; });
     if (h != inertia_of_) set_inertia(p, h);
     if (!contacts_) return;
     held_.assign(groups_.size() * 3 * kLanes, Real(0));
@@ -145,7 +146,7 @@ class VertexBlocks {
                const Adjacency& ends)
       : sweep_(kernel),
         bending_(make_bending(s.scene)),
-        membrane_(make_membrane(s.scene)),
+        membrane_(make_membrane(s.scene, s.scene.dt / s.params.integer("substeps"))),
         groups_(ends, bending_, membrane_.elements, s.w, s.params.is("order", "coloured")),
         slots_(slots_of_springs<Slot>(groups_, ends, springs, kNothingElse)),
         start_(s.scene, s.params.is("start", "adaptive")),
@@ -216,8 +217,9 @@ class VertexBlocks {
         const MembraneElement& e = membrane_.elements[b.element];
         const Deformation f = e.deformation([&](std::size_t v) { return p.x[v]; });
         const Eigen::Vector2d& own = e.gradient[b.place];
-        force -= e.area * (membrane_.law.stress(f) * own);
-        hessian += e.area * membrane_.law.second(f, true).between(own, own);
+        const Vec3 rest = membrane_.rest(e);
+        force -= e.area * (membrane_.law.stress(f, rest) * own);
+        hessian += e.area * membrane_.law.second(f, true, rest).between(own, own);
       }
       const double rows[kRows]{force.x(),     force.y(),     force.z(),
                                hessian(0, 0), hessian(1, 1), hessian(2, 2),

@@ -230,10 +230,11 @@ std::vector<Later> later_parts(const Scene& scene) {
   if (std::ranges::any_of(scene.links, is_seam)) all.push_back({2, "a seam"});
   if (is_there<MeshBody>(scene)) all.push_back({3, "a body of triangles"});
   for (const LaterKey& key : later_keys(scene)) {
-    const std::string words = key.path == kFramesKey     ? "a body that deforms"
-                              : key.path == kMembraneKey ? "a membrane"
-                              : key.path == kLinkDamping ? "damping of links"
-                                                         : key.path;
+    const std::string words = key.path == kFramesKey         ? "a body that deforms"
+                              : key.path == kMembraneKey     ? "a membrane"
+                              : key.path == kLinkDamping     ? "damping of links"
+                              : key.path == kMembraneDamping ? "damping of the membrane"
+                                                             : key.path;
     if (std::ranges::find(all, words, &Later::words) == all.end())
       all.push_back({key.since, words});
   }
@@ -301,6 +302,7 @@ std::string scene_file(const Scene& scene) {
                         {"poisson", m.poisson},
                         {"shear", m.shear},
                         {"direction", json_of(m.direction)}};
+    if (m.damping > 0) file["membrane"]["damping"] = m.damping;
   }
   return to_text(file) + "\n";
 }

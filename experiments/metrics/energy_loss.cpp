@@ -35,7 +35,7 @@ class EnergyLoss final : public Metric {
   static bool measures(const Scene& scene) {
     return !scene.gravity.isZero(0) && scene.colliders.empty() && !scene.self_collision &&
            !scene.wind && scene.damping == 0 && scene.link_damping == 0 &&
-           scene.pin_motions.empty();
+           (!scene.membrane || scene.membrane->damping == 0) && scene.pin_motions.empty();
   }
   explicit EnergyLoss(const Scene& scene) : energy_(scene) {}
 

@@ -72,6 +72,8 @@ constexpr Effect kEffects[] = {
     {"self-collision", [](const Scene& s) { return s.self_collision.has_value(); }},
     {"damping", [](const Scene& s) { return s.damping > 0; }},
     {"damping of links", [](const Scene& s) { return s.link_damping > 0; }},
+    {"damping of the membrane",
+     [](const Scene& s) { return s.membrane && s.membrane->damping > 0; }},
     {"elastic links", [](const Scene& s) { return s.stiffness != kRigid; }},
 };
 

@@ -53,7 +53,10 @@ void add_links_and_forces(const Case& one, Effects& effects) {
   if (has_family(scene, Family::bend)) gone(effects, "bend links", no_links("bend"));
   if (has_family(scene, Family::shear)) gone(effects, "shear links", no_links("shear"));
   add_keys(effects, "links", scene);
-  if (scene.membrane) gone(effects, "membrane", [](Draft& draft) { draft.remove("membrane"); });
+  if (scene.membrane) {
+    gone(effects, "membrane", [](Draft& draft) { draft.remove("membrane"); });
+    add_keys(effects, "membrane", *scene.membrane);
+  }
   if (scene.bending) gone(effects, "bending", [](Draft& draft) { draft.remove("bending"); });
   if (scene.wind) {
     gone(effects, "wind", [](Draft& draft) { draft.remove("wind"); });

@@ -355,6 +355,49 @@ TAUT_TRUTH(membrane_modes, 6, 22,
   }
 }
 
+TAUT_TRUTH(damped_membrane, 6, 26,
+           "damped in proportion to stiffness, a strip swings along itself with the damping ratio "
+           "b w/2, and a fall keeps v = g t",
+           "Rayleigh; the modes of membrane-modes; each scheme's own recurrence") {
+  const int n = 8;
+  const double h = 1.0 / 2048, amplitude = 1e-7, damping = 2e-3;
+  const double w =
+      2.0 * n * std::sqrt(kYoung / kDensity) * std::sin(3 * std::numbers::pi / (4 * n));
+  const double q = damping * w * w * h, v2 = w * w * h * h;
+  for (const char* solver : {"mass-spring:substeps=1", "implicit", "vbd:iterations=200",
+                             "xpbd:substeps=1,iterations=400,precision=double"}) {
+    Scene s = hung(1, n, isotropic(0), 0, true);
+    s.membrane->damping = damping;
+    if (!can_run(findings, solver, s)) continue;
+    s.dt = h;
+    for (std::size_t v = 0; v < s.start.x.size(); ++v)
+      s.start.x[v].y() += amplitude * std::sin(3 * std::numbers::pi / 2 * -s.mesh.rest[v].y());
+    const bool implicit = std::string_view(solver).front() != 'm';
+    double before = -1, now = -1;  // of the lower end, over the amplitude; at rest at first
+    Simulation sim(s, solver);
+    const double most = sim.worst(100, [&](int) {
+      const double next = implicit ? (2 * now - before + q * now) / (1 + v2 + q)
+                                   : 2 * now - before - v2 * now - q * (now - before);
+      before = now;
+      now = next;
+      const double end = sim.x(2 * n).y() - s.mesh.rest[to_index(2 * n)].y();
+      return std::abs(end / amplitude - now);
+    });
+    findings.below(solver,
+                   "distance from the damped mode 2 over its amplitude, b w/2 = " +
+                       general(damping * w / 2, 2),
+                   "1", most, 1e-4);
+    Scene falls = under_gravity(membrane(5, 5, 1, 1, orthotropic()));
+    falls.membrane->damping = damping;
+    falls.dt = h;
+    const State end = Simulation(falls, solver, 256).state();
+    double speed = 0;
+    for (const Vec3& v : end.v) speed = larger(speed, (v - falls.gravity / 8).norm());
+    findings.below(solver, "distance of the velocity from g t after a fall of 1/8 s", "m/s", speed,
+                   1e-9);
+  }
+}
+
 namespace {
 
 /// Energy of the links of n x m cells, strained by (along u, along v, shear angle), one family

@@ -250,6 +250,16 @@ TEST(SceneFile, HasEveryPartOfTheSceneUnderItsName) {
   EXPECT_TRUE(beyond(6, scene).empty());
   scene.link_damping = 0;
   scene.stiffness = kRigid;
+  scene.membrane = Membrane{.warp = 8, .weft = 4, .shear = 2};
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/5");
+  EXPECT_FALSE(file["membrane"].contains("damping"));
+  scene.membrane->damping = 0.25;
+  file = parse_json(scene_file(scene));
+  EXPECT_EQ(file["format"], "taut-scene/6");
+  EXPECT_EQ(file["membrane"]["damping"], 0.25);
+  EXPECT_EQ(beyond(5, scene), std::vector<std::string>{"damping of the membrane"});
+  scene.membrane.reset();
   scene.bending = Bending{2, 0.5, Vec3(0, 0.6, 0.8)};
   EXPECT_EQ(beyond(1, scene), std::vector<std::string>{"bending stiffness"});
   file = parse_json(scene_file(scene));

@@ -357,6 +357,9 @@ TEST(SceneFiles, AMembraneTakesThePlaceOfLinks) {
   EXPECT_EQ(two.membrane->weft, 800);
   EXPECT_EQ(two.membrane->poisson, 0.3);
   EXPECT_EQ(two.membrane->shear, 350);
+  EXPECT_EQ(two.membrane->damping, 0);
+  EXPECT_EQ(shipped("hang", {"membrane={ stiffness = 1000, damping = 0.25 }"}).membrane->damping,
+            0.25);
   EXPECT_EQ(arap.membrane->law, Membrane::Law::arap);
   EXPECT_FALSE(bent.links.empty()) << "what it does not double";
   std::set<std::string> contents{content(shipped("hang")), content(one), content(two),
@@ -396,6 +399,8 @@ TEST(SceneFiles, AMembraneThatIsNoneIsRefusedWithLineAndKey) {
   refused("stiffness = 10\nlaw = \"arap\"\npoisson = 0.2", ":5:11", "is not free", cloth);
   refused("stiffness = 10\nlaw = \"arap\"\nshear = 0.2", ":5:9", "is not free", cloth);
   refused("stiffness = { warp = 1, weft = 4 }\nlaw = \"arap\"", ":3:13", "one number", cloth);
+  refused("stiffness = 10\nlaw = \"arap\"\ndamping = 1e-3", ":5:11", "Green's strain", cloth);
+  refused("stiffness = 10\ndamping = -1", ":4:11", "'damping' in [membrane] must be", cloth);
   refused("stiffness = 10\nwarp = [1, 0, 0]", ":5:8", "a cloth has one warp",
           cloth + "bending = { stiffness = 1, warp = [0, 1, 0] }\n");
   refused("stiffness = 10", ":2:24", "'structural' in [links] doubles the membrane",

@@ -260,6 +260,11 @@ TEST(Content, DiffersWithEveryMemberButTheLabels) {
     changes[k](other);
     EXPECT_NE(content(other), content(scene)) << "change " << k;
   }
+  Scene stretched = scene;
+  stretched.membrane = Membrane{.warp = 1, .weft = 1, .shear = 1};
+  Scene damped = stretched;
+  damped.membrane->damping = 1;
+  EXPECT_NE(content(damped), content(stretched));
   Scene same = scene;
   same.name = "another";
   same.summary = "words";

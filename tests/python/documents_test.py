@@ -80,7 +80,7 @@ class Documents(module.Case):
                 if not name.startswith("_"):
                     self.assertTrue(member.__doc__, f"{kind.__name__}.{name}")
         self.assertEqual(taut.Scene.effects.__doc__, "What it has besides gravity, rigid links and pins that stay: 'colliders', 'moving pins', "
-                                                     "'pins that let go', 'wind', 'bending', 'membrane', 'self-collision', 'damping', 'damping of links', 'elastic links'.")
+                                                     "'pins that let go', 'wind', 'bending', 'membrane', 'self-collision', 'damping', 'damping of links', 'damping of the membrane', 'elastic links'.")
         for kind, names in ((taut.Scene, ("x", "v", "rest", "mass", "rest_lengths", "dt", "gravity", "damping")), (taut.Run, ("t", "x", "x_end", "v_end"))):
             for name in names:
                 self.assertRegex(getattr(kind, name).__doc__, r"\b(m|kg|s|1/s|m/s|m/s\^2)\b", f"unit of {name}")

@@ -40,18 +40,35 @@ Scene moving(Membrane::Law law) {
   return s;
 }
 
+Scene damped() {
+  Scene s = moving(Membrane::Law::stvk);
+  s.membrane->damping = 0.02;
+  return s;
+}
+
 constexpr Membrane::Law kLaws[] = {Membrane::Law::stvk, Membrane::Law::arap};
 
 /// Gradient of implicit Euler's energy [N] after the step; the membrane's part by differences.
 double left(const Scene& s, const std::vector<Vec3>& x) {
   Eigen::VectorXd g = ElasticStep(s, s.stiffness).gradient(x);
   const MembraneModel model = make_membrane(s);
+  const auto damping = [&](const std::vector<Vec3>& y) {  // b (e - e_t).C (e - e_t)/(2 h)
+    double sum = 0;
+    for (const MembraneElement& e : model.elements) {
+      const auto strain = [&](const std::vector<Vec3>& z) {
+        return model.law.strain(e.deformation([&](std::size_t v) { return z[v]; })).value;
+      };
+      const Vec3 by = strain(y) - strain(s.start.x);
+      sum += e.area * s.membrane->damping / (2 * s.dt) * by.dot(model.law.stiffness() * by);
+    }
+    return sum;
+  };
   for (std::size_t v = 0; v < x.size(); ++v)
     for (int c = 0; c < 3 && !is_pinned(s, static_cast<int>(v)); ++c) {
       const auto moved = [&](double by) {
         std::vector<Vec3> y = x;
         y[v][c] += by;
-        return model.energy(y);
+        return model.energy(y) + damping(y);
       };
       g[3 * static_cast<int>(v) + c] += (moved(1e-6) - moved(-1e-6)) / 2e-6;
     }
@@ -175,9 +192,11 @@ TEST(MembraneSolvers, TheLargestStableStepIsThatOfTheFastestMode) {
       s.start.v[v] = 1e-7 * Vec3(std::sin(3.0 * static_cast<double>(v)),
                                  std::cos(2.0 * static_cast<double>(v)), 0);
   s.dt = 1e-3;
-  const double margin =
-      linear_stability(s, parse_solver("mass-spring:substeps=1"))->margin;  // (w dt/2)^2
-  const double most = s.dt / std::sqrt(margin);
+  const auto margin = [&](double dt) {  // (w dt/2)^2 without damping
+    s.dt = dt;
+    return linear_stability(s, parse_solver("mass-spring:substeps=1"))->margin;
+  };
+  const double most = 1e-3 / std::sqrt(margin(1e-3));
   const auto speed_after = [&](double dt) {
     s.dt = dt;
     double fastest = 0;
@@ -187,6 +206,11 @@ TEST(MembraneSolvers, TheLargestStableStepIsThatOfTheFastestMode) {
   };
   EXPECT_LT(speed_after(0.98 * most), 1e-4);
   EXPECT_FALSE(speed_after(1.02 * most) < 1);
+  s.membrane->damping = most / 2;  // w^2 dt^2 + 2 b w^2 dt = 4, where w = 2/most
+  const double less = most * (std::sqrt(1.25) - 0.5);
+  EXPECT_NEAR(margin(less), 1, 1e-9);
+  EXPECT_LT(speed_after(0.98 * less), 1e-4);
+  EXPECT_FALSE(speed_after(1.02 * less) < 1);
 }
 
 TEST(MembraneSolvers, TheExactStepIsThatOfImplicitAndStepErrorMeasuresFromIt) {
@@ -209,6 +233,39 @@ TEST(MembraneSolvers, TheExactStepIsThatOfImplicitAndStepErrorMeasuresFromIt) {
       EXPECT_TRUE(estimate.believed);
       EXPECT_NEAR(estimate.distance / rms, 1, 0.05) << amount;
     }
+  }
+}
+
+TEST(MembraneSolvers, DampingIsTheSameEnergyInAll) {
+  const Scene s = damped();
+  const double at_first = left(s, s.start.x);
+  for (const char* solver : {"implicit:iterations=200", "implicit:iterations=200,linear=cg",
+                             "vbd:iterations=3000", "vbd:iterations=3000,order=mesh"})
+    EXPECT_LT(left(s, after_one_step(s, solver).x) / at_first, 1e-6) << solver;
+  Scene undamped = s;
+  undamped.membrane->damping = 0;
+  const State exact = after_one_step(s, "implicit:iterations=200"),
+              other = after_one_step(undamped, "implicit:iterations=200");
+  EXPECT_GT(left(s, other.x) / at_first, 0.01);
+  const auto minimum = reference::ImplicitStep(s, s.start, 0, s.stiffness).minimum(s.start.x);
+  EXPECT_EQ(minimum.problem, "");
+  EXPECT_LT(largest_distance(minimum.x, exact.x), 1e-9);
+  reference::StepError error(s, s.stiffness);
+  EXPECT_LT(error.of(s.start, 0, s.dt, exact.x).distance, 1e-9);
+  EXPECT_GT(error.of(s.start, 0, s.dt, other.x).distance, 1e-4);
+}
+
+TEST(MembraneSolvers, DampedOnesHaveTheSameBitsForEveryInstructionSetAndNumberOfThreads) {
+  const Scene s = damped();
+  for (const char* solver : {"vbd:iterations=3", "vbd:iterations=2,precision=float", "xpbd",
+                             "mass-spring", "implicit:iterations=3"}) {
+    const auto same = [&](const char* more) {
+      return largest_distance(simulate(s, solver + std::string(more), 4).x,
+                              simulate(s, solver, 4).x) == 0;
+    };
+    const std::string more = std::string(solver).find(':') == std::string::npos ? ":" : ",";
+    for (const char* one : {"simd=scalar", "threads=2"})
+      EXPECT_TRUE(same((more + one).c_str())) << solver << ' ' << one;
   }
 }
 
@@ -244,7 +301,14 @@ TEST(MembraneSolvers, OthersRefuseItAndSayWhy) {
   for (const char* solver : {"implicit", "vbd", "xpbd", "mass-spring"}) {
     const SolverChoice choice = parse_solver(solver);
     EXPECT_TRUE(choice.entry->unsupported(s, choice.params).empty()) << solver;
+    EXPECT_TRUE(choice.entry->unsupported(damped(), choice.params).empty()) << solver;
   }
+  const SolverChoice choice = parse_solver("implicit:integrator=bdf2");
+  EXPECT_TRUE(choice.entry->unsupported(s, choice.params).empty());
+  EXPECT_EQ(choice.entry->unsupported(damped(), choice.params).size(), 1u);
+  for (const auto& reasons :
+       {reference::refuse_dynamic(damped()), reference::refuse_springs(damped())})
+    EXPECT_EQ(reasons, std::vector<std::string>{"damping of the membrane"});
 }
 
 }  // namespace

@@ -128,6 +128,7 @@ Scene changed(Scene s, const Change& c) {
     for (double* one : {&s.membrane->warp, &s.membrane->weft, &s.membrane->shear})
       *one *= factor(c, "N/m");
     vector(s.membrane->direction, 1);
+    s.membrane->damping *= c.second;
   }
   if (s.self_collision) s.self_collision->radius *= c.metre;
   vector(s.gravity, factor(c, "m/s^2"));

@@ -46,7 +46,7 @@ StepEnergy::StepEnergy(const loop::Setup& s, bool factored)
           stiffened(make_springs(s.scene, s.w, stiffnesses(s.scene, s.params)), link_damping(s))),
       damped(link_damping(s), springs),
       bending(make_bending(s.scene)),
-      membrane(make_membrane(s.scene)),
+      membrane(make_membrane(s.scene, s.scene.dt / s.params.integer("substeps"))),
       hessian(springs, bending, s.w, factored, s.simd, sides_of_faces(s)),
       stiffness(s.w.size()),
       contacts(s.scene, s.params) {

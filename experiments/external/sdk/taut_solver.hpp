@@ -9,7 +9,8 @@
 //       // Optional: the newest protocol that it knows; newer scenes are then not sent to it.
 //       // "taut-solver/1" (the default): rigid links; planes, balls and boxes. /2: also elastic
 //       // links, bending, capsules, seams, pins that let go. /3: also bodies of triangles. /4:
-//       // also bodies that deform. /5: also a membrane. /6: also damping of links.
+//       // also bodies that deform. /5: also a membrane. /6: also damping of
+//       // links and of the membrane.
 //       static constexpr const char* kProtocol = "taut-solver/2";
 //       // Reasons why the scene would be misread; empty if it is read correctly.
 //       static std::vector<std::string> cannot(const Json& scene, const Json& params);

@@ -17,7 +17,7 @@ Optional:
         "taut-solver/3"      also bodies of triangles
         "taut-solver/4"      also bodies that deform
         "taut-solver/5"      also a membrane (membrane)
-        "taut-solver/6"      also damping of links (link_damping)
+        "taut-solver/6"      also damping of links (link_damping) and of a membrane
     summary, source          texts
     unmeasurable             why its CPU time means nothing, "it computes on a GPU"; then no cost is published
     cannot(scene, params)    static method: a list of reasons why the scene would be misread; empty if it is read correctly
