@@ -105,8 +105,8 @@ class SolverSearch {
   }
 
   /// Searches each error, with an equal share of the time that the errors before it left. The
-  /// alternatives of what is best so far come first, and those of the error before: a solver whose
-  /// runs are dear would else not get to its alternatives.
+  /// alternatives of the best for the error before come first, then those of the best so far: a
+  /// solver whose runs are dear would else not get to its alternatives.
   void search(const std::string& solver, std::span<const double> errors, double seconds) {
     auto left = static_cast<double>(errors.size());
     double before = errors.front();
@@ -123,7 +123,7 @@ class SolverSearch {
         for (double dearest = most / 256; dearest <= most && !cut_off_; dearest *= 4)
           if (best_for(target, search_settings(text, target, run, {}, depth, dearest))) return;
       };
-      for (const double near : {error, before})
+      for (const double near : {before, error})
         if (const auto at = best_for({near, {}}, tried_))
           search_from(with_alternatives_of(tried_[*at].setting, solver), SearchDepth::refined);
       for (const SearchDepth depth : {SearchDepth::columns, SearchDepth::repeated})
