@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Do the winners of the map win on scenes that the search never saw?
 
-    experiments/advise/held_out.py PROGRAM [--base BENCH.json] [--seeds 1-20] [--references FOLDER [--only-references]]
+    experiments/advise/held_out.py PROGRAM [--base BENCH.json] [--seeds 1-20|1,5,9] [--references FOLDER [--only-references]]
 
 Each seed draws a scene of one of the trade's kinds: grid, step, tilt, bending, damping, body. PROGRAM (taut) makes its reference, and
 times the setting of every solver that is cheapest for an error on the kind's own scene: `taut bench trade --preset quick --json`, or the
@@ -93,13 +93,14 @@ def main():
     parser.add_argument("--references", type=pathlib.Path)
     parser.add_argument("--only-references", action="store_true")
     options = parser.parse_args()
-    first, last = map(int, options.seeds.split("-"))
+    ends = [[int(n) for n in part.split("-")] for part in options.seeds.split(",")]
+    seeds = [seed for part in ends for seed in range(part[0], part[-1] + 1)]
     program = options.program.resolve()
     with tempfile.TemporaryDirectory() as folder:
         taut = Taut(program, pathlib.Path(folder), options.references)
         base = {} if options.only_references else recommended_in(json.loads(options.base.read_text())) if options.base else taut.recommended("trade", "--preset", "quick")
         judged, unjudged, losses = [], [], []
-        for seed in range(first, last + 1):
+        for seed in seeds:
             kind, settings = drawn(seed)
             sets = [word for one in settings for word in ("--set", one)]
             print(f"seed {seed}: {kind}", file=sys.stderr, flush=True)
